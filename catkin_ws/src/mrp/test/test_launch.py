@@ -1,0 +1,35 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""roslaunch mrp pub_sub.launch, through a pipe, in the ways in which a user may start it."""
+
+import subprocess
+import unittest
+
+import contract
+import rospkg
+import rostest
+from console import check_console
+
+LAUNCH = ("roslaunch", contract.PACKAGE, contract.LAUNCH_FILE)
+
+
+class TestLaunch(unittest.TestCase):
+    def test_by_package_and_file(self):
+        check_console(contract.GROUP, *LAUNCH)
+
+    def test_by_absolute_path(self):
+        package = rospkg.RosPack().get_path(contract.PACKAGE)
+        check_console(
+            contract.GROUP, "roslaunch", package + "/launch/" + contract.LAUNCH_FILE
+        )
+
+    def test_group_is_an_argument(self):
+        check_console("/robot1", *LAUNCH, "group:=robot1")
+
+    def test_group_is_documented(self):
+        arguments = subprocess.check_output([*LAUNCH, "--ros-args"], universal_newlines=True)
+        self.assertRegex(arguments, r'group \(default "mrp"\): namespace of the four nodes')
+
+
+if __name__ == "__main__":
+    rostest.rosrun(contract.PACKAGE, "launch", TestLaunch)

@@ -1,0 +1,59 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""The nodes under a bare rosrun: their own names, and the names that a user gives them."""
+
+import contextlib
+import unittest
+
+import contract
+import rostest
+from graph import Graph
+from process import rosrun
+
+
+class TestNames(unittest.TestCase):
+    def check(self, arguments, namespace, topic):
+        """Run all four nodes with the arguments; expect their names, one topic, and all values."""
+        with contextlib.ExitStack() as stack:
+            processes = {
+                node: stack.enter_context(rosrun(node, *arguments)) for node in contract.NODES
+            }
+            for subscriber in contract.SUBSCRIBERS:
+                for publisher in contract.PUBLISHERS:
+                    process = processes[subscriber]
+                    process.wait_for(
+                        lambda: publisher in self.heard(subscriber, process),
+                        "{} hears {}".format(subscriber.name, publisher.name),
+                    )
+            for node, process in processes.items():
+                name = namespace + node.name
+                self.assertEqual(
+                    contract.logged_text(process.lines[0]), node.start_line.format(name)
+                )
+                self.assertEqual(process.errors, [], str(process))
+
+            graph = Graph()
+            publishers = sorted(namespace + node.name for node in contract.PUBLISHERS)
+            subscribers = sorted(namespace + node.name for node in contract.SUBSCRIBERS)
+            graph.publishers.pop("/rosout")
+            self.assertEqual(graph.publishers, {topic: publishers})
+            self.assertEqual(graph.subscribers, {topic: subscribers})
+
+    @staticmethod
+    def heard(subscriber, process):
+        texts = [contract.logged_text(line) for line in list(process.lines)]
+        values = [contract.received_value(subscriber, text) for text in texts if text]
+        return {contract.publisher_of(value) for value in values if value is not None}
+
+    def test_bare_rosrun_is_in_the_root_namespace(self):
+        self.check([], "/", "/" + contract.TOPIC)
+
+    def test_ns_moves_the_nodes_and_their_topic(self):
+        self.check(["__ns:=/robot1"], "/robot1/", "/robot1/" + contract.TOPIC)
+
+    def test_remap_moves_the_topic_only(self):
+        self.check([contract.TOPIC + ":=/elsewhere/small_topic"], "/", "/elsewhere/small_topic")
+
+
+if __name__ == "__main__":
+    rostest.rosrun(contract.PACKAGE, "names", TestNames)

@@ -1,0 +1,76 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""One node is killed and comes back: the flow to and from the others has no gap."""
+
+import os
+import signal
+import unittest
+import xmlrpc.client
+
+import contract
+import rosgraph
+import rospy
+import rostest
+from listener import Listener, describe
+from waiting import wait_until
+
+ENOUGH = 5  # values of each publisher, before the kill and after the return
+
+
+def pid_of(name):
+    """Return the process id of a running node, or None if it cannot be reached."""
+    try:
+        uri = rosgraph.Master("/test_respawn").lookupNode(name)
+        _, _, pid = xmlrpc.client.ServerProxy(uri).getPid("/test_respawn")
+        return pid
+    except (rosgraph.MasterException, OSError):
+        return None
+
+
+class TestRespawn(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        rospy.init_node("test_respawn")
+
+    def check(self, victim):
+        listener = Listener(contract.GROUP)
+        self.addCleanup(listener.close)
+        listener.wait_until_each_received(ENOUGH)
+
+        name = listener.full_name(victim)
+        pid = pid_of(name)
+        before = {pair: len(values) for pair, values in listener.all_received().items()}
+        os.kill(pid, signal.SIGKILL)
+
+        # A value that was under way when the node died may still come in after `before`;
+        # one more than ENOUGH is therefore certain to have been received after the return.
+        wait_until(lambda: pid_of(name) not in (None, pid), name + " is back")
+        wait_until(
+            lambda: all(
+                len(values) > before[pair] + ENOUGH and len(contract.runs(values)[-1]) >= ENOUGH
+                for pair, values in listener.all_received().items()
+            ),
+            lambda: "values after the return: {}".format(describe(listener.all_received())),
+        )
+        for pair, values in listener.all_received().items():
+            runs = len(contract.runs(values))
+            if victim in pair:
+                self.assertLessEqual(runs, 2, describe({pair: values}))
+            else:
+                self.assertEqual(runs, 1, describe({pair: values}))
+
+    def test_publisher_cpp(self):
+        self.check(contract.PUBLISHER_CPP)
+
+    def test_publisher_py(self):
+        self.check(contract.PUBLISHER_PY)
+
+    def test_subscriber_cpp(self):
+        self.check(contract.SUBSCRIBER_CPP)
+
+    def test_subscriber_py(self):
+        self.check(contract.SUBSCRIBER_PY)
+
+
+if __name__ == "__main__":
+    rostest.rosrun(contract.PACKAGE, "respawn", TestRespawn)

@@ -1,0 +1,80 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""How each node ends: its exit code, its last words, and what it leaves at the master."""
+
+import signal
+import unittest
+
+import contract
+import rospy
+import rostest
+from graph import Graph
+from process import rosrun
+from std_msgs.msg import UInt32
+
+
+class TestStop(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        rospy.init_node("test_stop")
+        cls.publisher = rospy.Publisher(contract.TOPIC, UInt32, queue_size=10)
+
+    def stop(self, node, signal_number):
+        """Stop a node in the midst of its work; return its exit code, stderr and registrations."""
+        values = []
+        subscriber = rospy.Subscriber(contract.TOPIC, UInt32, values.append)
+        self.addCleanup(subscriber.unregister)
+        with rosrun(node) as process:
+            if node in contract.PUBLISHERS:
+                process.wait_for(lambda: values, "a value from " + node.name)
+            else:
+                # Publish until the node logs it: the first ones come before it is connected.
+                def logged():
+                    self.publisher.publish(7)
+                    line = contract.RECEIVED_LINE[node].format(7)
+                    return line in map(contract.logged_text, list(process.lines))
+
+                process.wait_for(logged, node.name + " logs a value")
+            code = process.stop(signal_number)
+        name = "/" + node.name
+        return code, process.errors, name in Graph().nodes
+
+    def check_sigint(self, node):
+        self.assertEqual(self.stop(node, signal.SIGINT), (0, [], False))
+
+    def test_sigint_publisher_cpp(self):
+        self.check_sigint(contract.PUBLISHER_CPP)
+
+    def test_sigint_publisher_py(self):
+        self.check_sigint(contract.PUBLISHER_PY)
+
+    def test_sigint_subscriber_cpp(self):
+        self.check_sigint(contract.SUBSCRIBER_CPP)
+
+    def test_sigint_subscriber_py(self):
+        self.check_sigint(contract.SUBSCRIBER_PY)
+
+    # rospy ends on SIGTERM as on SIGINT. roscpp has no handler for it: the signal kills the node,
+    # which stays registered at the master.
+
+    def check_sigterm_cpp(self, node):
+        self.assertEqual(self.stop(node, signal.SIGTERM), (-signal.SIGTERM, [], True))
+
+    def check_sigterm_py(self, node):
+        self.assertEqual(self.stop(node, signal.SIGTERM), (0, [], False))
+
+    def test_sigterm_publisher_cpp(self):
+        self.check_sigterm_cpp(contract.PUBLISHER_CPP)
+
+    def test_sigterm_publisher_py(self):
+        self.check_sigterm_py(contract.PUBLISHER_PY)
+
+    def test_sigterm_subscriber_cpp(self):
+        self.check_sigterm_cpp(contract.SUBSCRIBER_CPP)
+
+    def test_sigterm_subscriber_py(self):
+        self.check_sigterm_py(contract.SUBSCRIBER_PY)
+
+
+if __name__ == "__main__":
+    rostest.rosrun(contract.PACKAGE, "stop", TestStop)

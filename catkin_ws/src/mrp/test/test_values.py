@@ -1,0 +1,85 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Each publisher's first values and its period, on a clock that the test itself turns.
+
+On the wall's clock the first message may be lost, while publisher and subscriber still connect.
+Here no time passes, and so nothing is published, until they have.
+"""
+
+import unittest
+
+import contract
+import rospy
+import rostest
+from process import rosrun
+from rosgraph_msgs.msg import Clock
+from std_msgs.msg import UInt32
+from waiting import within
+
+COUNT = 10  # values of each publisher
+
+# The clock begins just after 0, because 0 is the time of a node that has not heard the clock yet:
+# so it does not matter whether a node creates its timer before or after it first hears it.
+BEGIN = 0.01  # seconds
+PATIENCE = 2.0  # seconds of the wall's clock
+
+
+class TestValues(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        rospy.init_node("test_values")
+        cls.clock = rospy.Publisher("/clock", Clock, queue_size=10, latch=True)
+
+    def turn_clock(self, periods):
+        now = 2 * BEGIN + periods * contract.PERIOD
+        self.clock.publish(Clock(rospy.Time.from_sec(now)))
+
+    def subscribe(self, values):
+        subscriber = rospy.Subscriber(contract.TOPIC, UInt32, lambda msg: values.append(msg.data))
+        self.addCleanup(subscriber.unregister)
+        return subscriber
+
+    def check(self, publisher):
+        self.clock.publish(Clock(rospy.Time.from_sec(BEGIN)))
+        values = []
+        subscriber = self.subscribe(values)
+        with rosrun(publisher) as process:
+            process.wait_for(subscriber.get_num_connections, "the test's subscriber is connected")
+            # The first turn may come before the node hears the clock at all.
+            periods = 1
+            self.turn_clock(periods)
+            while not within(PATIENCE, lambda: values) and periods < COUNT:
+                periods += 1
+                self.turn_clock(periods)
+            # From here on: one value a period, not more and not less.
+            while len(values) < COUNT:
+                count = len(values)
+                self.assertLessEqual(count, periods, "too many: {}".format(values))
+                periods += 1
+                self.turn_clock(periods)
+                process.wait_for(
+                    lambda: len(values) > count,
+                    lambda: "one more value after a period: {}".format(values),
+                )
+            self.assertLessEqual(len(values), periods, "too many: {}".format(values))
+
+            # Not latched: a late subscriber hears the next value first, not the last one again.
+            subscriber.unregister()
+            late = []
+            subscriber = self.subscribe(late)
+            process.wait_for(subscriber.get_num_connections, "the late subscriber is connected")
+            self.turn_clock(periods + 1)
+            process.wait_for(lambda: late, "the late subscriber hears a value")
+        first = contract.FIRST_VALUE[publisher]
+        self.assertEqual(values, [first + i * contract.STEP for i in range(len(values))])
+        self.assertEqual(late[0], values[-1] + contract.STEP, "what the late subscriber hears")
+
+    def test_publisher_cpp(self):
+        self.check(contract.PUBLISHER_CPP)
+
+    def test_publisher_py(self):
+        self.check(contract.PUBLISHER_PY)
+
+
+if __name__ == "__main__":
+    rostest.rosrun(contract.PACKAGE, "values", TestValues)
