@@ -1,0 +1,85 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The tests of the tests: each broken variant of the package must fail, for the right reason.
+
+A variant is a patch in broken/. Its first lines say what it breaks, and which test case of which
+rostest says what (a regular expression) about it:
+
+    Breaks: ...
+    Fails: stop.test test_sigint_publisher_cpp
+    Says: ...
+"""
+
+import pathlib
+import re
+import shutil
+import subprocess
+import xml.etree.ElementTree as ElementTree
+
+import pytest
+import scratch
+
+PATCHES = sorted((pathlib.Path(__file__).parent / "broken").glob("*.patch"))
+DEADLINE = "10"  # seconds that a test waits for what a broken variant never does
+
+
+def head(patch, field):
+    """Return the text of a field in a patch's first lines."""
+    found = re.search("^" + field + ": (.+)$", patch.read_text(), re.MULTILINE)
+    assert found, "{} has no line '{}: ...'".format(patch.name, field)
+    return found.group(1)
+
+
+def run_rostest(folder, name):
+    """Run one rostest of the scratch workspace; return the message of each failed test case."""
+    package = folder / "src" / "mrp"
+    results = folder / "results"
+    shutil.rmtree(results, ignore_errors=True)
+    env = {**scratch.environment(), "MRP_TEST_DEADLINE": DEADLINE}
+    command = scratch.sourced(
+        folder / "devel" / "setup.bash",
+        "rostest",
+        "--pkgdir=" + str(package),
+        "--package=mrp",
+        "--results-base-dir=" + str(results),
+        package / "test" / name,
+    )
+    done = subprocess.run(
+        command, env=env, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, universal_newlines=True
+    )
+    files = list(results.rglob("rosunit-*.xml"))
+    assert files, done.stdout
+    return {
+        case.get("name"): failure.text
+        for file in files
+        for case in ElementTree.parse(file).iter("testcase")
+        for failure in [*case.iter("failure"), *case.iter("error")]
+    }
+
+
+@pytest.fixture(scope="session")
+def workspace(tmp_path_factory):
+    """A workspace that is built once; each test breaks its package, and mends it again."""
+    folder = tmp_path_factory.mktemp("workspace")
+    scratch.make(folder)
+    return folder
+
+
+@pytest.mark.parametrize("patch", PATCHES, ids=lambda patch: patch.stem)
+def test_broken_variant_fails(patch, workspace):
+    def run_patch(*options):
+        command = ["patch", "-p1", "--fuzz=0", "--input=" + str(patch), *options]
+        subprocess.run(command, cwd=workspace / "src" / "mrp", check=True)
+
+    run_patch()
+    try:
+        scratch.catkin_make(workspace)
+        rostest, case = head(patch, "Fails").split()
+        failures = run_rostest(workspace, rostest)
+    finally:
+        run_patch("--reverse")
+    assert case in failures, "failed: {}".format(failures)
+    assert re.search(head(patch, "Says"), failures[case]), failures[case]
+
+
+def test_there_are_broken_variants():
+    assert PATCHES
