@@ -24,7 +24,7 @@ def environment():
     env = {k: v for k, v in os.environ.items() if k not in names}
     with socket.socket() as probe:
         probe.bind(("localhost", 0))
-        env["ROS_MASTER_URI"] = "http://localhost:{}".format(probe.getsockname()[1])
+        env["ROS_MASTER_URI"] = f"http://localhost:{probe.getsockname()[1]}"
     return env
 
 
@@ -35,7 +35,7 @@ def catkin_make(folder, *arguments):
         env=environment(),
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,
-        universal_newlines=True,
+        text=True,
     )
     assert done.returncode == 0, done.stdout
     return done.stdout

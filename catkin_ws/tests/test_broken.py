@@ -25,7 +25,7 @@ DEADLINE = "10"  # seconds that a test waits for what a broken variant never doe
 def head(patch, field):
     """Return the text of a field in a patch's first lines."""
     found = re.search("^" + field + ": (.+)$", patch.read_text(), re.MULTILINE)
-    assert found, "{} has no line '{}: ...'".format(patch.name, field)
+    assert found, f"{patch.name} has no line '{field}: ...'"
     return found.group(1)
 
 
@@ -44,7 +44,7 @@ def run_rostest(folder, name):
         package / "test" / name,
     )
     done = subprocess.run(
-        command, env=env, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, universal_newlines=True
+        command, env=env, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
     )
     files = list(results.rglob("rosunit-*.xml"))
     assert files, done.stdout
@@ -77,7 +77,7 @@ def test_broken_variant_fails(patch, workspace):
         failures = run_rostest(workspace, rostest)
     finally:
         run_patch("--reverse")
-    assert case in failures, "failed: {}".format(failures)
+    assert case in failures, f"failed: {failures}"
     assert re.search(head(patch, "Says"), failures[case]), failures[case]
 
 

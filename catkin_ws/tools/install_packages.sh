@@ -15,8 +15,9 @@ fail() {
 # A system with ROS Noetic's own packages has what it needs in /opt/ros.
 [ ! -e /opt/ros/noetic/setup.bash ] || exit 0
 
-command -v apt-get > /dev/null && command -v dpkg-query > /dev/null ||
+if ! command -v apt-get > /dev/null || ! command -v dpkg-query > /dev/null; then
   fail "this system has no apt-get; ROS 1 comes from Debian's packages. $container"
+fi
 
 installed() {
   dpkg-query --show --showformat '${db:Status-Status}' "$1" 2> /dev/null | grep -qx installed
@@ -25,7 +26,7 @@ installed() {
 # Prints the lines of which no alternative is installed.
 missing() {
   local line package
-  sed -e 's/#.*//' -e 's/|/ /g' "$@" | while read -r line; do
+  sed -e 's/#.*//' -e 's/ *| */ /g' -e 's/ *$//' "$@" | while read -r line; do
     for package in $line; do
       ! installed "$package" || continue 2
     done
@@ -36,15 +37,17 @@ missing() {
 lines=$(missing "$@")
 [ -n "$lines" ] || exit 0
 
+listed=${lines//$'\n'/, }
 as_root=()
 if [ "$(id -u)" != 0 ]; then
   command -v sudo > /dev/null ||
-    fail "installing packages needs root or sudo. As root: apt-get install" $lines
+    fail "installing packages needs root or sudo; missing: $listed"
   as_root=(sudo)
 fi
 
-echo "Installing, from Debian's packages:" $lines
-"${as_root[@]}" apt-get update || echo "warning: apt-get update failed; going on with the old package lists" >&2
+echo "Installing Debian's packages: $listed"
+"${as_root[@]}" apt-get update ||
+  echo "warning: apt-get update failed; going on with the package lists as they are" >&2
 
 packages=()
 while read -r line; do

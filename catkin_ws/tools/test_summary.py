@@ -19,7 +19,7 @@ def read(path):
     try:
         root = ElementTree.parse(path).getroot()
     except ElementTree.ParseError as error:
-        return 0, 0, [(path.name, "no JUnit file: {}".format(error))]
+        return 0, 0, [(path.name, f"no JUnit file: {error}")]
     passed = skipped = 0
     failed = []
     for case in root.iter("testcase"):
@@ -46,17 +46,17 @@ def main(folder):
         passed, skipped, failed = read(path)
         if path.name.startswith("rostest-") and not failed:
             continue
-        counts = "{:3} passed {:3} failed".format(passed, len(failed))
+        counts = f"{passed:3} passed {len(failed):3} failed"
         print("  {:6} {}  {}".format("FAILED" if failed else "ok", counts, path.stem))
         total_passed += passed
         total_skipped += skipped
         all_failed += failed
     for name, message in all_failed:
-        print("\nFAILED: {}\n{}".format(name, message))
+        print(f"\nFAILED: {name}\n{message}")
     if not total_passed + total_skipped + len(all_failed):
-        print("error: expected test results below {}; no test ran".format(folder))
-    skips = ", {} skipped".format(total_skipped) if total_skipped else ""
-    print("{} passed, {} failed{}".format(total_passed, len(all_failed), skips))
+        print(f"error: expected test results below {folder}; no test ran")
+    skips = f", {total_skipped} skipped" if total_skipped else ""
+    print(f"{total_passed} passed, {len(all_failed)} failed{skips}")
     return 0 if total_passed and not all_failed and not total_skipped else 1
 
 

@@ -34,17 +34,17 @@ def check_console(namespace, *roslaunch, env=None):
     with Process(*roslaunch, env=env) as process:
         process.wait_for(
             lambda: any(len(values) >= _ENOUGH for values in _received(process.lines).values()),
-            lambda: "{} values in {}".format(_ENOUGH, _received(process.lines)),
+            lambda: f"{_ENOUGH} values in {_received(process.lines)}",
         )
         _check_live(_received(process.lines))
         code = process.stop()
-    assert code == 0, "exit code {} of {}".format(code, process)
+    assert code == 0, f"exit code {code} of {process}"
 
     start_lines, pids = [], []
     for line in process.lines:
         text = contract.logged_text(line)
         roslaunch_line = _ROSLAUNCH_LINE.fullmatch(line)
-        assert text or roslaunch_line, "unexpected line {!r} in {}".format(line, process)
+        assert text or roslaunch_line, f"unexpected line {line!r} in {process}"
         if text and _value(text) is None:
             start_lines.append(text)
         if roslaunch_line and roslaunch_line["pid"]:
@@ -54,17 +54,17 @@ def check_console(namespace, *roslaunch, env=None):
     ), str(process)
     assert len(pids) >= len(contract.NODES), str(process)
     left = [pid for pid in pids if os.path.exists("/proc/" + pid)]
-    assert not left, "processes {} are left of {}".format(left, process)
+    assert not left, f"processes {left} are left of {process}"
     for pair, values in _received(process.lines).items():
         fault = contract.first_fault(values)
-        assert fault is None, "{}: {} in {}".format(pair, fault, process)
+        assert fault is None, f"{pair}: {fault} in {process}"
 
 
 def _check_live(received):
     for publisher in contract.PUBLISHERS:
         shown = [received[s.name, publisher.name][-1:] for s in contract.SUBSCRIBERS]
         assert all(shown) and abs(shown[0][0] - shown[1][0]) <= _LATE * contract.STEP, (
-            "lines are held back: last values of {} are {}".format(publisher.name, shown)
+            f"lines are held back: last values of {publisher.name} are {shown}"
         )
 
 

@@ -78,7 +78,7 @@ def first_fault(values):
     for before, value in zip(values, values[1:]):
         expected = (before + STEP) % MODULUS
         if value != expected:
-            return "after {} came {}, expected {}".format(before, value, expected)
+            return f"after {before} came {value}, expected {expected}"
     return None
 
 

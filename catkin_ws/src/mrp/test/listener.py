@@ -48,11 +48,10 @@ class Listener:
         """Wait until each subscriber node received `count` values of each publisher."""
         wait_until(
             lambda: all(len(values) >= count for values in self.all_received().values()),
-            lambda: "{} values of each publisher at each subscriber: {}".format(
-                count, describe(self.all_received())
-            ),
+            lambda: f"{count} values of each publisher: {describe(self.all_received())}",
         )
 
 
 def describe(received):
+    """Return "publisher -> subscriber": values, to be read in a message."""
     return {"{1.name} -> {0.name}".format(*pair): values for pair, values in received.items()}

@@ -35,14 +35,14 @@ class Process:
     Use it in a `with`: on leaving, whatever is left of the program is killed.
     """
 
-    def __init__(self, *command, env=None, extra_env={}):
+    def __init__(self, *command, env=None, extra_env=None):
         self.command = command
         self.lines = []
         self.errors = []
         env = dict(os.environ if env is None else env)
         for name in LIVE:
             env.pop(name, None)
-        env.update(extra_env)
+        env.update(extra_env or {})
         self._popen = subprocess.Popen(
             command,
             stdin=subprocess.DEVNULL,
@@ -55,7 +55,9 @@ class Process:
         self.pid = self._popen.pid
         self._readers = [
             threading.Thread(target=self._read, args=(self._popen.stdout, [self.lines])),
-            threading.Thread(target=self._read, args=(self._popen.stderr, [self.lines, self.errors])),
+            threading.Thread(
+                target=self._read, args=(self._popen.stderr, [self.lines, self.errors])
+            ),
         ]
         for reader in self._readers:
             reader.start()
@@ -78,7 +80,7 @@ class Process:
             return condition() or self._popen.poll() is not None
 
         def explain():
-            return "{}\n{}".format(what() if callable(what) else what, self)
+            return f"{what() if callable(what) else what}\n{self}"
 
         wait_until(met_or_ended, explain)
         assert condition(), "the program ended before: " + explain()

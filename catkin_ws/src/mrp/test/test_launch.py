@@ -19,9 +19,7 @@ class TestLaunch(unittest.TestCase):
 
     def test_by_absolute_path(self):
         package = rospkg.RosPack().get_path(contract.PACKAGE)
-        check_console(
-            contract.GROUP, "roslaunch", package + "/launch/" + contract.LAUNCH_FILE
-        )
+        check_console(contract.GROUP, "roslaunch", package + "/launch/" + contract.LAUNCH_FILE)
 
     def test_group_is_an_argument(self):
         check_console("/robot1", *LAUNCH, "group:=robot1")

@@ -23,7 +23,7 @@ class TestNames(unittest.TestCase):
                     process = processes[subscriber]
                     process.wait_for(
                         lambda: publisher in self.heard(subscriber, process),
-                        "{} hears {}".format(subscriber.name, publisher.name),
+                        f"{subscriber.name} hears {publisher.name}",
                     )
             for node, process in processes.items():
                 name = namespace + node.name

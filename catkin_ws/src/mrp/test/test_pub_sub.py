@@ -41,13 +41,13 @@ class TestPubSub(unittest.TestCase):
     def test_subscribers_receive_every_value_of_both_publishers(self):
         self.listener.wait_until_each_received(ENOUGH)
         for (subscriber, publisher), values in self.listener.all_received().items():
-            pair = "{} from {}".format(subscriber.name, publisher.name)
+            pair = f"{subscriber.name} from {publisher.name}"
             self.assertIsNone(contract.first_fault(values), pair)
 
     def test_each_publisher_sends_its_own_sequence(self):
         wait_until(
             lambda: all(len(self.sent(p)) >= ENOUGH for p in contract.PUBLISHERS),
-            lambda: "{} values of each publisher: {}".format(ENOUGH, self.messages),
+            lambda: f"{ENOUGH} values of each publisher: {self.messages}",
         )
         for publisher in contract.PUBLISHERS:
             values = []
@@ -57,7 +57,7 @@ class TestPubSub(unittest.TestCase):
             self.assertIsNone(contract.first_fault(values), publisher.name)
             for value in values:
                 self.assertEqual(
-                    contract.publisher_of(value).name, publisher.name, "sender of {}".format(value)
+                    contract.publisher_of(value).name, publisher.name, f"sender of {value}"
                 )
 
     def test_nodes_log_what_the_contract_says_and_nothing_else(self):
@@ -65,7 +65,7 @@ class TestPubSub(unittest.TestCase):
         nodes = {self.listener.full_name(node): node for node in contract.NODES}
         for name, level, text in list(self.listener.logs):
             if name in nodes and text != nodes[name].start_line.format(name):
-                self.assertEqual(level, Log.INFO, "{}: {}".format(name, text))
+                self.assertEqual(level, Log.INFO, f"{name}: {text}")
                 self.assertIn(nodes[name], contract.SUBSCRIBERS, text)
                 self.assertIsNotNone(contract.received_value(nodes[name], text), text)
 

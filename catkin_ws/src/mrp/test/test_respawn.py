@@ -50,7 +50,7 @@ class TestRespawn(unittest.TestCase):
                 len(values) > before[pair] + ENOUGH and len(contract.runs(values)[-1]) >= ENOUGH
                 for pair, values in listener.all_received().items()
             ),
-            lambda: "values after the return: {}".format(describe(listener.all_received())),
+            lambda: f"values after the return: {describe(listener.all_received())}",
         )
         for pair, values in listener.all_received().items():
             runs = len(contract.runs(values))

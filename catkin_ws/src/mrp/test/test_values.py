@@ -54,14 +54,14 @@ class TestValues(unittest.TestCase):
             # From here on: one value a period, not more and not less.
             while len(values) < COUNT:
                 count = len(values)
-                self.assertLessEqual(count, periods, "too many: {}".format(values))
+                self.assertLessEqual(count, periods, f"too many: {values}")
                 periods += 1
                 self.turn_clock(periods)
                 process.wait_for(
                     lambda: len(values) > count,
-                    lambda: "one more value after a period: {}".format(values),
+                    lambda: f"one more value after a period: {values}",
                 )
-            self.assertLessEqual(len(values), periods, "too many: {}".format(values))
+            self.assertLessEqual(len(values), periods, f"too many: {values}")
 
             # Not latched: a late subscriber hears the next value first, not the last one again.
             subscriber.unregister()

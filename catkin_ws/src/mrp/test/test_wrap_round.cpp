@@ -17,7 +17,8 @@ TEST(WrapRound, publisherCpp)
   ros::NodeHandle nh;
   std::vector<uint32_t> values;
   ros::Subscriber subscriber = nh.subscribe<std_msgs::UInt32>(
-      "great_topic", 10, [&values](const std_msgs::UInt32ConstPtr& msg) { values.push_back(msg->data); });
+      "great_topic", 10,
+      [&values](const std_msgs::UInt32ConstPtr& msg) { values.push_back(msg->data); });
 
   PublisherCppNode node;
   node.timer_.stop();  // from here on the test alone says when to publish
@@ -38,7 +39,7 @@ TEST(WrapRound, publisherCpp)
   {
     ros::getGlobalCallbackQueue()->callAvailable(ros::WallDuration(0.02));
   }
-  EXPECT_EQ((std::vector<uint32_t>{ last, 0, 2 }), values);
+  EXPECT_EQ((std::vector<uint32_t>{last, 0, 2}), values);
 }
 
 int main(int argc, char* argv[])

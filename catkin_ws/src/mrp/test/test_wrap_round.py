@@ -13,7 +13,7 @@ from std_msgs.msg import UInt32
 from waiting import wait_until
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), os.pardir, "src"))
-from publisher_py_node import PublisherPyNode  # noqa: E402
+from publisher_py_node import PublisherPyNode
 
 LAST = 2**32 - 1  # the largest odd number that a UInt32 holds
 
@@ -34,7 +34,7 @@ class TestWrapRound(unittest.TestCase):
         node.counter = LAST
         for _ in range(3):
             node.timer_callback(None)
-        wait_until(lambda: len(values) >= 3, lambda: "three values: {}".format(values))
+        wait_until(lambda: len(values) >= 3, lambda: f"three values: {values}")
         self.assertEqual(values, [LAST, 1, 3])
 
 

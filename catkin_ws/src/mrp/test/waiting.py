@@ -29,5 +29,5 @@ def wait_until(condition, what):
     result = within(DEADLINE, condition)
     if not result:
         explanation = what() if callable(what) else what
-        raise AssertionError("waited {:.0f} s in vain: {}".format(DEADLINE, explanation))
+        raise AssertionError(f"waited {DEADLINE:.0f} s in vain: {explanation}")
     return result

@@ -1,0 +1,113 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The lists in apt/ against what rosdep says of every package.xml, and against this system."""
+
+import os
+import pathlib
+import subprocess
+
+import pytest
+
+WORKSPACE = pathlib.Path(__file__).resolve().parent.parent
+LISTS = {path.stem: path for path in (WORKSPACE / "apt").glob("*.txt")}
+BUILD, RUN, TEST = ("build",), ("runtime", "tools"), ("build", "runtime", "tools", "test")
+
+
+def entries(stage):
+    """Return the lines of a list, each as the list of its alternatives."""
+    lines = [line.split("#")[0].strip() for line in LISTS[stage].read_text().splitlines()]
+    return [[name.strip() for name in line.split("|")] for line in lines if line]
+
+
+def packages(*stages):
+    return {name for stage in stages for names in entries(stage) for name in names}
+
+
+def with_rosdep(*command):
+    """Return what a command prints to whom rosdep knows Debian's packages."""
+    return subprocess.run(
+        [str(WORKSPACE / "tools" / "with_rosdep.sh"), *command],
+        check=True,
+        stdout=subprocess.PIPE,
+        universal_newlines=True,
+    ).stdout
+
+
+def resolved(dependency_type):
+    """Return the Debian packages of all dependencies of a type, in all packages."""
+    keys = with_rosdep(
+        "rosdep", "keys", "--from-paths", str(WORKSPACE / "src"), "-i", "-t", dependency_type
+    )
+    assert keys, f"no package.xml has a dependency of type {dependency_type}"
+    lines = with_rosdep("rosdep", "resolve", *keys.split()).splitlines()
+    return {name for line in lines if not line.startswith("#") for name in line.split()}
+
+
+@pytest.mark.parametrize(
+    ("dependency_type", "stages"), [("buildtool", BUILD), ("build", BUILD), ("test", TEST)]
+)
+def test_lists_have_what_building_and_testing_need(dependency_type, stages):
+    assert resolved(dependency_type) - packages(*stages) == set()
+
+
+def test_lists_have_what_running_needs():
+    # rosdep names the -dev packages for running, too. What of them runs is in libraries, which
+    # runtime.txt names; the container that has only these shows that they are enough.
+    needed = {name for name in resolved("exec") if not name.endswith("-dev")}
+    assert needed - packages(*RUN) == set()
+
+
+@pytest.mark.parametrize("stage", sorted(LISTS))
+def test_list_is_sorted_and_has_nothing_twice(stage):
+    assert entries(stage) == sorted(entries(stage))
+    assert len(entries(stage)) == len({tuple(names) for names in entries(stage)})
+
+
+def test_installer_has_nothing_to_do_where_the_tests_run(tmp_path):
+    """As nothing is missing, neither apt-get nor sudo is called: here they would fail."""
+    for name in ("apt-get", "sudo"):
+        (tmp_path / name).write_text("#!/bin/sh\nexit 1\n")
+        (tmp_path / name).chmod(0o755)
+    lists = [str(LISTS[stage]) for stage in TEST]
+    done = install(lists, tmp_path)
+    assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
+
+
+def test_installer_takes_any_alternative(tmp_path):
+    path = tmp_path / "list.txt"
+    path.write_text("no-such-package | bash  # bash is everywhere\n")
+    done = install([str(path)], tmp_path)
+    assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
+
+
+def test_installer_without_apt_points_to_the_container(tmp_path):
+    (tmp_path / "bash").symlink_to("/bin/bash")
+    done = install([str(LISTS["build"])], tmp_path, path=str(tmp_path))
+    assert done.returncode == 1
+    assert done.stderr == (
+        "error: this system has no apt-get; ROS 1 comes from Debian's packages. "
+        "Run it in the container instead: make docker-run\n"
+    )
+
+
+def test_installer_says_which_package_no_archive_has(tmp_path):
+    (tmp_path / "apt-get").write_text("#!/bin/sh\n")
+    (tmp_path / "apt-get").chmod(0o755)
+    path = tmp_path / "list.txt"
+    path.write_text("no-such-package | nor-this-one\n")
+    done = install([str(path)], tmp_path)
+    assert done.returncode == 1
+    assert done.stderr == (
+        "error: no package archive of this system has 'no-such-package nor-this-one'. "
+        "Run it in the container instead: make docker-run\n"
+    )
+
+
+def install(lists, folder, path=None):
+    """Run the installer with `folder` first on PATH, or with that PATH alone."""
+    return subprocess.run(
+        ["/bin/bash", str(WORKSPACE / "tools" / "install_packages.sh"), *lists],
+        env={**os.environ, "PATH": path or f"{folder}:{os.environ['PATH']}"},
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        universal_newlines=True,
+    )

@@ -1,0 +1,43 @@
+#!/bin/bash
+# SPDX-License-Identifier: BSD-3-Clause
+# Checks the style of all sources; goes on to the end, and fails if any check did.
+set -uo pipefail
+cd "$(dirname "$0")/../.." || exit 1
+
+ruff_version=0.17.5
+ruff=catkin_ws/build/lint/bin/ruff
+
+status=0
+check() {
+  local name=$1
+  shift
+  if "$@"; then
+    echo "[OK]   $name"
+  else
+    echo "[FAIL] $name"
+    status=1
+  fi
+}
+
+# Debian has no ruff.
+if [ "$("$ruff" --version 2> /dev/null)" != "ruff $ruff_version" ]; then
+  /usr/bin/python3 -m venv catkin_ws/build/lint &&
+    catkin_ws/build/lint/bin/pip --quiet install "ruff==$ruff_version" || exit 1
+fi
+
+# Of what git knows or would know, the files with these endings.
+files() {
+  git ls-files --cached --others --exclude-standard -- "$@"
+}
+
+mapfile -t cpp < <(files '*.cpp' '*.h')
+mapfile -t xml < <(files '*.launch' '*.test' 'package.xml' '*/package.xml')
+mapfile -t shell < <(files '*.sh' .ci/run)
+
+check "catkin_lint" env -C catkin_ws tools/with_rosdep.sh catkin_lint --rosdistro Debian --strict -W2 src
+check "clang-format" clang-format --dry-run --Werror "${cpp[@]}"
+check "ruff check" "$ruff" check catkin_ws
+check "ruff format" "$ruff" format --check catkin_ws
+check "shellcheck" shellcheck "${shell[@]}"
+check "xmllint" xmllint --noout "${xml[@]}"
+exit $status
