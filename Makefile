@@ -50,14 +50,15 @@ run: build  ## run the four nodes; end them with Ctrl-C
 	@$(IN_WORKSPACE) $(SOURCE_WORKSPACE) exec roslaunch mrp pub_sub.launch
 
 # The tests bring their own master and talk to this machine alone, whatever the user's shell says.
+ALONE := unset ROS_IP ROS_NAMESPACE ROS_MASTER_URI;
+
 .PHONY: test
 test: export ROS_HOSTNAME := localhost
 test: export ROS_LOG_DIR := $(CURDIR)/catkin_ws/build/test_logs
-test: unexport ROS_IP ROS_NAMESPACE ROS_MASTER_URI
 test: build  ## build, run every test, and print one summary
 	@rm -rf $(RESULTS)
-	$(IN_WORKSPACE) $(SOURCE_ROS) $(CATKIN_MAKE) run_tests -j1
-	@$(IN_WORKSPACE) $(SOURCE_WORKSPACE) status=0; \
+	$(IN_WORKSPACE) $(SOURCE_ROS) $(ALONE) $(CATKIN_MAKE) run_tests -j1
+	@$(IN_WORKSPACE) $(SOURCE_WORKSPACE) $(ALONE) status=0; \
 	/usr/bin/python3 -m pytest -n 3 --junit-xml=$(RESULTS)/workspace.xml tests || status=1; \
 	catkin_test_results $(RESULTS) > /dev/null || status=1; \
 	tools/test_summary.py $(RESULTS) || status=1; \
