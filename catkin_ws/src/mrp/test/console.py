@@ -8,7 +8,7 @@ import contract
 from process import Process
 
 # What roslaunch itself prints. Into a pipe it may come late; two threads may share a line.
-_ROSLAUNCH_LINE = re.compile(
+ROSLAUNCH_LINE = re.compile(
     r"\.\.\. logging to \S+|(Done c|C)hecking log (directory|file) .*|Press Ctrl-C to interrupt"
     r"|started roslaunch server \S+|SUMMARY|=+|PARAMETERS|NODES"
     r"| \* /\S+: .*|  /\S+/|    \w+ \(\S+\)|"
@@ -43,7 +43,7 @@ def check_console(namespace, *roslaunch, env=None):
     start_lines, pids = [], []
     for line in process.lines:
         text = contract.logged_text(line)
-        roslaunch_line = _ROSLAUNCH_LINE.fullmatch(line)
+        roslaunch_line = ROSLAUNCH_LINE.fullmatch(line)
         assert text or roslaunch_line, f"unexpected line {line!r} in {process}"
         if text and _value(text) is None:
             start_lines.append(text)

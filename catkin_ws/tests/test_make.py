@@ -1,0 +1,75 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The Makefile, in a copy of the repository in which nothing is built."""
+
+import pathlib
+import shutil
+
+import pytest
+from front_door import ROOT, make, with_other_python
+
+
+@pytest.fixture(scope="module")
+def copy(tmp_path_factory):
+    """A copy of the repository, built while another python3 is first on PATH."""
+    root = tmp_path_factory.mktemp("copy") / "mrp"
+    ignore = shutil.ignore_patterns(".git", "build", "devel", "install", "__pycache__")
+    shutil.copytree(ROOT, root, ignore=ignore, symlinks=True)
+    done = make("build", root=root, PATH=with_other_python(tmp_path_factory.mktemp("bin")))
+    assert done.returncode == 0, done.stdout
+    return root
+
+
+def test_other_python_first_on_path_does_no_harm(copy):
+    script = copy / "catkin_ws/devel/lib/mrp/publisher_py_node.py"
+    assert script.read_text().startswith("#!/usr/bin/python3\n")
+
+
+def test_second_build_does_nothing(copy):
+    done = make("build", root=copy)
+    assert (done.returncode, done.stdout) == (0, "")
+
+
+def replace_tests(copy, text):
+    """Replace the workspace's tests by one file, or by none; the packages' tests are left out."""
+    tests = copy / "catkin_ws/tests"
+    shutil.rmtree(tests)
+    tests.mkdir()
+    if text:
+        (tests / "test_one.py").write_text(text)
+    return make("test", "CATKIN_MAKE=true", root=copy)
+
+
+def test_a_failing_test_fails_make_test(copy):
+    done = replace_tests(copy, "def test_one():\n    assert 1 == 2\n")
+    assert done.returncode == 2, done.stdout
+    assert "0 passed, 1 failed\n" in done.stdout
+
+
+def test_no_test_at_all_fails_make_test(copy):
+    done = replace_tests(copy, None)
+    assert done.returncode == 2, done.stdout
+    assert "no test ran\n0 passed, 0 failed\n" in done.stdout
+
+
+def test_a_skipped_test_fails_make_test(copy):
+    done = replace_tests(copy, "import pytest\n\n\ndef test_one():\n    pytest.skip('why')\n")
+    assert done.returncode == 2, done.stdout
+    assert "0 passed, 0 failed, 1 skipped\n" in done.stdout
+
+
+def test_a_passing_test_passes_make_test(copy):
+    done = replace_tests(copy, "def test_one():\n    pass\n")
+    assert done.returncode == 0, done.stdout
+    assert "1 passed, 0 failed\n" in done.stdout
+
+
+def test_scripts_are_executable():
+    first_lines = {
+        path: path.open(errors="replace").readline()
+        for folder in ("catkin_ws/src", "catkin_ws/tools", ".ci")
+        for path in pathlib.Path(ROOT / folder).rglob("*")
+        if path.is_file() and path.suffix in ("", ".py", ".sh") and not path.is_symlink()
+    }
+    scripts = [path for path, line in first_lines.items() if line.startswith("#!")]
+    assert len(scripts) >= 10
+    assert [str(path) for path in scripts if not path.stat().st_mode & 0o111] == []

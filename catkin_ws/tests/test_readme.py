@@ -1,0 +1,73 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What the README shows, against what happens."""
+
+import os
+import re
+import signal
+
+import contract
+from console import ROSLAUNCH_LINE
+from front_door import ROOT, environment, make
+from process import Process
+
+README = (ROOT / "README.md").read_text()
+
+
+def console_block():
+    return re.search(r"```console\n(.*?)```", README, re.DOTALL).group(1).splitlines()
+
+
+def mask(line):
+    """Return the line with what differs from run to run (times, process ids, values) as #."""
+    return re.sub(r"(?<=\[)[\d.]+(?=\])|(?<=data = )\d+", "#", line)
+
+
+def test_targets_are_those_of_make():
+    printed = make().stdout
+    listed = re.findall(r"^\| `(make \S+)` \| (.*) \|$", README, re.MULTILINE)
+    assert listed == [
+        (command, text)
+        for command, text in re.findall(r"^  (make \S+) +(.*)$", printed, re.MULTILINE)
+        if command != "make help"
+    ]
+
+
+def test_console_is_what_make_run_prints():
+    block = console_block()
+    assert make("build").returncode == 0
+    with Process("make", "-C", str(ROOT), "run", env=environment()) as process:
+        received = re.compile("received message with data")
+        count = sum(1 for line in block if received.search(line))
+        process.wait_for(
+            lambda: sum(1 for line in list(process.lines) if received.search(line)) >= count,
+            "as many values as in the README",
+        )
+        # Ctrl-C reaches make and all that it runs.
+        os.killpg(process.pid, signal.SIGINT)
+        process.wait()
+    printed = {mask(line) for line in process.lines}
+    shown = {mask(line) for line in block}
+    assert shown - printed == set(), str(process)
+    # What the README leaves out is roslaunch's heading, and what it says after Ctrl-C.
+    left_out = printed - shown
+    assert [line for line in left_out if not ROSLAUNCH_LINE.fullmatch(line)] == [], str(process)
+    assert process.lines[-1] == "done", str(process)
+
+
+def test_console_values_are_those_of_the_contract():
+    values = {(s, p): [] for s in contract.SUBSCRIBERS for p in contract.PUBLISHERS}
+    for text in filter(None, map(contract.logged_text, console_block())):
+        for subscriber in contract.SUBSCRIBERS:
+            value = contract.received_value(subscriber, text)
+            if value is not None:
+                values[subscriber, contract.publisher_of(value)].append(value)
+    for (_, publisher), seen in values.items():
+        assert seen[0] == contract.FIRST_VALUE[publisher]
+        assert contract.first_fault(seen) is None
+
+
+def test_layout_names_folders_that_exist():
+    layout = re.search(r"## Layout\n\n```\n(.*?)```", README, re.DOTALL).group(1)
+    folders = [line.split()[0] for line in layout.splitlines()]
+    assert folders
+    assert [folder for folder in folders if not (ROOT / folder).is_dir()] == []
