@@ -1,0 +1,65 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""A subscriber's queue of 10: ten values that come all at once are all received, in order.
+
+The node is stopped (SIGSTOP) while they are sent, so that it finds all of them on going on.
+"""
+
+import os
+import signal
+import unittest
+
+import contract
+import rospy
+import rostest
+from process import rosrun
+from std_msgs.msg import UInt32
+
+FIRST = 7
+BURST = list(range(101, 111))
+
+
+class TestQueue(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        rospy.init_node("test_queue")
+
+    def check(self, subscriber):
+        # A topic of its own, so that its connections are those of this node.
+        topic = "/to_" + subscriber.name
+        # Without a queue of its own, publish() returns when the value is on its way.
+        publisher = rospy.Publisher(topic, UInt32, queue_size=None)
+
+        def received():
+            texts = [contract.logged_text(line) or "" for line in list(process.lines)]
+            values = [contract.received_value(subscriber, text) for text in texts]
+            return [value for value in values if value is not None]
+
+        with rosrun(subscriber, contract.TOPIC + ":=" + topic) as process:
+            process.wait_for(publisher.get_num_connections, "the node is connected")
+            publisher.publish(FIRST)
+            process.wait_for(lambda: received() == [FIRST], "the first value is received")
+
+            os.kill(process.pid, signal.SIGSTOP)
+            process.wait_for(lambda: state_of(process.pid) == "T", "the node has stopped")
+            for value in BURST:
+                publisher.publish(value)
+            os.kill(process.pid, signal.SIGCONT)
+            process.wait_for(lambda: BURST[-1] in received(), "the last value is received")
+            self.assertEqual(received(), [FIRST, *BURST])
+
+    def test_subscriber_cpp(self):
+        self.check(contract.SUBSCRIBER_CPP)
+
+    def test_subscriber_py(self):
+        self.check(contract.SUBSCRIBER_PY)
+
+
+def state_of(pid):
+    """Return the state of a process as the kernel has it: "T" is stopped (see proc(5))."""
+    with open(f"/proc/{pid}/stat") as stat:
+        return stat.read().rsplit(")", 1)[1].split()[0]
+
+
+if __name__ == "__main__":
+    rostest.rosrun(contract.PACKAGE, "queue", TestQueue)
