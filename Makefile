@@ -5,24 +5,21 @@ SHELL := /bin/bash
 .DEFAULT_GOAL := help
 MAKEFLAGS += --no-print-directory
 
-# A pyenv or conda python first on PATH breaks catkin and every Python node.
-USER_PATH := $(PATH)
-export PATH := /usr/bin:/bin:/usr/sbin:/sbin:$(PATH)
-
-# Another workspace, sourced in the user's shell, is none of this one's business.
-unexport CMAKE_PREFIX_PATH ROS_PACKAGE_PATH PYTHONPATH
+# What a recipe begins with that builds or runs anything of the workspace:
+# - a pyenv or conda python first on PATH breaks catkin and every Python node;
+# - another workspace, sourced in the user's shell, is none of this one's business;
+# - ROS Noetic proper has a file to source, Debian's ROS has not.
+NOETIC := $(wildcard /opt/ros/noetic/setup.bash)
+IN_WORKSPACE := cd catkin_ws; export PATH=/usr/bin:/bin:/usr/sbin:/sbin:"$$PATH"; \
+  unset CMAKE_PREFIX_PATH ROS_PACKAGE_PATH PYTHONPATH; $(if $(NOETIC),source $(NOETIC);)
 
 # ROS 1 has no authentication: unless the user says otherwise, listen on this machine only.
-ifeq ($(ROS_IP)$(ROS_HOSTNAME),)
-export ROS_HOSTNAME := localhost
-endif
+LOCAL := if [ -z "$$ROS_IP$$ROS_HOSTNAME" ]; then export ROS_HOSTNAME=localhost; fi;
 
-# Debian's ROS needs no set-up; ROS Noetic proper has a file to source.
-NOETIC := $(wildcard /opt/ros/noetic/setup.bash)
-SOURCE_ROS := $(if $(NOETIC),source $(NOETIC);)
-SOURCE_WORKSPACE := source devel/setup.bash;
+# The tests bring their own master and talk to this machine alone, whatever the user's shell says.
+ALONE := unset ROS_IP ROS_NAMESPACE ROS_MASTER_URI; export ROS_HOSTNAME=localhost; \
+  export ROS_LOG_DIR=$(CURDIR)/catkin_ws/build/test_logs;
 
-IN_WORKSPACE := cd catkin_ws;
 CATKIN_MAKE := catkin_make -DPYTHON_EXECUTABLE=/usr/bin/python3 -DCMAKE_BUILD_TYPE=RelWithDebInfo
 INSTALL := catkin_ws/tools/install_packages.sh
 PACKAGES := $(addprefix catkin_ws/apt/,build.txt runtime.txt tools.txt test.txt)
@@ -42,23 +39,18 @@ deps:  ## install the Debian packages that building, running and testing need
 build: deps $(BUILT)  ## build the workspace with catkin_make
 
 $(BUILT): $(shell find catkin_ws/src -type f -not -name '*.pyc' -not -path catkin_ws/src/CMakeLists.txt) | deps
-	$(IN_WORKSPACE) $(SOURCE_ROS) $(CATKIN_MAKE)
+	@$(IN_WORKSPACE) $(CATKIN_MAKE)
 	@touch $@
 
 .PHONY: run
 run: build  ## run the four nodes; end them with Ctrl-C
-	@$(IN_WORKSPACE) $(SOURCE_WORKSPACE) exec roslaunch mrp pub_sub.launch
-
-# The tests bring their own master and talk to this machine alone, whatever the user's shell says.
-ALONE := unset ROS_IP ROS_NAMESPACE ROS_MASTER_URI;
+	@$(IN_WORKSPACE) $(LOCAL) source devel/setup.bash; exec roslaunch mrp pub_sub.launch
 
 .PHONY: test
-test: export ROS_HOSTNAME := localhost
-test: export ROS_LOG_DIR := $(CURDIR)/catkin_ws/build/test_logs
 test: build  ## build, run every test, and print one summary
 	@rm -rf $(RESULTS)
-	$(IN_WORKSPACE) $(SOURCE_ROS) $(ALONE) $(CATKIN_MAKE) run_tests -j1
-	@$(IN_WORKSPACE) $(SOURCE_WORKSPACE) $(ALONE) status=0; \
+	@$(IN_WORKSPACE) $(ALONE) $(CATKIN_MAKE) run_tests -j1
+	@$(IN_WORKSPACE) $(ALONE) source devel/setup.bash; status=0; \
 	/usr/bin/python3 -m pytest -n 3 --junit-xml=$(RESULTS)/workspace.xml tests || status=1; \
 	catkin_test_results $(RESULTS) > /dev/null || status=1; \
 	tools/test_summary.py $(RESULTS) || status=1; \
@@ -67,15 +59,68 @@ test: build  ## build, run every test, and print one summary
 .PHONY: lint
 lint:  ## check the style of all sources
 	@$(INSTALL) $(PACKAGES) catkin_ws/apt/lint.txt
-	@catkin_ws/tools/lint.sh
+	@$(IN_WORKSPACE) tools/lint.sh
 
 .PHONY: doctor
 doctor:  ## find what keeps the tutorial from running on this machine
 	@test -x /usr/bin/python3 || { echo "[FAIL] expected /usr/bin/python3; there is none"; \
 	  echo "       mend: make deps"; exit 1; }
-	@PATH="$(USER_PATH)" /usr/bin/python3 catkin_ws/tools/doctor.py
+	@/usr/bin/python3 catkin_ws/tools/doctor.py
 
 .PHONY: clean
 clean:  ## delete all that was built
 	rm -rf catkin_ws/build catkin_ws/devel catkin_ws/install
 	rm -f catkin_ws/src/CMakeLists.txt catkin_ws/.catkin_workspace
+
+# Containers. DEBIAN names the release that the images are made of: bookworm (12) or trixie (13).
+export DEBIAN ?= bookworm
+IMAGE := mrp:$(DEBIAN)
+DOCKER_RESULTS := $(CURDIR)/catkin_ws/build/docker_results/$(DEBIAN)
+COMPOSE = $(shell docker compose version > /dev/null 2>&1 && echo docker compose || echo docker-compose)
+COMPOSE_MRP = $(COMPOSE) --project-name mrp --file docker/compose.yaml
+
+# The context goes to the builder as a tar stream: so both builders leave out the same.
+IMAGE_OF = COPYFILE_DISABLE=1 tar --create --exclude=.git --exclude=__pycache__ --exclude='*_cache' \
+  --exclude=catkin_ws/build --exclude=catkin_ws/devel --exclude=catkin_ws/install \
+  --exclude=catkin_ws/src/CMakeLists.txt . | \
+  docker build $(DOCKER_BUILD_OPTIONS) --build-arg DEBIAN=$(DEBIAN) --file docker/Dockerfile
+
+.PHONY: need-docker
+need-docker:
+	@command -v docker > /dev/null || { \
+	  echo "error: this needs Docker, which is not installed on this machine" >&2; exit 1; }
+	@docker info > /dev/null 2>&1 || { \
+	  echo "error: Docker's engine does not answer: start it; 'docker info' says more" >&2; exit 1; }
+
+.PHONY: docker-build
+docker-build: need-docker  ## build the image mrp, which runs the four nodes anywhere
+	$(IMAGE_OF) --target runtime --tag $(IMAGE) -
+
+# Without a network: ROS 1 has no authentication, and the nodes talk to one another alone.
+.PHONY: docker-run
+docker-run: docker-build  ## run the four nodes in a container; end them with Ctrl-C
+	@exec docker run --rm --name mrp --network none $(IMAGE)
+
+.PHONY: docker-up
+docker-up: docker-build  ## run one container per node; end them with Ctrl-C
+	@$(COMPOSE_MRP) up
+
+.PHONY: docker-down
+docker-down: need-docker  ## take away what docker-up leaves
+	@$(COMPOSE_MRP) down
+
+.PHONY: docker-test
+docker-test: docker-suite docker-containers  ## run every test in a container, and test the containers
+
+# The suite of `make test`, in a container without a network.
+.PHONY: docker-suite
+docker-suite: need-docker
+	$(IMAGE_OF) --target test --tag mrp-test:$(DEBIAN) -
+	@rm -rf $(DOCKER_RESULTS); mkdir -p $(DOCKER_RESULTS)
+	docker run --rm --init --network none --user "$$(id -u):$$(id -g)" \
+	  --volume $(DOCKER_RESULTS):/results mrp-test:$(DEBIAN)
+
+.PHONY: docker-containers
+docker-containers: docker-build
+	@/usr/bin/python3 -c 'import pytest' 2> /dev/null || $(INSTALL) <(echo python3-pytest)
+	@/usr/bin/python3 -m pytest --junit-xml=$(DOCKER_RESULTS)/containers.xml docker/test

@@ -28,7 +28,7 @@ def with_rosdep(*command):
         [str(WORKSPACE / "tools" / "with_rosdep.sh"), *command],
         check=True,
         stdout=subprocess.PIPE,
-        universal_newlines=True,
+        text=True,
     ).stdout
 
 
@@ -97,7 +97,7 @@ def test_installer_says_which_package_no_archive_has(tmp_path):
     done = install([str(path)], tmp_path)
     assert done.returncode == 1
     assert done.stderr == (
-        "error: no package archive of this system has 'no-such-package nor-this-one'. "
+        "error: no package archive of this system has 'no-such-package or nor-this-one'. "
         "Run it in the container instead: make docker-run\n"
     )
 
@@ -107,7 +107,6 @@ def install(lists, folder, path=None):
     return subprocess.run(
         ["/bin/bash", str(WORKSPACE / "tools" / "install_packages.sh"), *lists],
         env={**os.environ, "PATH": path or f"{folder}:{os.environ['PATH']}"},
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        universal_newlines=True,
+        capture_output=True,
+        text=True,
     )

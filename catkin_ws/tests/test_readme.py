@@ -35,7 +35,9 @@ def test_targets_are_those_of_make():
 def test_console_is_what_make_run_prints():
     block = console_block()
     assert make("build").returncode == 0
-    with Process("make", "--no-print-directory", "-C", str(ROOT), "run", env=environment()) as process:
+    with Process(
+        "make", "--no-print-directory", "-C", str(ROOT), "run", env=environment()
+    ) as process:
         received = re.compile("received message with data")
         count = sum(1 for line in block if received.search(line))
         process.wait_for(

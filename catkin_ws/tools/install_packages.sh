@@ -34,10 +34,11 @@ missing() {
   done
 }
 
-lines=$(missing "$@")
+lines=$(missing "$@" | sort -u)
 [ -n "$lines" ] || exit 0
 
-listed=${lines//$'\n'/, }
+listed=${lines// / or }
+listed=${listed//$'\n'/, }
 as_root=()
 if [ "$(id -u)" != 0 ]; then
   command -v sudo > /dev/null ||
@@ -59,7 +60,7 @@ while read -r line; do
       break
     fi
   done
-  [ -n "$found" ] || fail "no package archive of this system has '$line'. $container"
+  [ -n "$found" ] || fail "no package archive of this system has '${line// / or }'. $container"
 done <<< "$lines"
 
 "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive \
