@@ -29,7 +29,7 @@ RESULTS := $(CURDIR)/catkin_ws/build/test_results
 .PHONY: help
 help:  ## print the targets
 	@sed -n 's/^\([a-z-]*\):.*##/\1/p' $(MAKEFILE_LIST) | \
-	  while read -r target text; do printf '  make %-8s %s\n' "$$target" "$$text"; done
+	  while read -r target text; do printf '  make %-16s %s\n' "$$target" "$$text"; done
 
 .PHONY: deps
 deps:  ## install the Debian packages that building, running and testing need
@@ -65,7 +65,7 @@ lint:  ## check the style of all sources
 doctor:  ## find what keeps the tutorial from running on this machine
 	@test -x /usr/bin/python3 || { echo "[FAIL] expected /usr/bin/python3; there is none"; \
 	  echo "       mend: make deps"; exit 1; }
-	@/usr/bin/python3 catkin_ws/tools/doctor.py
+	@/usr/bin/python3 -I catkin_ws/tools/doctor.py
 
 .PHONY: clean
 clean:  ## delete all that was built
@@ -96,6 +96,10 @@ need-docker:
 docker-build: need-docker  ## build the image mrp, which runs the four nodes anywhere
 	$(IMAGE_OF) --target runtime --tag $(IMAGE) -
 
+.PHONY: docker-build-ssh
+docker-build-ssh: docker-build  ## build the image for docker/several_hosts/remote.yaml
+	$(IMAGE_OF) --target ssh --tag mrp-ssh:$(DEBIAN) -
+
 # Without a network: ROS 1 has no authentication, and the nodes talk to one another alone.
 .PHONY: docker-run
 docker-run: docker-build  ## run the four nodes in a container; end them with Ctrl-C
@@ -121,6 +125,6 @@ docker-suite: need-docker
 	  --volume $(DOCKER_RESULTS):/results mrp-test:$(DEBIAN)
 
 .PHONY: docker-containers
-docker-containers: docker-build
+docker-containers: docker-build-ssh
 	@/usr/bin/python3 -c 'import pytest' 2> /dev/null || $(INSTALL) <(echo python3-pytest)
 	@/usr/bin/python3 -m pytest --junit-xml=$(DOCKER_RESULTS)/containers.xml docker/test

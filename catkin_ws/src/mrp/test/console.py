@@ -33,10 +33,10 @@ def check_console(namespace, *roslaunch, env=None):
     """
     with Process(*roslaunch, env=env) as process:
         process.wait_for(
-            lambda: any(len(values) >= _ENOUGH for values in _received(process.lines).values()),
-            lambda: f"{_ENOUGH} values in {_received(process.lines)}",
+            lambda: any(len(values) >= _ENOUGH for values in received(process.lines).values()),
+            lambda: f"{_ENOUGH} values in {received(process.lines)}",
         )
-        _check_live(_received(process.lines))
+        _check_live(received(process.lines))
         code = process.stop()
     assert code == 0, f"exit code {code} of {process}"
 
@@ -55,20 +55,20 @@ def check_console(namespace, *roslaunch, env=None):
     assert len(pids) >= len(contract.NODES), str(process)
     left = [pid for pid in pids if os.path.exists("/proc/" + pid)]
     assert not left, f"processes {left} are left of {process}"
-    for pair, values in _received(process.lines).items():
+    for pair, values in received(process.lines).items():
         fault = contract.first_fault(values)
         assert fault is None, f"{pair}: {fault} in {process}"
 
 
-def _check_live(received):
+def _check_live(values):
     for publisher in contract.PUBLISHERS:
-        shown = [received[s.name, publisher.name][-1:] for s in contract.SUBSCRIBERS]
+        shown = [values[s.name, publisher.name][-1:] for s in contract.SUBSCRIBERS]
         assert all(shown) and abs(shown[0][0] - shown[1][0]) <= _LATE * contract.STEP, (
             f"lines are held back: last values of {publisher.name} are {shown}"
         )
 
 
-def _received(lines):
+def received(lines):
     """Return (subscriber's name, publisher's name) -> values, from console lines."""
     values = {(s.name, p.name): [] for s in contract.SUBSCRIBERS for p in contract.PUBLISHERS}
     for line in list(lines):

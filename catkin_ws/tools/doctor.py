@@ -1,0 +1,357 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Finds what on this machine, or in this shell, keeps the workspace from being built or run.
+
+It changes nothing and needs no ROS. The exit code is 0 if no check failed, else 1.
+"""
+
+import argparse
+import collections
+import functools
+import glob
+import os
+import re
+import shlex
+import shutil
+import socket
+import subprocess
+import sys
+import xmlrpc.client
+
+DEFAULT_MASTER_URI = "http://localhost:11311"
+MASTER_TIMEOUT = 3  # seconds
+PYTHON_TIMEOUT = 20  # seconds: from a slow disk it takes a few to import rospy
+UNRESOLVED = "does not resolve"
+
+# What the checks look at: the environment, the folder catkin_ws, and facts of the machine.
+Machine = collections.namedtuple(
+    "Machine", "env workspace host_name debian_version dpkg_query opt_ros"
+)
+
+# What a check returns. mend: the command that mends it; a second one is on a line of its own.
+Result = collections.namedtuple("Result", "status text mend", defaults=[""])
+ok = functools.partial(Result, "OK")
+note = functools.partial(Result, "--")
+
+
+def fail(expected, found, mend):
+    return Result("FAIL", f"expected {expected}; found {found}", mend)
+
+
+def check_packages(machine):
+    """The Debian packages that building and running need are installed."""
+    if noetic(machine):
+        return note(f"skipped: ROS comes from {noetic(machine)}")
+    lines = set()
+    for name in ("build.txt", "runtime.txt"):
+        with open(os.path.join(machine.workspace, "apt", name), errors="replace") as file:
+            lines.update(line.split("#")[0].strip() for line in file)
+    lines = sorted(lines - {""})
+    there = installed(machine, re.findall(r"[^\s|]+", " ".join(lines)))
+    missing = [line for line in lines if there.isdisjoint(re.split(r"[\s|]+", line))]
+    if not missing:
+        return ok(f"all {len(lines)} of build.txt and runtime.txt are installed")
+    if machine.debian_version.split(".")[0] in ("12", "13") and os.path.exists(machine.dpkg_query):
+        return fail("all of build.txt and runtime.txt", "no " + ", no ".join(missing), "make deps")
+    found = f"another system, without {len(missing)} of the {len(lines)} packages"
+    return fail("Debian 12 or 13, which have ROS packages", found, "make docker-run")
+
+
+def check_python(machine):
+    """The first python3 on PATH, which catkin_make and `env python3` take, can import ROS."""
+    expected = "the first one on PATH to import catkin_pkg and rospy"
+    python = shutil.which("python3", path=machine.env.get("PATH", os.defpath))
+    if not python:
+        return fail(expected, "none on PATH", "export PATH=/usr/bin:$PATH")
+    command = [python, "-c", "import catkin_pkg, rospy"]
+    pipes = {"stdin": subprocess.DEVNULL, "capture_output": True}
+    try:
+        run = subprocess.run(command, env=machine.env, timeout=PYTHON_TIMEOUT, **pipes)
+    except (OSError, subprocess.TimeoutExpired) as problem:
+        error = str(problem)
+    else:
+        if run.returncode == 0:
+            return ok(f"{python} imports catkin_pkg and rospy")
+        error = run.stderr.decode(errors="replace").strip().split("\n")[-1] or "nothing"
+    if os.path.realpath(os.path.dirname(python)) != os.path.realpath("/usr/bin"):
+        # CMake remembers its python3: PATH alone does not mend a folder that it has configured.
+        mend = f"export PATH=/usr/bin:$PATH\ncatkin_make -C {shlex.quote(machine.workspace)}"
+        mend += " -DPYTHON_EXECUTABLE=/usr/bin/python3"
+    elif noetic(machine):
+        mend = f"source {noetic(machine)}/setup.bash"
+    else:  # the packages are there, so other modules come before theirs
+        mend = "unset PYTHONPATH PYTHONHOME; export PYTHONNOUSERSITE=1"
+    return fail(expected, f"{python}, which says: {error}", mend)
+
+
+def check_installation(machine):
+    """This shell knows one ROS, /opt/ros/noetic if it exists, else Debian's; and one package mrp.
+
+    Another ROS on the disk does no harm until a shell sources it. But Debian's needs no sourcing:
+    beside noetic, a shell that has not sourced noetic would take Debian's.
+    """
+    mine, distro = noetic(machine), "noetic" if noetic(machine) else "Debian"
+    copies = ("mrp/package.xml", "*/mrp/package.xml", "share/mrp")  # as sources, as built
+    wrong = []
+    if (machine.env.get("ROS_DISTRO") or distro) != distro:
+        wrong.append(f"ROS_DISTRO={machine.env['ROS_DISTRO']}")
+    for name in ("ROS_PACKAGE_PATH", "CMAKE_PREFIX_PATH", "PYTHONPATH"):
+        for path in folders(machine.env, name):
+            if is_inside(path, machine.workspace) or mine and is_inside(path, mine):
+                continue
+            if is_inside(path, machine.opt_ros):
+                wrong.append(f"{path} in {name}, which is of another ROS")
+            elif name != "PYTHONPATH" and not os.path.isdir(path):
+                wrong.append(f"{path} in {name}, which does not exist")
+            elif any(glob.glob(os.path.join(glob.escape(path), mrp)) for mrp in copies):
+                wrong.append(f"{path} in {name}, which has another mrp")
+    if wrong:
+        mend = "take its line out of ~/.bashrc (grep -n setup ~/.bashrc) and open a new terminal"
+        return fail(f"this shell to know one ROS, {distro}, and one mrp", "; ".join(wrong), mend)
+    debian = sorted(installed(machine, ["ros-environment", "python3-rospy"]))
+    if mine and debian:
+        remove = "sudo apt-get remove " + " ".join(debian)
+        return fail(f"no ROS but {mine}", "Debian's " + " and ".join(debian) + " too", remove)
+    others = sorted(set(glob.glob(os.path.join(machine.opt_ros, "*"))) - {mine})
+    return ok(
+        f"ROS comes from {mine or 'Debian'}" + "".join(f"; {path} is not in use" for path in others)
+    )
+
+
+def check_host_name(machine):
+    """The host name is this machine's: by that name the nodes reach one another."""
+    for name in ("ROS_HOSTNAME", "ROS_IP"):
+        if machine.env.get(name):
+            return ok(f"not in use, because {name} is set")
+    problem = host_problem(machine.host_name)
+    if not problem:
+        return ok(f"{machine.host_name} is this machine")
+    mend = "export ROS_HOSTNAME=localhost"
+    if problem == UNRESOLVED:
+        mend = 'echo "127.0.1.1 $(hostname)" | sudo tee -a /etc/hosts'
+    return fail(f"{machine.host_name} to be this machine", f"that it {problem}", mend)
+
+
+def check_address(machine):
+    """ROS_HOSTNAME or ROS_IP, if set, is this machine's: otherwise other nodes get no data."""
+    name = "ROS_HOSTNAME" if "ROS_HOSTNAME" in machine.env else "ROS_IP"
+    if name not in machine.env:
+        return ok("neither is set")
+    value = machine.env[name]
+    problem = host_problem(value)
+    if name == "ROS_IP" and not re.fullmatch(r"[0-9.]+", value):
+        problem = "is no IPv4 address"
+    if problem:
+        return fail(f"{name}={value} to be this machine", f"that it {problem}", f"unset {name}")
+    both = name == "ROS_HOSTNAME" and "ROS_IP" in machine.env
+    return ok(f"{name}={value} is this machine" + ("; ROS ignores ROS_IP" if both else ""))
+
+
+def check_master_uri(machine):
+    """ROS_MASTER_URI, if set, names this machine, or another one on which a master answers."""
+    uri, host, _ = master(machine.env)
+    if "ROS_MASTER_URI" not in machine.env:
+        return ok(f"not set, which means {uri}")
+    if not host:
+        return fail("http://HOST:PORT", f"'{uri}'", "unset ROS_MASTER_URI")
+    problem = host_problem(host)
+    if problem == UNRESOLVED:
+        return fail(f"the host of {uri} to resolve", "that it does not", "unset ROS_MASTER_URI")
+    if problem and not master_pid(uri):
+        expected = f"a ROS master at {uri}, on another machine"
+        return fail(expected, "that none answers", "unset ROS_MASTER_URI")
+    return ok(f"a master answers at {uri}" if problem else f"{uri} is on this machine")
+
+
+def check_master_port(machine):
+    """The master's port on this machine is free, or a ROS master answers there."""
+    uri, host, port = master(machine.env)
+    if host_problem(host):
+        return ok("not in use, because the master is on another machine")
+    pid = master_pid(uri)
+    if pid:
+        return ok(f"a ROS master answers at {uri} (process {pid})")
+    try:
+        with socket.socket() as listener:
+            listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)  # as the master does
+            listener.bind(("", port))
+    except OSError as error:
+        expected = f"port {port} to be free, or a ROS master to answer at {uri}"
+        found = f"'{error.strerror}' (ss -ltnp 'sport = :{port}' shows the program that has it)"
+        mend = f"ROS_MASTER_URI=http://localhost:{port + 1 if port < 65535 else port - 1} make run"
+        return fail(expected, found, mend)
+    return ok(f"{port} is free")
+
+
+def check_scripts(machine):
+    """The packages' scripts are executable: rosrun does not find them otherwise."""
+    plain = []
+    for folder in ("src", "test", "scripts"):
+        pattern = os.path.join(glob.escape(machine.workspace), "src", "*", folder, "*.py")
+        for path in sorted(glob.glob(pattern)):
+            with open(path, "rb") as script:
+                if script.read(2) == b"#!" and not os.access(path, os.X_OK):
+                    plain.append(path)
+    if plain:
+        mend = "chmod +x " + " ".join(map(shlex.quote, plain))
+        return fail(
+            "every script to be executable", "that these are not: " + ", ".join(plain), mend
+        )
+    return ok("every script is executable")
+
+
+def check_build(machine):
+    """The workspace is built."""
+    names = ["setup.bash", "lib/mrp/publisher_cpp_node", "lib/mrp/subscriber_cpp_node"]
+    files = [os.path.join(machine.workspace, "devel", name) for name in names]
+    missing = [path for path in files if not os.path.isfile(path)]
+    if missing:
+        return fail("setup.bash and two C++ nodes", "no " + ", no ".join(missing), "make build")
+    return ok("setup.bash and both C++ nodes are there")
+
+
+def check_shell(machine):
+    """The workspace is sourced in this shell.
+
+    Not sourced at all is no failure: make sources it by itself, and who is told of a failure in
+    every new terminal soon reads none. But rosrun and roslaunch need it, so the line says how.
+    Half sourced is a failure: a line after it in ~/.bashrc, say, has set one of the two anew.
+    """
+    devel, src = (os.path.join(machine.workspace, name) for name in ("devel", "src"))
+    mend = "source " + shlex.quote(os.path.join(devel, "setup.bash"))
+    has_devel = devel in map(os.path.realpath, folders(machine.env, "CMAKE_PREFIX_PATH"))
+    has_src = src in map(os.path.realpath, folders(machine.env, "ROS_PACKAGE_PATH"))
+    if has_devel and has_src:
+        return ok("devel/setup.bash is sourced")
+    if not has_devel and not has_src:
+        return note("not sourced: make does not need it, but rosrun and roslaunch do", mend)
+    expected = f"{devel} in CMAKE_PREFIX_PATH and {src} in ROS_PACKAGE_PATH"
+    return fail(expected, "only the " + ("first" if has_devel else "second"), mend)
+
+
+# Title, check, and the title of the check that must be well before this one has more to say.
+CHECKS = [
+    ("packages", check_packages, None),
+    ("python3", check_python, "packages"),
+    ("installation", check_installation, "packages"),
+    ("host name", check_host_name, None),
+    ("ROS_HOSTNAME and ROS_IP", check_address, None),
+    ("ROS_MASTER_URI", check_master_uri, None),
+    ("master's port", check_master_port, "ROS_MASTER_URI"),
+    ("scripts", check_scripts, None),
+    ("build", check_build, "packages"),
+    ("shell", check_shell, "build"),
+]
+
+
+def noetic(machine):
+    """Return the folder of ROS Noetic proper, or None where there is none."""
+    folder = os.path.join(machine.opt_ros, "noetic")
+    return folder if os.path.isdir(folder) else None
+
+
+def installed(machine, packages):
+    """Return those of the Debian packages that are installed: none where there is no dpkg."""
+    query = [machine.dpkg_query, "-W", "-f", "${Package} ${db:Status-Status}\n", *packages]
+    try:
+        run = subprocess.run(query, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
+    except OSError:
+        return set()
+    return set(re.findall(r"^(\S+) installed$", run.stdout.decode(errors="replace"), re.MULTILINE))
+
+
+def folders(env, name):
+    """Return the entries of a variable such as PATH."""
+    return [entry for entry in env.get(name, "").split(":") if entry]
+
+
+def is_inside(path, folder):
+    path, folder = (os.path.join(os.path.realpath(name), "") for name in (path, folder))
+    return path.startswith(folder)
+
+
+def host_problem(host):
+    """Say what is wrong with a host that should be this machine; None if it is."""
+    try:
+        found = socket.getaddrinfo(host, None, socket.AF_INET, socket.SOCK_DGRAM)
+    except (OSError, UnicodeError):
+        return UNRESOLVED
+    for *_, address in found:
+        try:
+            with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+                probe.bind(address)  # only an address of this machine can be bound, or one ...
+            if 0 < int(address[0].split(".")[0]) < 224:  # ... that is no machine's
+                return None
+        except OSError:
+            pass
+    return "is another machine"
+
+
+def master(env):
+    """Return the master's URI, host and port; no host and port if the URI is malformed."""
+    uri = env.get("ROS_MASTER_URI", DEFAULT_MASTER_URI)
+    match = re.fullmatch(r"http://([^/:\s]+):([0-9]{1,5})/?", uri)
+    if not match or not 0 < int(match.group(2)) < 65536:
+        return uri, None, None
+    return uri, match.group(1), int(match.group(2))
+
+
+def master_pid(uri):
+    """Return the process id of the ROS master at a URI; None if none answers."""
+    socket.setdefaulttimeout(MASTER_TIMEOUT)
+    try:
+        code, _, pid = xmlrpc.client.ServerProxy(uri).getPid("/doctor")
+    except Exception:  # whatever listens there may answer anything
+        return None
+    return pid if code == 1 else None
+
+
+def this_machine():
+    try:
+        with open("/etc/debian_version", errors="replace") as file:
+            debian = file.read().strip()
+    except OSError:
+        debian = "none"
+    workspace = os.path.dirname(os.path.dirname(os.path.realpath(__file__)))
+    host_name = socket.gethostname()
+    return Machine(os.environ, workspace, host_name, debian, "/usr/bin/dpkg-query", "/opt/ros")
+
+
+def examine(machine):
+    """Make every check and print its result; return the exit code."""
+    sys.stdout.reconfigure(errors="backslashreplace")
+    colours = {"OK": 32, "FAIL": 31, "--": 33} if sys.stdout.isatty() else {}
+    blocked, failed = set(), 0
+    for title, check, needed in CHECKS:
+        try:
+            result = note(f"skipped: needs {needed}") if needed in blocked else check(machine)
+        except OSError as error:  # a file of the project is missing or unreadable
+            mend = f"git -C {shlex.quote(machine.workspace)} checkout -- "
+            mend += shlex.quote(str(error.filename))
+            result = fail(f"to read {error.filename}", f"'{error.strerror}'", mend)
+        if result.status == "FAIL" or needed in blocked:
+            blocked.add(title)
+        failed += result.status == "FAIL"
+        tag = f"[{result.status}]".ljust(7)
+        if colours:
+            tag = f"\033[{colours[result.status]}m{tag}\033[0m"
+        print(f"{tag}{title}: {result.text}")
+        for command in result.mend.splitlines():
+            print(f"       mend: {command}")
+    print(f"{len(CHECKS)} checks, {failed} failed")
+    return 1 if failed else 0
+
+
+def main():
+    checks = "".join(f"\n  {title}: {check.__doc__.splitlines()[0]}" for title, check, _ in CHECKS)
+    parser = argparse.ArgumentParser(
+        description=__doc__,
+        epilog="The checks:" + checks,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.parse_args()
+    return examine(this_machine())
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,18 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""These tests use what the tutorial package's own tests are made of."""
+
+import os
+import pathlib
+import sys
+
+import pytest
+
+sys.path.insert(
+    0, str(pathlib.Path(__file__).resolve().parents[2] / "catkin_ws" / "src" / "mrp" / "test")
+)
+
+
+@pytest.fixture(scope="session")
+def image():
+    """The image under test: the one that `make docker-build` made."""
+    return "mrp:" + os.environ.get("DEBIAN", "bookworm")

@@ -1,0 +1,111 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What the containers of compose.yaml survive: the death of a node, of the network, of the master.
+
+What is asserted stands, in words, in the README's section "When something dies".
+"""
+
+import contract
+import pytest
+from containers import Composition, compose_commands, docker, inspect, log
+from waiting import wait_until
+
+CPP, PY = contract.SUBSCRIBERS
+SECONDS = 10  # that the network is cut
+
+
+@pytest.fixture
+def nodes():
+    """The four nodes, each of which has already received something."""
+    with Composition(compose_commands()[0], "compose.yaml") as composition:
+        for subscriber in contract.SUBSCRIBERS:
+            composition.wait_until_received(subscriber)
+        yield composition
+
+
+def counts(nodes, subscriber):
+    return {p: len(values) for p, values in nodes.received(subscriber).items()}
+
+
+def wait_for_more(nodes, subscriber, before, more=5):
+    """Wait until a subscriber has received `more` values of each publisher than `before`."""
+    wait_until(
+        lambda: all(n >= before[p] + more for p, n in counts(nodes, subscriber).items()),
+        lambda: f"{more} more values at {subscriber.name}: {nodes.received(subscriber)}",
+    )
+
+
+def kill(nodes, service):
+    """Kill the process of a container as a crash would: docker's own kill is never restarted."""
+    state = inspect(nodes.name(service))["State"]
+    image = inspect(nodes.name(service))["Config"]["Image"]
+    docker(
+        *("run", "--rm", "--pid", "host", "--user", "root", "--network", "none"),
+        *("--entrypoint", "bash", image, "-c", f"kill -9 {state['Pid']}"),
+    )
+    return state["Pid"]
+
+
+def wait_until_back(nodes, service, pid):
+    def back():
+        state = inspect(nodes.name(service))["State"]
+        return state["Running"] and state["Pid"] not in (0, pid)
+
+    wait_until(back, f"{service} is back")
+
+
+@pytest.mark.parametrize("node", contract.NODES, ids=lambda node: node.name)
+def test_killed_node_comes_back_and_the_others_miss_nothing(nodes, node):
+    before = {s: counts(nodes, s) for s in contract.SUBSCRIBERS}
+    wait_until_back(nodes, node.name, kill(nodes, node.name))
+    for subscriber in contract.SUBSCRIBERS:
+        wait_for_more(nodes, subscriber, before[subscriber])
+        for publisher, values in nodes.received(subscriber).items():
+            runs = len(contract.runs(values))
+            broken = node in (subscriber, publisher)
+            assert runs <= (2 if broken else 1), f"{publisher.name}, {subscriber.name}: {values}"
+
+
+@pytest.mark.parametrize("subscriber", contract.SUBSCRIBERS, ids=lambda node: node.name)
+def test_cut_network_loses_values_only_where_it_is_cut(nodes, subscriber):
+    other = CPP if subscriber is PY else PY
+    name, network = nodes.name(subscriber.name), nodes.project + "_default"
+    docker("network", "disconnect", network, name)
+    # The other subscriber, which hears a value of each publisher every half second, is the clock.
+    wait_for_more(nodes, other, counts(nodes, other), more=int(SECONDS / contract.PERIOD))
+    before = counts(nodes, subscriber)
+    docker("network", "connect", "--alias", subscriber.name, network, name)
+    wait_for_more(nodes, subscriber, before)
+
+    for publisher, values in nodes.received(other).items():
+        assert contract.first_fault(values) is None, f"{publisher.name}: {values}"
+    for publisher, values in nodes.received(subscriber).items():
+        runs = contract.runs(values)
+        assert len(runs) == 2, f"one gap from {publisher.name}: {values}"
+        lost = (runs[1][0] - runs[0][-1]) // contract.STEP - 1
+        print(f"{subscriber.name} lost {lost} values of {publisher.name}")
+        assert lost >= 1
+
+
+def test_restarted_master_knows_nobody_but_the_flow_goes_on(nodes):
+    before = {s: counts(nodes, s) for s in contract.SUBSCRIBERS}
+    nodes.compose("restart", "master")
+    for subscriber in contract.SUBSCRIBERS:
+        wait_for_more(nodes, subscriber, before[subscriber])
+        for publisher, values in nodes.received(subscriber).items():
+            assert contract.first_fault(values) is None, f"{publisher.name}: {values}"
+    wait_until(
+        lambda: inspect(nodes.name("master"))["State"]["Health"]["Status"] == "healthy",
+        "the master is healthy again",
+    )
+
+    # A subscriber that starts now finds no publisher, although both publish.
+    nodes.compose("restart", CPP.name)
+    silent = len(log(nodes.name(CPP.name)))
+    wait_for_more(nodes, PY, counts(nodes, PY))
+    texts = [contract.logged_text(line) for line in log(nodes.name(CPP.name))[silent:]]
+    assert not any(contract.received_value(CPP, text) for text in texts if text), texts
+
+    # The cure: the publishers register when they start.
+    before = counts(nodes, CPP)
+    nodes.compose("restart", *(node.name for node in contract.PUBLISHERS))
+    wait_for_more(nodes, CPP, before)
