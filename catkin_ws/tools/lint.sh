@@ -32,12 +32,12 @@ files() {
 
 mapfile -t cpp < <(files '*.cpp' '*.h')
 mapfile -t xml < <(files '*.launch' '*.test' 'package.xml' '*/package.xml')
-mapfile -t shell < <(files '*.sh' .ci/run)
+mapfile -t shell < <(files '*.sh' '.ci/*')
 
 check "catkin_lint" env -C catkin_ws tools/with_rosdep.sh catkin_lint --rosdistro Debian --strict -W2 src
 check "clang-format" clang-format --dry-run --Werror "${cpp[@]}"
-check "ruff check" "$ruff" check catkin_ws
-check "ruff format" "$ruff" format --check catkin_ws
+check "ruff check" "$ruff" check --no-cache --config catkin_ws/ruff.toml catkin_ws docker
+check "ruff format" "$ruff" format --check --no-cache --config catkin_ws/ruff.toml catkin_ws docker
 check "shellcheck" shellcheck "${shell[@]}"
 check "xmllint" xmllint --noout "${xml[@]}"
 exit $status

@@ -15,7 +15,7 @@ UNWANTED = re.compile(
     r"(usr/)?(s?bin|lib/gcc|libexec/gcc)/.*"
     r"\b(cc1(plus)?|([\w-]+-)?(gcc|g\+\+|c\+\+|cpp|ld|as)(-\d+)?|make|cmake|ninja|catkin_make|git)"
     r"|usr/include/.+"
-    r"|(?!usr/lib/python3/).*\.(a|cpp|h|hpp|o)"  # numpy, which Debian 13 needs, has its own
+    r"|(?!.*/numpy/).*\.(a|cpp|h|hpp|o)"  # numpy, which rospy brings on Debian 13, has its own
     r"|var/lib/apt/lists/.+"
     r"|var/cache/.+"
     r"|var/log/.+"
