@@ -56,6 +56,12 @@ test: build  ## build, run every test, and print one summary
 	tools/test_summary.py $(RESULTS) || status=1; \
 	exit $$status
 
+.PHONY: labs
+labs:  ## list the labs: each is a launch file that shows one claim
+	@for file in catkin_ws/src/mrp_labs/launch/*.launch; do \
+	  printf '  %-44s %s\n' "roslaunch mrp_labs $$(basename $$file)" \
+	    "$$(sed -n '1s/<!-- \(.*\) -->/\1/p' $$file)"; done
+
 .PHONY: lint
 lint:  ## check the style of all sources
 	@$(INSTALL) $(PACKAGES) catkin_ws/apt/lint.txt

@@ -1,0 +1,7 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""For catkin_python_setup() alone: `import mrp_labs` finds src/mrp_labs and the generated messages."""
+
+from catkin_pkg.python_setup import generate_distutils_setup
+from setuptools import setup
+
+setup(**generate_distutils_setup(packages=["mrp_labs"], package_dir={"": "src"}))

@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The publisher of the labs: what it publishes, and how, is said by its private parameters.
+
+#include <cstdint>
+#include <cstdio>
+#include <fstream>
+#include <limits>
+#include <string>
+#include <unistd.h>
+#include <vector>
+
+#include <mrp_labs/message_text.h>
+#include <mrp_labs/parameters.h>
+#include <ros/ros.h>
+
+template <class Message>
+class LabPublisher
+{
+public:
+  explicit LabPublisher(mrp_labs::Parameters& parameters)
+    : topic_(parameters.topic("topic", "great_topic"))
+    , queue_size_(parameters.number("queue_size", 10))
+    , latch_(parameters.flag("latch", false))
+    , timer_type_(parameters.choice("timer", { "ros", "wall", "steady" }))
+    , period_(parameters.seconds("period", 0.5))
+    , burst_(parameters.number("burst", 1, 1))
+    , count_(parameters.number("count", 0))
+    , start_(parameters.number("start", 1, std::numeric_limits<int>::min()))
+    , step_(parameters.number("step", 1, std::numeric_limits<int>::min()))
+    , values_(parameters.texts("values"))
+    , size_(parameters.number("size", 0))
+    , delay_(parameters.seconds("delay", 0))
+    , wait_for_subscribers_(parameters.number("wait_for_subscribers", 0))
+    , on_connect_(parameters.flag("on_connect", false))
+    , show_memory_(parameters.flag("show_memory", false))
+  {
+    parameters.noOthers();
+    for (const std::string& value : values_)
+    {
+      try
+      {
+        message(value);
+      }
+      catch (const std::invalid_argument&)
+      {
+        throw parameters.wrong("values", "a list of texts of " + type() + " messages");
+      }
+    }
+  }
+
+  void start()
+  {
+    const ros::WallTime begin = ros::WallTime::now() + ros::WallDuration(delay_);
+    while (ros::ok() && ros::WallTime::now() < begin)
+    {
+      ros::WallDuration(0.02).sleep();
+    }
+
+    publisher_ = nh_.advertise<Message>(
+        topic_, queue_size_, [this](const auto& subscriber) { connectCallback(subscriber); },
+        ros::SubscriberStatusCallback(), ros::VoidConstPtr(), latch_);
+    ROS_INFO_STREAM(name_ << " publishes " << type() << " on " << publisher_.getTopic()
+                          << " (its code says \"" << topic_ << "\")");
+
+    if (timer_type_ == "ros")
+    {
+      timer_ = nh_.createTimer(ros::Duration(period_), [this](const auto&) { timerCallback(); });
+    }
+    else if (timer_type_ == "wall")
+    {
+      const ros::WallTimerCallback callback = [this](const auto&) { timerCallback(); };
+      wall_timer_ = nh_.createWallTimer(ros::WallDuration(period_), callback);
+    }
+    else
+    {
+      const ros::SteadyTimerCallback callback = [this](const auto&) { timerCallback(); };
+      steady_timer_ = nh_.createSteadyTimer(ros::WallDuration(period_), callback);
+    }
+  }
+
+private:
+  void timerCallback()
+  {
+    if (static_cast<int>(publisher_.getNumSubscribers()) < wait_for_subscribers_)
+    {
+      return;
+    }
+    wait_for_subscribers_ = 0;
+
+    const int64_t first = sent_;
+    for (int i = 0; i < burst_ && (count_ == 0 || sent_ < count_); ++i)
+    {
+      publisher_.publish(message(valueText(sent_)));
+      ++sent_;
+    }
+    if (sent_ == first)
+    {
+      return;
+    }
+    std::string line = name_ + " published " + valueText(first);
+    if (sent_ - first > 1)
+    {
+      line += " to " + valueText(sent_ - 1);
+    }
+    if (show_memory_)
+    {
+      line += ", memory: " + std::to_string(megabytes()) + " MB";
+    }
+    ROS_INFO_STREAM(line);
+  }
+
+  // Called when a subscriber connects. What is published here goes to that subscriber alone.
+  void connectCallback(const ros::SingleSubscriberPublisher& subscriber)
+  {
+    if (on_connect_)
+    {
+      const std::string value = valueText(sent_ == 0 ? 0 : sent_ - 1);
+      subscriber.publish(message(value));
+      ROS_INFO_STREAM(name_ << " sent " << value << " to " << subscriber.getSubscriberName()
+                            << ", which has just connected");
+    }
+  }
+
+  // The text of the message with that index: the values in turn; or start, start + step, ...
+  std::string valueText(int64_t index) const
+  {
+    return values_.empty() ? std::to_string(start_ + index * step_) : values_[index % values_.size()];
+  }
+
+  Message message(const std::string& text) const
+  {
+    Message msg;
+    mrp_labs::fromText(text, msg);
+    mrp_labs::padTo(size_, msg);
+    return msg;
+  }
+
+  static std::string type()
+  {
+    return ros::message_traits::datatype<Message>();
+  }
+
+  // What this process takes of the machine's memory (resident set: see proc(5)).
+  static int megabytes()
+  {
+    int64_t total_pages = 0;
+    int64_t resident_pages = 0;
+    std::ifstream("/proc/self/statm") >> total_pages >> resident_pages;
+    return static_cast<int>(resident_pages * sysconf(_SC_PAGESIZE) / 1000000);
+  }
+
+  ros::NodeHandle nh_;
+  const std::string name_ = ros::this_node::getName();
+
+  const std::string topic_;
+  const int queue_size_;  // 0: unlimited
+  const bool latch_;
+  const std::string timer_type_;
+  const double period_;  // seconds
+  const int burst_;      // messages in each period
+  const int count_;      // messages in all, 0: no end
+  const int start_;
+  const int step_;
+  const std::vector<std::string> values_;
+  const int size_;      // bytes, to which a String is filled up
+  const double delay_;  // seconds before it advertises
+  int wait_for_subscribers_;
+  const bool on_connect_;
+  const bool show_memory_;
+
+  int64_t sent_ = 0;
+  ros::Publisher publisher_;
+  ros::Timer timer_;
+  ros::WallTimer wall_timer_;
+  ros::SteadyTimer steady_timer_;
+};
+
+int main(int argc, char* argv[])
+{
+  setvbuf(stdout, nullptr, _IOLBF, BUFSIZ);  // print each line at once, also into a pipe
+  ros::init(argc, argv, "lab_publisher_cpp_node");
+  ros::NodeHandle nh;
+
+  try
+  {
+    mrp_labs::Parameters parameters;
+    const std::string type = parameters.choice("type", mrp_labs::MessageTypes::names());
+    mrp_labs::MessageTypes::call(type, [&](auto message) {
+      LabPublisher<decltype(message)> node(parameters);
+      node.start();
+      ros::spin();
+    });
+  }
+  catch (const std::invalid_argument& error)
+  {
+    ROS_FATAL_STREAM(ros::this_node::getName() << ": " << error.what());
+    return 1;
+  }
+  return 0;
+}

@@ -1,0 +1,144 @@
+#!/usr/bin/env python
+# SPDX-License-Identifier: BSD-3-Clause
+"""The publisher of the labs: what it publishes, and how, is said by its private parameters."""
+
+import os
+import sys
+import threading
+import time
+
+import rospy
+from mrp_labs.message_text import MESSAGE_TYPES, from_text, pad_to
+from mrp_labs.parameters import Parameters
+
+
+class LabPublisher:
+    def __init__(self, parameters):
+        self.type = parameters.choice("type", list(MESSAGE_TYPES))
+        self.topic = parameters.topic("topic", "great_topic")
+        self.queue_size = parameters.number_or_none("queue_size", 10)  # 0: unlimited
+        self.latch = parameters.flag("latch", False)
+        self.timer_type = parameters.choice("timer", ["ros", "steady"])
+        self.period = parameters.seconds("period", 0.5)
+        self.burst = parameters.number("burst", 1, least=1)  # messages in each period
+        self.count = parameters.number("count", 0)  # messages in all, 0: no end
+        self.start_value = parameters.number("start", 1, least=None)
+        self.step = parameters.number("step", 1, least=None)
+        self.values = parameters.texts("values")
+        self.size = parameters.number("size", 0)  # bytes, to which a String is filled up
+        self.delay = parameters.seconds("delay", 0)  # seconds before it advertises
+        self.wait_for_subscribers = parameters.number("wait_for_subscribers", 0)
+        self.on_connect = parameters.flag("on_connect", False)
+        self.show_memory = parameters.flag("show_memory", False)
+        parameters.no_others()
+        for value in self.values:
+            try:
+                self.message(value)
+            except (ValueError, TypeError):
+                allowed = f"a list of texts of {self.type} messages"
+                raise parameters.wrong("values", allowed) from None
+        self.sent = 0
+
+    def start(self):
+        begin = time.monotonic() + self.delay
+        while not rospy.is_shutdown() and time.monotonic() < begin:
+            time.sleep(0.02)
+
+        self.publisher = rospy.Publisher(
+            self.topic,
+            MESSAGE_TYPES[self.type],
+            subscriber_listener=ConnectListener(self),
+            latch=self.latch,
+            queue_size=self.queue_size,
+        )
+        rospy.loginfo(
+            f"{rospy.get_name()} publishes {self.type} on {self.publisher.resolved_name}"
+            f' (its code says "{self.topic}")'
+        )
+
+        if self.timer_type == "ros":
+            self.timer = rospy.Timer(rospy.Duration(self.period), self.timer_callback)
+        else:
+            # rospy has no timer but the one that follows the ROS clock.
+            self.timer = threading.Thread(target=self.steady_timer, daemon=True)
+            self.timer.start()
+
+    def steady_timer(self):
+        due = time.monotonic()
+        while not rospy.is_shutdown():
+            due += self.period
+            time.sleep(max(0, due - time.monotonic()))
+            self.timer_callback(None)
+
+    def timer_callback(self, event):
+        if self.publisher.get_num_connections() < self.wait_for_subscribers:
+            return
+        self.wait_for_subscribers = 0
+
+        first = self.sent
+        while self.sent < first + self.burst and (self.count == 0 or self.sent < self.count):
+            self.publish(self.value_text(self.sent))
+            self.sent += 1
+        if self.sent == first:
+            return
+        line = f"{rospy.get_name()} published {self.value_text(first)}"
+        if self.sent - first > 1:
+            line += f" to {self.value_text(self.sent - 1)}"
+        if self.show_memory:
+            line += f", memory: {megabytes()} MB"
+        rospy.loginfo(line)
+
+    def publish(self, value):
+        try:
+            self.publisher.publish(self.message(value))
+        except rospy.ROSSerializationException as error:
+            rospy.logerr(f"{rospy.get_name()} cannot publish {value}: {error}")
+
+    def value_text(self, index):
+        """Return the text of the message with that index: the values in turn; or start, start +
+        step, ..."""
+        if self.values:
+            return self.values[index % len(self.values)]
+        return str(self.start_value + index * self.step)
+
+    def message(self, text):
+        msg = MESSAGE_TYPES[self.type]()
+        from_text(text, msg)
+        pad_to(self.size, msg)
+        return msg
+
+
+class ConnectListener(rospy.SubscribeListener):
+    def __init__(self, node):
+        self.node = node
+
+    def peer_subscribe(self, topic_name, topic_publish, peer_publish):
+        """Is called when a subscriber connects. What peer_publish gets goes to that one alone."""
+        if self.node.on_connect:
+            value = self.node.value_text(max(0, self.node.sent - 1))
+            peer_publish(self.node.message(value))
+            rospy.loginfo(f"{rospy.get_name()} sent {value} to one that has just connected")
+
+
+def megabytes():
+    """Return what this process takes of the machine's memory (resident set: see proc(5))."""
+    with open("/proc/self/statm") as statm:
+        resident_pages = int(statm.read().split()[1])
+    return resident_pages * os.sysconf("SC_PAGESIZE") // 1000000
+
+
+def main():
+    sys.stdout.reconfigure(line_buffering=True)  # print each line at once, also into a pipe
+    rospy.init_node("lab_publisher_py_node")
+
+    try:
+        node = LabPublisher(Parameters())
+        node.start()
+    except ValueError as error:
+        rospy.logfatal(f"{rospy.get_name()}: {error}")
+        sys.exit(1)
+    rospy.spin()
+
+
+if __name__ == "__main__":
+    main()

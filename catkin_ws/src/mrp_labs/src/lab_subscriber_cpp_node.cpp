@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The subscriber of the labs: prints what it receives, from whom, and, if asked to, in which thread.
+
+#include <cstdio>
+#include <string>
+#include <unistd.h>
+
+#include <mrp_labs/message_text.h>
+#include <mrp_labs/parameters.h>
+#include <ros/ros.h>
+
+template <class Message>
+class LabSubscriber
+{
+public:
+  explicit LabSubscriber(mrp_labs::Parameters& parameters)
+    : topic_(parameters.topic("topic", "great_topic"))
+    , other_topic_(parameters.topic("other_topic", ""))
+    , queue_size_(parameters.number("queue_size", 10))
+    , callback_duration_(parameters.seconds("callback_duration", 0))
+    , concurrent_(parameters.flag("concurrent", false))
+    , delay_(parameters.seconds("delay", 0))
+    , show_thread_(parameters.flag("show_thread", false))
+  {
+    parameters.noOthers();
+  }
+
+  void start()
+  {
+    const ros::WallTime begin = ros::WallTime::now() + ros::WallDuration(delay_);
+    while (ros::ok() && ros::WallTime::now() < begin)
+    {
+      ros::WallDuration(0.02).sleep();
+    }
+
+    subscriber_ = subscribe(topic_);
+    if (!other_topic_.empty())
+    {
+      other_subscriber_ = subscribe(other_topic_);
+    }
+  }
+
+private:
+  ros::Subscriber subscribe(const std::string& topic)
+  {
+    ros::SubscribeOptions options;
+    options.initByFullCallbackType<const ros::MessageEvent<Message const>&>(
+        topic, queue_size_, [this](const auto& event) { subscriberCallback(event); });
+    options.allow_concurrent_callbacks = concurrent_;
+    ros::Subscriber subscriber = nh_.subscribe(options);
+    ROS_INFO_STREAM(name_ << " subscribes to " << subscriber.getTopic() << ", expects "
+                          << ros::message_traits::datatype<Message>() << " (its code says \""
+                          << topic << "\")");
+    return subscriber;
+  }
+
+  // The event is the message and what is known about it, such as the name of its publisher.
+  void subscriberCallback(const ros::MessageEvent<Message const>& event)
+  {
+    const std::string value = mrp_labs::toText(*event.getConstMessage());
+    const std::string where = show_thread_ ? " in thread " + std::to_string(gettid()) : "";
+    ROS_INFO_STREAM(name_ << " received " << value << " from " << event.getPublisherName() << where);
+    if (callback_duration_ > 0)
+    {
+      ros::WallDuration(callback_duration_).sleep();
+      if (show_thread_)
+      {
+        ROS_INFO_STREAM(name_ << " finished " << value << where);
+      }
+    }
+  }
+
+  ros::NodeHandle nh_;
+  const std::string name_ = ros::this_node::getName();
+
+  const std::string topic_;
+  const std::string other_topic_;
+  const int queue_size_;            // 0: unlimited
+  const double callback_duration_;  // seconds
+  const bool concurrent_;           // may several threads be in the callback at once?
+  const double delay_;              // seconds before it subscribes
+  const bool show_thread_;
+
+  ros::Subscriber subscriber_;
+  ros::Subscriber other_subscriber_;
+};
+
+int main(int argc, char* argv[])
+{
+  setvbuf(stdout, nullptr, _IOLBF, BUFSIZ);  // print each line at once, also into a pipe
+  ros::init(argc, argv, "lab_subscriber_cpp_node");
+  ros::NodeHandle nh;
+
+  try
+  {
+    mrp_labs::Parameters parameters;
+    const std::string type = parameters.choice("type", mrp_labs::MessageTypes::names());
+    const std::string spinner = parameters.choice("spinner", { "spin", "multi-threaded", "async" });
+    const int threads = parameters.number("threads", 2, 1);
+    mrp_labs::MessageTypes::call(type, [&](auto message) {
+      LabSubscriber<decltype(message)> node(parameters);
+      node.start();
+      if (spinner == "multi-threaded")
+      {
+        ros::MultiThreadedSpinner(threads).spin();
+      }
+      else if (spinner == "async")
+      {
+        ros::AsyncSpinner async_spinner(threads);
+        async_spinner.start();
+        ros::waitForShutdown();
+      }
+      else
+      {
+        ros::spin();
+      }
+    });
+  }
+  catch (const std::invalid_argument& error)
+  {
+    ROS_FATAL_STREAM(ros::this_node::getName() << ": " << error.what());
+    return 1;
+  }
+  return 0;
+}

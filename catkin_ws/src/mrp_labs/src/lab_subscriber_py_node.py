@@ -1,0 +1,75 @@
+#!/usr/bin/env python
+# SPDX-License-Identifier: BSD-3-Clause
+"""The subscriber of the labs: prints what it receives, from whom, and, if asked to, in which thread."""
+
+import sys
+import threading
+import time
+
+import rospy
+from mrp_labs.message_text import MESSAGE_TYPES, to_text
+from mrp_labs.parameters import Parameters
+
+
+class LabSubscriber:
+    def __init__(self, parameters):
+        self.type = parameters.choice("type", list(MESSAGE_TYPES))
+        self.topic = parameters.topic("topic", "great_topic")
+        self.other_topic = parameters.topic("other_topic", "")
+        self.queue_size = parameters.number_or_none("queue_size", 10)
+        self.buff_size = parameters.number("buff_size", 65536, least=1)  # bytes
+        self.callback_duration = parameters.seconds("callback_duration", 0)
+        self.delay = parameters.seconds("delay", 0)  # seconds before it subscribes
+        self.show_thread = parameters.flag("show_thread", False)
+        parameters.no_others()
+
+    def start(self):
+        begin = time.monotonic() + self.delay
+        while not rospy.is_shutdown() and time.monotonic() < begin:
+            time.sleep(0.02)
+
+        self.subscriber = self.subscribe(self.topic)
+        if self.other_topic:
+            self.other_subscriber = self.subscribe(self.other_topic)
+
+    def subscribe(self, topic):
+        subscriber = rospy.Subscriber(
+            topic,
+            MESSAGE_TYPES[self.type],
+            self.subscriber_callback,
+            queue_size=self.queue_size,
+            buff_size=self.buff_size,
+        )
+        rospy.loginfo(
+            f"{rospy.get_name()} subscribes to {subscriber.resolved_name}, expects {self.type}"
+            f' (its code says "{topic}")'
+        )
+        return subscriber
+
+    def subscriber_callback(self, msg):
+        value = to_text(msg)
+        where = f" in thread {threading.get_native_id()}" if self.show_thread else ""
+        # The header of the connection says who is at its other end.
+        publisher = msg._connection_header["callerid"]
+        rospy.loginfo(f"{rospy.get_name()} received {value} from {publisher}{where}")
+        if self.callback_duration > 0:
+            time.sleep(self.callback_duration)
+            if self.show_thread:
+                rospy.loginfo(f"{rospy.get_name()} finished {value}{where}")
+
+
+def main():
+    sys.stdout.reconfigure(line_buffering=True)  # print each line at once, also into a pipe
+    rospy.init_node("lab_subscriber_py_node")
+
+    try:
+        node = LabSubscriber(Parameters())
+        node.start()
+    except ValueError as error:
+        rospy.logfatal(f"{rospy.get_name()}: {error}")
+        sys.exit(1)
+    rospy.spin()
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,82 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A lab under test: run with roslaunch as a student runs it, and read line by line."""
+
+import collections
+import os
+import re
+import sys
+
+import rospkg
+
+# What observes a running program, and waits for it, is the tutorial's own.
+sys.path.append(os.path.join(rospkg.RosPack().get_path("mrp"), "test"))
+
+from process import Process  # noqa: E402
+
+PACKAGE = "mrp_labs"
+
+# "[ INFO] [1795222168.680630550, 12.5]: text"; the second number is there on a simulated clock only.
+_LINE = re.compile(r"\[ ?(?P<level>DEBUG|INFO|WARN|ERROR|FATAL)\] \[[\d., ]+\]: (?P<text>.*)")
+_RECEIVED = re.compile(
+    r"(?P<node>/\S+) received (?P<value>.*) from (?P<publisher>/\S+?)(?: in thread (?P<thread>\d+))?"
+)
+
+# A message that a subscriber has received. value: its text; thread: a number, or None.
+Received = collections.namedtuple("Received", "value publisher thread")
+
+
+class Lab(Process):
+    """A lab that runs, and the lines that it has printed so far.
+
+    launch_file: such as "latch.launch"
+    arguments: those of roslaunch, such as "period:=1"
+
+    Use it in a `with`: on leaving without an error, the lab is ended as by Ctrl-C, and must end
+    cleanly: with exit code 0, no traceback and no abort.
+    """
+
+    def __init__(self, launch_file, *arguments, extra_env=None):
+        super().__init__("roslaunch", PACKAGE, launch_file, *arguments, extra_env=extra_env)
+
+    def __exit__(self, *exception):
+        try:
+            if exception[0] is None:
+                code = self.stop()
+                assert code == 0, f"exit code {code} of {self}"
+                for line in self.lines:
+                    assert "Traceback" not in line and "lock_error" not in line, str(self)
+        finally:
+            super().__exit__(*exception)
+
+    def logged(self, node, levels=("INFO",)):
+        """Return the texts that a node has logged, each without the node's name in front."""
+        texts = []
+        for line in list(self.lines):
+            match = _LINE.fullmatch(line)
+            if match and match["level"] in levels and match["text"].startswith(node + " "):
+                texts.append(match["text"][len(node) + 1 :])
+        return texts
+
+    def received(self, node):
+        """Return what a subscriber node has received: a list of Received."""
+        result = []
+        for line in list(self.lines):
+            match = _LINE.fullmatch(line)
+            match = match and _RECEIVED.fullmatch(match["text"])
+            if match and match["node"] == node:
+                result.append(Received(match["value"], match["publisher"], match["thread"]))
+        return result
+
+    def values(self, node, publisher=None):
+        """Return the texts of the values that a subscriber node has received, of one publisher or
+        of all."""
+        return [r.value for r in self.received(node) if publisher in (None, r.publisher)]
+
+    def wait_until_received(self, node, *values, publisher=None):
+        """Wait until a subscriber node has received each of these values; return all that it has."""
+        wanted = set(map(str, values))
+        self.wait_for(
+            lambda: wanted <= set(self.values(node, publisher)),
+            lambda: f"{node} received {wanted}, not only {self.values(node, publisher)}",
+        )
+        return self.values(node, publisher)

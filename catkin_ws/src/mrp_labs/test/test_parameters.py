@@ -1,0 +1,109 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""The nodes of the labs end at once when a parameter is wrong, and say so in one sentence."""
+
+import contextlib
+import json
+import unittest
+
+import lab
+import roslib.packages
+import rospy
+import rostest
+from mrp_labs.message_text import MESSAGE_TYPES
+
+PUBLISHERS = ("lab_publisher_cpp_node", "lab_publisher_py_node.py")
+SUBSCRIBERS = ("lab_subscriber_cpp_node", "lab_subscriber_py_node.py")
+
+ANY_NUMBER = "a whole number"
+NUMBER = ANY_NUMBER + ", 0 or more"
+POSITIVE = ANY_NUMBER + ", 1 or more"
+SECONDS = "a number of seconds, 0 or more"
+FLAG = "true or false"
+TOPIC = "a topic's name: letters, digits, _ and /, with a letter, / or ~ in front"
+
+
+class TestParameters(unittest.TestCase):
+    def check(self, nodes, parameter, value, allowed):
+        """Start nodes with a parameter of that value, and expect that each ends with a sentence
+        that names both and says what is allowed."""
+        shown = json.dumps(value)
+        self.check_sentence(
+            nodes, {parameter: value}, f"parameter ~{parameter} is {shown}, but must be {allowed}"
+        )
+
+    def check_sentence(self, nodes, parameters, sentence):
+        with contextlib.ExitStack() as stack:
+            processes = {}
+            for node in nodes:
+                name = "/node" + str(len(processes))
+                rospy.set_param(name, parameters)
+                stack.callback(rospy.delete_param, name)
+                # Not by rosrun, which takes longer than the node.
+                program = roslib.packages.find_node(lab.PACKAGE, node)[0]
+                process = lab.Process(program, "__name:=" + name[1:])
+                processes[name] = stack.enter_context(process)
+            for name, process in processes.items():
+                self.assertEqual(process.wait(), 1, f"exit code of {process}")
+                texts = [line.split("]: ")[-1] for line in process.lines if "FATAL" in line]
+                self.assertEqual(texts, [f"{name}: {sentence}"], str(process))
+                self.assertNotIn("Traceback", str(process))
+
+    def test_text(self):
+        self.check(PUBLISHERS, "topic", "a topic", TOPIC)
+        self.check(PUBLISHERS, "topic", "", "a string that is not empty")
+        self.check(SUBSCRIBERS, "topic", 5, "a string that is not empty")
+        self.check(SUBSCRIBERS, "other_topic", "1st", TOPIC)
+
+    def test_number(self):
+        self.check(PUBLISHERS, "queue_size", -1, NUMBER)
+        self.check(SUBSCRIBERS, "queue_size", "ten", NUMBER)
+        self.check(SUBSCRIBERS, "queue_size", True, NUMBER)
+        self.check(PUBLISHERS, "burst", 0, POSITIVE)
+        self.check(PUBLISHERS, "count", 1.5, NUMBER)
+        self.check(PUBLISHERS, "start", "one", ANY_NUMBER)
+        self.check(PUBLISHERS, "size", [1, 2], NUMBER)
+        self.check(SUBSCRIBERS[1:], "buff_size", 0, POSITIVE)
+        self.check(SUBSCRIBERS[:1], "threads", 0, POSITIVE)
+
+    def test_seconds(self):
+        self.check(PUBLISHERS, "period", -0.5, SECONDS)
+        self.check(PUBLISHERS, "delay", "soon", SECONDS)
+        self.check(SUBSCRIBERS, "callback_duration", True, SECONDS)
+
+    def test_flag(self):
+        self.check(PUBLISHERS, "latch", 1, FLAG)
+        self.check(SUBSCRIBERS, "show_thread", "yes", FLAG)
+
+    def test_choice(self):
+        self.check(PUBLISHERS[:1], "timer", "Wall", 'one of "ros", "wall", "steady"')
+        # rospy has no timer on the wall's clock.
+        self.check(PUBLISHERS[1:], "timer", "wall", 'one of "ros", "steady"')
+        self.check(SUBSCRIBERS[:1], "spinner", 2, 'one of "spin", "multi-threaded", "async"')
+        allowed = "one of " + ", ".join(f'"{type_}"' for type_ in MESSAGE_TYPES)
+        self.check(SUBSCRIBERS, "type", "std_msgs/Uint32", allowed)
+
+    def test_values(self):
+        for name in ("UInt8", "Float32", "Time", "Header", "ColorRGBA", "Int32MultiArray"):
+            type_ = "std_msgs/" + name
+            self.check_sentence(
+                PUBLISHERS,
+                {"type": type_, "values": ["1", "x 1"]},
+                'parameter ~values is ["1", "x 1"], but must be a list of texts of '
+                f"{type_} messages",
+            )
+        self.check(PUBLISHERS, "values", [1, 2], "a list of strings")
+        self.check(PUBLISHERS, "values", "1", "a list of strings")
+
+    def test_misspelt(self):
+        known = (
+            "~burst, ~count, ~delay, ~latch, ~on_connect, ~period, ~queue_size, ~show_memory, "
+            "~size, ~start, ~step, ~timer, ~topic, ~type, ~values, ~wait_for_subscribers"
+        )
+        self.check_sentence(
+            PUBLISHERS, {"qeue_size": 1}, f"parameter ~qeue_size is not known, only {known}"
+        )
+
+
+if __name__ == "__main__":
+    rostest.rosrun(lab.PACKAGE, "parameters", TestParameters)
