@@ -31,7 +31,7 @@ files() {
 }
 
 mapfile -t cpp < <(files '*.cpp' '*.h')
-mapfile -t xml < <(files '*.launch' '*.test' 'package.xml' '*/package.xml')
+mapfile -t xml < <(files '*.launch' '*.test' '*.xml')
 mapfile -t shell < <(files '*.sh' '.ci/*')
 
 check "catkin_lint" env -C catkin_ws tools/with_rosdep.sh catkin_lint --rosdistro Debian --strict -W2 src

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""For catkin_python_setup() alone: `import mrp_labs` finds src/mrp_labs and the generated messages."""
+"""For catkin_python_setup() alone, by which Python finds src/mrp_labs."""
 
 from catkin_pkg.python_setup import generate_distutils_setup
 from setuptools import setup

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The publisher of the labs: what it publishes, and how, is said by its private parameters.
 
+#include <unistd.h>
 #include <cstdint>
 #include <cstdio>
 #include <fstream>
 #include <limits>
 #include <string>
-#include <unistd.h>
 #include <vector>
 
 #include <mrp_labs/message_text.h>
@@ -18,21 +18,21 @@ class LabPublisher
 {
 public:
   explicit LabPublisher(mrp_labs::Parameters& parameters)
-    : topic_(parameters.topic("topic", "great_topic"))
-    , queue_size_(parameters.number("queue_size", 10))
-    , latch_(parameters.flag("latch", false))
-    , timer_type_(parameters.choice("timer", { "ros", "wall", "steady" }))
-    , period_(parameters.seconds("period", 0.5))
-    , burst_(parameters.number("burst", 1, 1))
-    , count_(parameters.number("count", 0))
-    , start_(parameters.number("start", 1, std::numeric_limits<int>::min()))
-    , step_(parameters.number("step", 1, std::numeric_limits<int>::min()))
-    , values_(parameters.texts("values"))
-    , size_(parameters.number("size", 0))
-    , delay_(parameters.seconds("delay", 0))
-    , wait_for_subscribers_(parameters.number("wait_for_subscribers", 0))
-    , on_connect_(parameters.flag("on_connect", false))
-    , show_memory_(parameters.flag("show_memory", false))
+      : topic_(parameters.topic("topic", "great_topic")),
+        queue_size_(parameters.number("queue_size", 10)),
+        latch_(parameters.flag("latch", false)),
+        timer_type_(parameters.choice("timer", {"ros", "wall", "steady"})),
+        period_(parameters.seconds("period", 0.5)),
+        burst_(parameters.number("burst", 1, 1)),
+        count_(parameters.number("count", 0)),
+        start_(parameters.number("start", 1, std::numeric_limits<int>::min())),
+        step_(parameters.number("step", 1, std::numeric_limits<int>::min())),
+        values_(parameters.texts("values")),
+        size_(parameters.number("size", 0)),
+        delay_(parameters.seconds("delay", 0)),
+        wait_for_subscribers_(parameters.number("wait_for_subscribers", 0)),
+        on_connect_(parameters.flag("on_connect", false)),
+        show_memory_(parameters.flag("show_memory", false))
   {
     parameters.noOthers();
     for (const std::string& value : values_)
@@ -124,7 +124,8 @@ private:
   // The text of the message with that index: the values in turn; or start, start + step, ...
   std::string valueText(int64_t index) const
   {
-    return values_.empty() ? std::to_string(start_ + index * step_) : values_[index % values_.size()];
+    return values_.empty() ? std::to_string(start_ + index * step_)
+                           : values_[index % values_.size()];
   }
 
   Message message(const std::string& text) const
@@ -185,11 +186,13 @@ int main(int argc, char* argv[])
   {
     mrp_labs::Parameters parameters;
     const std::string type = parameters.choice("type", mrp_labs::MessageTypes::names());
-    mrp_labs::MessageTypes::call(type, [&](auto message) {
-      LabPublisher<decltype(message)> node(parameters);
-      node.start();
-      ros::spin();
-    });
+    mrp_labs::MessageTypes::call(type,
+                                 [&](auto message)
+                                 {
+                                   LabPublisher<decltype(message)> node(parameters);
+                                   node.start();
+                                   ros::spin();
+                                 });
   }
   catch (const std::invalid_argument& error)
   {

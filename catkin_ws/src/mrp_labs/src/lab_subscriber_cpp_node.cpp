@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The subscriber of the labs: prints what it receives, from whom, and, if asked to, in which thread.
+// The subscriber of the labs: prints what it receives, from whom and, if asked, in which thread.
 
+#include <unistd.h>
 #include <cstdio>
 #include <string>
-#include <unistd.h>
 
 #include <mrp_labs/message_text.h>
 #include <mrp_labs/parameters.h>
@@ -14,13 +14,13 @@ class LabSubscriber
 {
 public:
   explicit LabSubscriber(mrp_labs::Parameters& parameters)
-    : topic_(parameters.topic("topic", "great_topic"))
-    , other_topic_(parameters.topic("other_topic", ""))
-    , queue_size_(parameters.number("queue_size", 10))
-    , callback_duration_(parameters.seconds("callback_duration", 0))
-    , concurrent_(parameters.flag("concurrent", false))
-    , delay_(parameters.seconds("delay", 0))
-    , show_thread_(parameters.flag("show_thread", false))
+      : topic_(parameters.topic("topic", "great_topic")),
+        other_topic_(parameters.topic("other_topic", "")),
+        queue_size_(parameters.number("queue_size", 10)),
+        callback_duration_(parameters.seconds("callback_duration", 0)),
+        concurrent_(parameters.flag("concurrent", false)),
+        delay_(parameters.seconds("delay", 0)),
+        show_thread_(parameters.flag("show_thread", false))
   {
     parameters.noOthers();
   }
@@ -59,7 +59,8 @@ private:
   {
     const std::string value = mrp_labs::toText(*event.getConstMessage());
     const std::string where = show_thread_ ? " in thread " + std::to_string(gettid()) : "";
-    ROS_INFO_STREAM(name_ << " received " << value << " from " << event.getPublisherName() << where);
+    ROS_INFO_STREAM(name_ << " received " << value << " from " << event.getPublisherName()
+                          << where);
     if (callback_duration_ > 0)
     {
       ros::WallDuration(callback_duration_).sleep();
@@ -95,26 +96,28 @@ int main(int argc, char* argv[])
   {
     mrp_labs::Parameters parameters;
     const std::string type = parameters.choice("type", mrp_labs::MessageTypes::names());
-    const std::string spinner = parameters.choice("spinner", { "spin", "multi-threaded", "async" });
+    const std::string spinner = parameters.choice("spinner", {"spin", "multi-threaded", "async"});
     const int threads = parameters.number("threads", 2, 1);
-    mrp_labs::MessageTypes::call(type, [&](auto message) {
-      LabSubscriber<decltype(message)> node(parameters);
-      node.start();
-      if (spinner == "multi-threaded")
-      {
-        ros::MultiThreadedSpinner(threads).spin();
-      }
-      else if (spinner == "async")
-      {
-        ros::AsyncSpinner async_spinner(threads);
-        async_spinner.start();
-        ros::waitForShutdown();
-      }
-      else
-      {
-        ros::spin();
-      }
-    });
+    mrp_labs::MessageTypes::call(type,
+                                 [&](auto message)
+                                 {
+                                   LabSubscriber<decltype(message)> node(parameters);
+                                   node.start();
+                                   if (spinner == "multi-threaded")
+                                   {
+                                     ros::MultiThreadedSpinner(threads).spin();
+                                   }
+                                   else if (spinner == "async")
+                                   {
+                                     ros::AsyncSpinner async_spinner(threads);
+                                     async_spinner.start();
+                                     ros::waitForShutdown();
+                                   }
+                                   else
+                                   {
+                                     ros::spin();
+                                   }
+                                 });
   }
   catch (const std::invalid_argument& error)
   {

@@ -1,6 +1,6 @@
 #!/usr/bin/env python
 # SPDX-License-Identifier: BSD-3-Clause
-"""The subscriber of the labs: prints what it receives, from whom, and, if asked to, in which thread."""
+"""The subscriber of the labs: prints what it receives, from whom and, if asked, in which thread."""
 
 import sys
 import threading

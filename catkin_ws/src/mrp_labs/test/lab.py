@@ -6,19 +6,20 @@ import os
 import re
 import sys
 
-import rospkg
+import roslib.packages
 
 # What observes a running program, and waits for it, is the tutorial's own.
-sys.path.append(os.path.join(rospkg.RosPack().get_path("mrp"), "test"))
+sys.path.append(os.path.join(roslib.packages.get_pkg_dir("mrp"), "test"))
 
-from process import Process  # noqa: E402
+from process import Process
 
 PACKAGE = "mrp_labs"
 
-# "[ INFO] [1795222168.680630550, 12.5]: text"; the second number is there on a simulated clock only.
+# "[ INFO] [1795222168.680630550, 12.5]: text"; the second number is there under /use_sim_time.
 _LINE = re.compile(r"\[ ?(?P<level>DEBUG|INFO|WARN|ERROR|FATAL)\] \[[\d., ]+\]: (?P<text>.*)")
 _RECEIVED = re.compile(
-    r"(?P<node>/\S+) received (?P<value>.*) from (?P<publisher>/\S+?)(?: in thread (?P<thread>\d+))?"
+    r"(?P<node>/\S+) received (?P<value>.*) from (?P<publisher>/\S+?)"
+    r"(?: in thread (?P<thread>\d+))?"
 )
 
 # A message that a subscriber has received. value: its text; thread: a number, or None.
@@ -73,7 +74,7 @@ class Lab(Process):
         return [r.value for r in self.received(node) if publisher in (None, r.publisher)]
 
     def wait_until_received(self, node, *values, publisher=None):
-        """Wait until a subscriber node has received each of these values; return all that it has."""
+        """Wait until a subscriber node has received each of these values; return all it has."""
         wanted = set(map(str, values))
         self.wait_for(
             lambda: wanted <= set(self.values(node, publisher)),

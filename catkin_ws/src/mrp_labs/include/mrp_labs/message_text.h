@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The types of message that the labs know, and the text of a message. The twin of message_text.py.
+// The labs' types of message, and the text of a message. The twin of message_text.py.
 
 #pragma once
 
@@ -16,7 +16,6 @@
 #include <type_traits>
 #include <vector>
 
-#include <boost/crc.hpp>
 #include <mrp_labs/Count.h>
 #include <ros/ros.h>
 #include <std_msgs/Bool.h>
@@ -39,6 +38,7 @@
 #include <std_msgs/UInt32.h>
 #include <std_msgs/UInt64.h>
 #include <std_msgs/UInt8.h>
+#include <boost/crc.hpp>
 
 namespace mrp_labs
 {
@@ -49,14 +49,15 @@ struct TypesByName
   /// Returns the names, such as "std_msgs/UInt32".
   static std::vector<std::string> names()
   {
-    return { ros::message_traits::datatype<Messages>()... };
+    return {ros::message_traits::datatype<Messages>()...};
   }
 
   /// Calls function(message) with an empty message of the type of that name.
   template <class Function>
   static void call(const std::string& name, Function function)
   {
-    const auto call_if_named = [&](auto message) {
+    const auto call_if_named = [&](auto message)
+    {
       if (name == ros::message_traits::datatype(message))
       {
         function(message);
@@ -89,8 +90,8 @@ Number toNumber(const std::string& text)
   else
   {
     const bool negative = !text.empty() && text[0] == '-';
-    number = negative ? static_cast<Number>(std::strtoll(text.c_str(), &end, 10)) :
-                        static_cast<Number>(std::strtoull(text.c_str(), &end, 10));
+    number = negative ? static_cast<Number>(std::strtoll(text.c_str(), &end, 10))
+                      : static_cast<Number>(std::strtoull(text.c_str(), &end, 10));
     if (errno == ERANGE)
     {
       end = nullptr;  // not even 64 bits are enough
@@ -207,7 +208,8 @@ inline std::string toText(const std_msgs::Empty&)
   return "nothing";
 }
 
-// A long text is shown by its checksum; spaces at the end, which make a message large, by their number.
+// A long text is shown by its checksum; spaces at the end, which make a message large, by their
+// number.
 inline std::string toText(const std_msgs::String& message)
 {
   std::string text = message.data.substr(0, message.data.find_last_not_of(' ') + 1);

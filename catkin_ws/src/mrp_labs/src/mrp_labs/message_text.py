@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The types of message that the labs know, and the text of a message. The twin of message_text.h."""
+"""The labs' types of message, and the text of a message. The twin of message_text.h."""
 
 import zlib
 
 import rospy
-from mrp_labs.msg import Count
 from std_msgs import msg as std_msgs
+
+from mrp_labs.msg import Count
 
 # The first one is the default.
 _CLASSES = (
