@@ -22,9 +22,10 @@ ALONE := unset ROS_IP ROS_NAMESPACE ROS_MASTER_URI; export ROS_HOSTNAME=localhos
 
 CATKIN_MAKE := catkin_make -DPYTHON_EXECUTABLE=/usr/bin/python3 -DCMAKE_BUILD_TYPE=RelWithDebInfo
 INSTALL := catkin_ws/tools/install_packages.sh
-PACKAGES := $(addprefix catkin_ws/apt/,build.txt runtime.txt tools.txt test.txt)
+PACKAGES := $(addprefix catkin_ws/apt/,build.txt runtime.txt tools.txt test.txt docs.txt)
 BUILT := catkin_ws/devel/.built
 RESULTS := $(CURDIR)/catkin_ws/build/test_results
+SITE := $(CURDIR)/catkin_ws/build/docs
 
 .PHONY: help
 help:  ## print the targets
@@ -66,6 +67,25 @@ labs:  ## list the labs: each is a launch file that shows one claim
 lint:  ## check the style of all sources
 	@$(INSTALL) $(PACKAGES) catkin_ws/apt/lint.txt
 	@$(IN_WORKSPACE) tools/lint.sh
+
+.PHONY: docs
+docs:  ## build the tutorial's pages
+	@$(INSTALL) catkin_ws/apt/docs.txt
+	@$(IN_WORKSPACE) /usr/bin/python3 -m sphinx -q -W --keep-going -d build/doctrees src/mrp/doc $(SITE)
+	@echo "Open file://$(SITE)/index.html"
+
+.PHONY: docs-serve
+docs-serve: docs  ## build the pages, and serve them to this machine's browsers
+	@exec /usr/bin/python3 catkin_ws/tools/serve.py $(SITE)
+
+.PHONY: docs-record
+docs-record: deps  ## do what the pages say, and record what they show of it
+	@$(IN_WORKSPACE) /usr/bin/python3 tools/run_page.py record
+
+.PHONY: test-browser
+test-browser: docs  ## open every page in a real browser
+	@$(INSTALL) catkin_ws/apt/test.txt catkin_ws/apt/browser.txt
+	@$(IN_WORKSPACE) /usr/bin/python3 -m pytest --junit-xml=$(RESULTS)/browser.xml browser_tests
 
 .PHONY: doctor
 doctor:  ## find what keeps the tutorial from running on this machine

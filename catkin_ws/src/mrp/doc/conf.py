@@ -1,0 +1,31 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The site's configuration: `make docs` builds it, without a network."""
+
+import pathlib
+import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).parent / "extension"))
+
+project = "mrp"
+author = "The mrp maintainers"
+copyright = "The mrp maintainers. Text: CC BY 4.0"
+
+extensions = [
+    "sphinx.ext.graphviz",
+    "sphinx_inline_tabs",
+    "sphinx_copybutton",
+    "source_code",
+    "terminal",
+    "proof",
+    "picture",
+]
+
+html_theme = "sphinx_rtd_theme"
+html_static_path = ["static"]
+html_css_files = ["page.css"]
+html_show_sourcelink = False
+html_show_sphinx = False
+graphviz_output_format = "svg"
+
+# A link that leads nowhere is an error, as is everything that Sphinx warns of: it is run with -W.
+nitpicky = True

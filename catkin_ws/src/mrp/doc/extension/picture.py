@@ -1,0 +1,101 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Directives that draw what was recorded from running nodes. Each has the option `alt`: what the
+picture shows, in words.
+
+.. ros-graph:: NAME the nodes and topics in recorded/NAME.json, drawn by Graphviz
+.. timeline:: NAME   who published and who received which value when, of recorded/NAME.txt
+.. queue:: NAME      which of the values published in recorded/NAME.txt were received
+"""
+
+import json
+import re
+
+from docutils import nodes
+from docutils.parsers.rst import directives
+from sphinx.ext.graphviz import graphviz
+from sphinx.util.docutils import SphinxDirective
+from terminal import recorded
+
+_LINE = re.compile(r"\[ ?INFO\] \[(?P<time>[\d.]+)\]: (?P<node>/\S+) (?P<what>published|received) (?P<value>\d+)")
+
+
+class Picture(SphinxDirective):
+    required_arguments = 1
+    option_spec = {"alt": directives.unchanged_required}
+    suffix = ".txt"
+
+    def run(self):
+        if "alt" not in self.options:
+            raise self.error("a picture must have the option 'alt'")
+        path = recorded(self.env, self.arguments[0] + self.suffix)
+        self.env.note_dependency(str(path))
+        if not path.exists():
+            if self.config.recording:
+                return []
+            raise self.error(f"{path.name} is not recorded yet: run make docs-record")
+        return [self.draw(path.read_text())]
+
+    def svg(self, width, height, parts):
+        """Return an SVG of that size that becomes as wide as the page at most."""
+        alt = nodes.Text(self.options["alt"]).astext().replace("&", "&amp;").replace("<", "&lt;")
+        text = "\n".join(
+            [
+                f'<svg class="picture" role="img" viewBox="0 0 {width} {height}" '
+                f'style="max-width: {width}px" aria-label="{alt}">',
+                *parts,
+                "</svg>",
+            ]
+        )
+        return nodes.raw(text, text, format="html")
+
+
+class Graph(Picture):
+    suffix = ".json"
+
+    def draw(self, text):
+        graph = json.loads(text)
+        lines = ["digraph {", "rankdir=LR", "node [fontname=sans-serif]", "edge [fontname=sans-serif]"]
+        for topic, type_ in graph["topics"].items():
+            lines.append(f'"topic {topic}" [shape=box label="{topic}\\n{type_}"]')
+        for node in graph["nodes"]:
+            lines.append(f'"{node}" [shape=ellipse]')
+        for node, topic in graph["publishers"]:
+            lines.append(f'"{node}" -> "topic {topic}"')
+        for node, topic in graph["subscribers"]:
+            lines.append(f'"topic {topic}" -> "{node}"')
+        drawing = graphviz()
+        drawing["code"] = "\n".join([*lines, "}"])
+        drawing["options"] = {"docname": self.env.docname}
+        drawing["alt"] = self.options["alt"]
+        return drawing
+
+
+class Timeline(Picture):
+    def draw(self, text):
+        events = [match.groupdict() for match in map(_LINE.match, text.splitlines()) if match]
+        names = sorted({event["node"] for event in events})
+        begin = min(float(event["time"]) for event in events)
+        end = max(float(event["time"]) for event in events)
+        left, width, row = 190, 720, 44
+        scale = (width - left - 30) / max(end - begin, 0.001)
+        height = row * len(names) + 40
+        parts = []
+        for index, name in enumerate(names):
+            y = row * index + 26
+            parts.append(f'<text x="0" y="{y + 4}" class="label">{name}</text>')
+            parts.append(f'<line x1="{left}" y1="{y}" x2="{width}" y2="{y}" class="axis"/>')
+        for event in events:
+            x = left + 15 + (float(event["time"]) - begin) * scale
+            y = row * names.index(event["node"]) + 26
+            parts.append(f'<circle cx="{x:.1f}" cy="{y}" r="11" class="{event["what"]}"/>')
+            parts.append(f'<text x="{x:.1f}" y="{y + 4}" class="value">{event["value"]}</text>')
+        for second in range(int(end - begin) + 1):
+            x = left + 15 + second * scale
+            parts.append(f'<text x="{x:.1f}" y="{height - 6}" class="label">{second} s</text>')
+        return self.svg(width, height, parts)
+
+
+def setup(app):
+    app.add_directive("ros-graph", Graph)
+    app.add_directive("timeline", Timeline)
+    return {"parallel_read_safe": False}

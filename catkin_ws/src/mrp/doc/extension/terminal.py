@@ -1,0 +1,92 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Directive that shows what the reader types into a terminal, and what comes back.
+
+.. terminal:: 1
+   :until: received message with data = 8
+   :output: pub_sub
+
+   roslaunch mrp pub_sub.launch
+
+The argument is the terminal's number: each is a shell of its own. The lines are the commands, and
+tools/run_page.py types them. Options:
+
+until: a regular expression. The last command goes on until it has printed a line that has it; then
+    the reader presses Ctrl-C, unless `keep` is set.
+keep: the command goes on while the reader reads on; `.. terminal:: 1` with `stop` ends it.
+stop: the reader presses Ctrl-C in this terminal. There are no commands then.
+exit: the exit code that the last command must have, if it is not 0.
+output: the name of the file in recorded/ that has what the last command printed. It is recorded by
+    tools/run_page.py too, and never typed.
+only: a regular expression: of what was printed, only lines that have it are shown, and compared.
+graph: the name of the file in recorded/ for the graph (see picture.py) at this moment.
+"""
+
+import pathlib
+
+from docutils import nodes
+from docutils.parsers.rst import directives
+from sphinx.util.docutils import SphinxDirective
+from steps import add_step, connect
+
+
+class Terminal(SphinxDirective):
+    required_arguments = 1
+    has_content = True
+    option_spec = {
+        "until": directives.unchanged_required,
+        "keep": directives.flag,
+        "stop": directives.flag,
+        "exit": int,
+        "output": directives.unchanged_required,
+        "only": directives.unchanged_required,
+        "graph": directives.unchanged_required,
+    }
+
+    def run(self):
+        options = self.options
+        commands = [line for line in self.content if line]
+        if bool(commands) == ("stop" in options):
+            raise self.error("a terminal has either commands or the option 'stop'")
+        add_step(
+            self.env,
+            kind="terminal",
+            terminal=self.arguments[0],
+            commands=commands,
+            line=self.lineno,
+            **{name: True if value is None else value for name, value in options.items()},
+        )
+        result = []
+        if commands:
+            result.append(self.block("\n".join(commands), "bash", "terminal"))
+        if "stop" in options:
+            text = f"In terminal {self.arguments[0]}, press Ctrl-C."
+            result.append(nodes.paragraph(text, text))
+        if "output" in options:
+            path = recorded(self.env, options["output"] + ".txt")
+            self.env.note_dependency(str(path))
+            if path.exists():
+                result.append(self.block(path.read_text().rstrip("\n"), "text", "output"))
+            elif not self.config.recording:
+                raise self.error(f"{path.name} is not recorded yet: run make docs-record")
+        if "until" in options and "keep" not in options:
+            text = "Ctrl-C ends it."
+            result.append(nodes.paragraph(text, text))
+        return result
+
+    def block(self, text, language, css_class):
+        block = nodes.literal_block(text, text, language=language, classes=[css_class])
+        self.set_source_info(block)
+        return block
+
+
+def recorded(env, name):
+    """Return the path of a file of that name in recorded/."""
+    return pathlib.Path(env.srcdir) / "recorded" / name
+
+
+def setup(app):
+    # True while tools/run_page.py builds the site to record what the pages still lack.
+    app.add_config_value("recording", False, "")
+    app.add_directive("terminal", Terminal)
+    connect(app)
+    return {"parallel_read_safe": False}

@@ -1,0 +1,234 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Does what the pages in src/mrp/doc tell their reader to do, in the order of reading.
+
+Usage: run_page.py record
+Writes into src/mrp/doc/recorded/ what the commands print, and the graphs.
+
+The directives `file` and `terminal` in src/mrp/doc/extension/ say what a step is.
+"""
+
+import io
+import json
+import os
+import pathlib
+import re
+import shutil
+import socket
+import subprocess
+import sys
+import tempfile
+
+import pexpect
+import rosgraph
+
+WORKSPACE = pathlib.Path(__file__).resolve().parents[1]
+DOC = WORKSPACE / "src" / "mrp" / "doc"
+RECORDED = DOC / "recorded"
+SECONDS = 600  # that a command may take: some build the whole workspace
+
+_PROMPT = re.compile(r"<reader (\d+)> $")
+_ESCAPES = re.compile(r"\x1b\[[0-9;?]*[a-zA-Z]|\x1b\][^\x07]*\x07|\x07")
+
+
+class StepFailed(Exception):
+    """Says which step of which page failed, and how."""
+
+
+def build(folder, *options):
+    """Build the site; return its steps. Raises StepFailed with what Sphinx said if that failed."""
+    done = subprocess.run(
+        [sys.executable, "-m", "sphinx", "-q", "-W", "--keep-going", *options, DOC, folder],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+    )
+    if done.returncode != 0:
+        raise StepFailed(done.stdout)
+    return json.loads((pathlib.Path(folder) / "steps.json").read_text())
+
+
+class Reader:
+    """One who reads the pages, with an empty home but for a copy of the repository in ~/mrp.
+
+    outputs: name -> lines of what was printed, as they go into recorded/NAME.txt
+    graphs: name -> what goes into recorded/NAME.json
+
+    Use it in a `with`: on leaving, whatever runs in a terminal is ended.
+    """
+
+    def __init__(self, home):
+        self.home = pathlib.Path(home)
+        self.outputs = {}
+        self.graphs = {}
+        self._terminals = {}
+        _copy_repository(self.home / "mrp")
+        with socket.socket() as probe:
+            probe.bind(("localhost", 0))
+            self._master = f"http://localhost:{probe.getsockname()[1]}"
+
+    def do(self, step):
+        """Do a step of a page. Raises StepFailed if it does not go as the page says."""
+        try:
+            if step["kind"] == "file":
+                path = self.home / step["path"]
+                path.parent.mkdir(parents=True, exist_ok=True)
+                path.write_text(step["text"])
+            else:
+                self._type(step)
+        except (StepFailed, pexpect.ExceptionPexpect) as error:
+            where = f"{step['page']}.rst, line {step['line']}"
+            raise StepFailed(f"{where}: {step.get('commands', '')}\n{error}") from None
+
+    def _type(self, step):
+        terminal = self._terminals.get(step["terminal"])
+        if terminal is None:
+            terminal = self._terminals[step["terminal"]] = Terminal(self._environment())
+        if "stop" in step:
+            printed = terminal.stop()
+        else:
+            *first, last = step["commands"]
+            for command in first:
+                terminal.run(command, 0)
+            if "until" in step:
+                printed = terminal.run_until(last, step["until"])
+            else:
+                printed = terminal.run(last, step.get("exit", 0))
+        if "graph" in step:
+            self.graphs[step["graph"]] = graph(self._master)
+        if "until" in step and "keep" not in step:
+            terminal.stop()
+        if "output" in step:
+            only = re.compile(step.get("only", ""))
+            self.outputs[step["output"]] = [line for line in printed if only.search(line)]
+
+    def _environment(self):
+        names = ("USER", "LOGNAME", "LANG", "TZ")
+        return {
+            **{name: os.environ[name] for name in names if name in os.environ},
+            "PATH": "/usr/bin:/bin:/usr/sbin:/sbin",
+            "HOME": str(self.home),
+            "TERM": "dumb",
+            "ROS_MASTER_URI": self._master,
+            "ROS_HOSTNAME": "localhost",
+        }
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *exception):
+        for terminal in self._terminals.values():
+            terminal.close()
+
+
+class Terminal:
+    """A shell in a terminal of its own, as on a desktop."""
+
+    def __init__(self, env):
+        self._shell = pexpect.spawn(
+            "bash",
+            ["--norc", "--noprofile", "-i"],
+            env={**env, "PS1": "<reader $?> "},
+            cwd=env["HOME"],
+            encoding="utf-8",
+            echo=False,
+            timeout=SECONDS,
+            dimensions=(50, 1000),
+        )
+        self._printed = self._shell.logfile_read = io.StringIO()
+        self._wait_for_prompt()
+
+    def run(self, command, code):
+        """Run a command to its end; return the lines that it printed."""
+        self._begin(command)
+        actual = self._wait_for_prompt()
+        if actual != code:
+            raise StepFailed(f"{command}: exit code {actual}, expected {code}\n{self._text()}")
+        return self._lines()
+
+    def run_until(self, command, pattern):
+        """Run a command until it has printed a line that has the pattern; return all lines."""
+        self._begin(command)
+        pattern = re.compile(f"[^\r\n]*(?:{pattern})[^\r\n]*\r\n")
+        if self._shell.expect([pattern, _PROMPT]) == 1:
+            raise StepFailed(f"it ended before it printed {pattern.pattern}:\n{self._text()}")
+        return self._lines()
+
+    def stop(self):
+        """Press Ctrl-C; return all that the command has printed."""
+        self._shell.sendcontrol("c")
+        self._wait_for_prompt()
+        return self._lines()
+
+    def close(self):
+        self._shell.sendcontrol("c")
+        self._shell.close(force=True)
+
+    def _begin(self, command):
+        self._printed.seek(0)
+        self._printed.truncate()
+        self._shell.sendline(command)
+
+    def _wait_for_prompt(self):
+        self._shell.expect(_PROMPT)
+        return int(self._shell.match.group(1))
+
+    def _text(self):
+        return _PROMPT.sub("", _ESCAPES.sub("", self._printed.getvalue().replace("\r\n", "\n")))
+
+    def _lines(self):
+        return [line.rstrip() for line in self._text().splitlines()]
+
+
+def graph(master_uri):
+    """Return the nodes and topics that a master knows, without those of the log."""
+    master = rosgraph.Master("/run_page", master_uri=master_uri)
+    publishers, subscribers, _ = master.getSystemState()
+    edges = {
+        kind: sorted([node, topic] for topic, nodes in state if topic != "/rosout" for node in nodes)
+        for kind, state in (("publishers", publishers), ("subscribers", subscribers))
+    }
+    edges = {
+        kind: [edge for edge in pairs if edge[0] != "/rosout"] for kind, pairs in edges.items()
+    }
+    pairs = edges["publishers"] + edges["subscribers"]
+    types = dict(master.getTopicTypes())
+    return {
+        "nodes": sorted({node for node, _ in pairs}),
+        "topics": {topic: types.get(topic) for topic in sorted({topic for _, topic in pairs})},
+        **edges,
+    }
+
+
+def _copy_repository(target):
+    """Copy what git knows or would know of this repository."""
+    root = WORKSPACE.parent
+    ignore = shutil.ignore_patterns(".git", "build", "devel", "install", "__pycache__", ".*_cache")
+    shutil.copytree(root, target, ignore=ignore, symlinks=True)
+    (target / "catkin_ws" / "src" / "CMakeLists.txt").unlink(missing_ok=True)
+
+
+def record():
+    """Do all steps, and write what they print into recorded/."""
+    with tempfile.TemporaryDirectory() as folder:
+        steps = build(folder + "/site", "-D", "recording=1")
+        with Reader(folder) as reader:
+            for number, step in enumerate(steps, 1):
+                what = step.get("path") or "; ".join(step["commands"]) or "Ctrl-C"
+                print(f"[{number}/{len(steps)}] {step['page']}: {what}", flush=True)
+                reader.do(step)
+    for path in RECORDED.iterdir():
+        path.unlink()
+    for name, lines in reader.outputs.items():
+        (RECORDED / f"{name}.txt").write_text("\n".join(lines) + "\n")
+    for name, recorded in reader.graphs.items():
+        (RECORDED / f"{name}.json").write_text(json.dumps(recorded, indent=1) + "\n")
+
+
+if __name__ == "__main__":
+    if sys.argv[1:] != ["record"]:
+        sys.exit(__doc__)
+    try:
+        record()
+    except StepFailed as error:
+        sys.exit(f"error: {error}")
