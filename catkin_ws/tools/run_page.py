@@ -25,7 +25,7 @@ import rosgraph
 WORKSPACE = pathlib.Path(__file__).resolve().parents[1]
 DOC = WORKSPACE / "src" / "mrp" / "doc"
 RECORDED = DOC / "recorded"
-SECONDS = 600  # that a command may take: some build the whole workspace
+SECONDS = 200  # that a command may take: one builds the whole repository
 
 _PROMPT = re.compile(r"<reader (\d+)> $")
 _ESCAPES = re.compile(r"\x1b\[[0-9;?]*[a-zA-Z]|\x1b\][^\x07]*\x07|\x07")
@@ -36,7 +36,7 @@ class StepFailed(Exception):
 
 
 def build(folder, *options):
-    """Build the site; return its steps. Raises StepFailed with what Sphinx said if that failed."""
+    """Build the site. Raises StepFailed with what Sphinx said if that failed."""
     done = subprocess.run(
         [sys.executable, "-m", "sphinx", "-q", "-W", "--keep-going", *options, DOC, folder],
         stdout=subprocess.PIPE,
@@ -45,13 +45,17 @@ def build(folder, *options):
     )
     if done.returncode != 0:
         raise StepFailed(done.stdout)
-    return json.loads((pathlib.Path(folder) / "steps.json").read_text())
+
+
+def steps(site):
+    """Return the steps of a site that has been built, in the order of reading."""
+    return json.loads((pathlib.Path(site) / "steps.json").read_text())
 
 
 class Reader:
     """One who reads the pages, with an empty home but for a copy of the repository in ~/mrp.
 
-    outputs: name -> lines of what was printed, as they go into recorded/NAME.txt
+    outputs: name -> what was printed, as it goes into recorded/NAME.txt
     graphs: name -> what goes into recorded/NAME.json
 
     Use it in a `with`: on leaving, whatever runs in a terminal is ended.
@@ -100,7 +104,8 @@ class Reader:
             terminal.stop()
         if "output" in step:
             only = re.compile(step.get("only", ""))
-            self.outputs[step["output"]] = [line for line in printed if only.search(line)]
+            shown = "\n".join(line for line in printed if only.search(line)).strip()
+            self.outputs[step["output"]] = shown.replace(str(self.home), "/home/you")
 
     def _environment(self):
         names = ("USER", "LOGNAME", "LANG", "TZ")
@@ -210,17 +215,18 @@ def _copy_repository(target):
 
 def record():
     """Do all steps, and write what they print into recorded/."""
-    with tempfile.TemporaryDirectory() as folder:
-        steps = build(folder + "/site", "-D", "recording=1")
-        with Reader(folder) as reader:
-            for number, step in enumerate(steps, 1):
+    with tempfile.TemporaryDirectory() as site, tempfile.TemporaryDirectory() as home:
+        build(site, "-D", "recording=1")
+        to_do = steps(site)
+        with Reader(home) as reader:
+            for number, step in enumerate(to_do, 1):
                 what = step.get("path") or "; ".join(step["commands"]) or "Ctrl-C"
-                print(f"[{number}/{len(steps)}] {step['page']}: {what}", flush=True)
+                print(f"[{number}/{len(to_do)}] {step['page']}: {what}", flush=True)
                 reader.do(step)
     for path in RECORDED.iterdir():
         path.unlink()
-    for name, lines in reader.outputs.items():
-        (RECORDED / f"{name}.txt").write_text("\n".join(lines) + "\n")
+    for name, output in reader.outputs.items():
+        (RECORDED / f"{name}.txt").write_text(output + "\n")
     for name, recorded in reader.graphs.items():
         (RECORDED / f"{name}.json").write_text(json.dumps(recorded, indent=1) + "\n")
 

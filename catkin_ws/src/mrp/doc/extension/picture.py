@@ -54,7 +54,7 @@ class Graph(Picture):
 
     def draw(self, text):
         graph = json.loads(text)
-        lines = ["digraph {", "rankdir=LR", "node [fontname=sans-serif]", "edge [fontname=sans-serif]"]
+        lines = ["digraph {", "rankdir=LR", 'node [fontname="sans-serif"]']
         for topic, type_ in graph["topics"].items():
             lines.append(f'"topic {topic}" [shape=box label="{topic}\\n{type_}"]')
         for node in graph["nodes"]:

@@ -25,6 +25,7 @@ import pathlib
 
 from docutils import nodes
 from docutils.parsers.rst import directives
+from sphinx.directives.code import container_wrapper
 from sphinx.util.docutils import SphinxDirective
 from steps import add_step, connect
 
@@ -57,7 +58,8 @@ class Terminal(SphinxDirective):
         )
         result = []
         if commands:
-            result.append(self.block("\n".join(commands), "bash", "terminal"))
+            block = self.block("\n".join(commands), "bash", "terminal")
+            result.append(container_wrapper(self, block, f"Terminal {self.arguments[0]}"))
         if "stop" in options:
             text = f"In terminal {self.arguments[0]}, press Ctrl-C."
             result.append(nodes.paragraph(text, text))

@@ -1,0 +1,78 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The pages: what they tell the reader to do works, and prints what they show."""
+
+import json
+import pathlib
+import re
+import sys
+import xml.etree.ElementTree as ElementTree
+
+import pytest
+
+WORKSPACE = pathlib.Path(__file__).resolve().parent.parent
+RESULTS = WORKSPACE / "build" / "test_results"
+sys.path.insert(0, str(WORKSPACE / "tools"))
+
+import run_page  # noqa: E402
+
+
+@pytest.fixture(scope="module")
+def site(tmp_path_factory):
+    """The site, built with every warning as an error."""
+    folder = tmp_path_factory.mktemp("site")
+    run_page.build(folder)
+    return folder
+
+
+@pytest.fixture(scope="module")
+def reader(site, tmp_path_factory):
+    """One who has done all that the pages say, in their order."""
+    with run_page.Reader(tmp_path_factory.mktemp("home")) as reader:
+        for step in run_page.steps(site):
+            reader.do(step)
+    return reader
+
+
+def masked(text):
+    """Return the lines, with what differs from run to run as #: times, process ids, ports, values.
+
+    Lines of several nodes come in any order, and more or fewer of a kind: so it is a set.
+    """
+    return {re.sub(r"(?<![\w.])-?\d+(\.\d+)?(?!\w)", "#", line) for line in text.splitlines()}
+
+
+def test_reader_sees_what_the_pages_show(reader):
+    recorded = {path.stem: path.read_text() for path in run_page.RECORDED.glob("*.txt")}
+    assert sorted(reader.outputs) == sorted(recorded), "run make docs-record"
+    for name, output in reader.outputs.items():
+        assert masked(output) == masked(recorded[name]), f"{name}: run make docs-record"
+
+
+def test_graphs_are_those_in_the_pages(reader):
+    recorded = {path.stem: path.read_text() for path in run_page.RECORDED.glob("*.json")}
+    assert {name: json.loads(text) for name, text in recorded.items()} == reader.graphs
+
+
+def test_every_proof_was_run_and_passed(site):
+    """rostest's cases are run before these tests; those of pytest pass or fail in this very run."""
+    pages = json.loads((site / "proofs.json").read_text())
+    rostests = {
+        proof
+        for proofs in pages.values()
+        for proof in proofs
+        if proof.split("/")[0] in ("mrp", "mrp_labs")
+    }
+    assert rostests
+    assert sorted(rostests - passed_rostests()) == [], "these have not passed: run make test"
+
+
+def passed_rostests():
+    """Return PACKAGE/NAME/CASE of all cases that have passed in NAME.test of a package."""
+    passed = set()
+    for rostest in (WORKSPACE / "src").glob("*/test/*.test"):
+        package, name = rostest.parts[-3], rostest.stem
+        for path in RESULTS.glob(f"{package}/rosunit-{name}*.xml"):
+            for case in ElementTree.parse(path).iter("testcase"):
+                if case.find("failure") is None and case.find("error") is None:
+                    passed.add(f"{package}/{name}/{case.get('name')}")
+    return passed
