@@ -33,6 +33,7 @@ public:
     , wait_for_subscribers_(parameters.number("wait_for_subscribers", 0))
     , on_connect_(parameters.flag("on_connect", false))
     , show_memory_(parameters.flag("show_memory", false))
+    , show_namespaces_(parameters.flag("show_namespaces", false))
   {
     parameters.noOthers();
     for (const std::string& value : values_)
@@ -56,8 +57,19 @@ public:
       ros::WallDuration(0.02).sleep();
     }
 
-    publisher_ = nh_.advertise<Message>(
-        topic_, queue_size_, [this](const auto& subscriber) { connectCallback(subscriber); },
+    if (show_namespaces_)
+    {
+      ROS_INFO_STREAM(name_ << " is in the namespace " << nh_.getNamespace()
+                            << " (ros::NodeHandle()); its own is "
+                            << ros::NodeHandle("~").getNamespace() << " (ros::NodeHandle(\"~\"))");
+    }
+
+    // roscpp takes no "~" in a topic's name: the node's own namespace has a handle of its own.
+    const bool is_private = topic_[0] == '~';
+    ros::NodeHandle nh(is_private ? "~" : "");
+    publisher_ = nh.advertise<Message>(
+        topic_.substr(is_private ? 1 : 0), queue_size_,
+        [this](const auto& subscriber) { connectCallback(subscriber); },
         ros::SubscriberStatusCallback(), ros::VoidConstPtr(), latch_);
     ROS_INFO_STREAM(name_ << " publishes " << type() << " on " << publisher_.getTopic()
                           << " (its code says \"" << topic_ << "\")");
@@ -167,6 +179,7 @@ private:
   int wait_for_subscribers_;
   const bool on_connect_;
   const bool show_memory_;
+  const bool show_namespaces_;
 
   int64_t sent_ = 0;
   ros::Publisher publisher_;

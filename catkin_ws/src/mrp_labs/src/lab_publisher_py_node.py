@@ -30,6 +30,7 @@ class LabPublisher:
         self.wait_for_subscribers = parameters.number("wait_for_subscribers", 0)
         self.on_connect = parameters.flag("on_connect", False)
         self.show_memory = parameters.flag("show_memory", False)
+        self.show_namespaces = parameters.flag("show_namespaces", False)
         parameters.no_others()
         for value in self.values:
             try:
@@ -43,6 +44,12 @@ class LabPublisher:
         begin = time.monotonic() + self.delay
         while not rospy.is_shutdown() and time.monotonic() < begin:
             time.sleep(0.02)
+
+        if self.show_namespaces:
+            rospy.loginfo(
+                f"{rospy.get_name()} is in the namespace {rospy.get_namespace()}"
+                f" (rospy.get_namespace()); its own is {rospy.get_name()} (rospy.get_name())"
+            )
 
         self.publisher = rospy.Publisher(
             self.topic,

@@ -21,6 +21,7 @@ public:
     , concurrent_(parameters.flag("concurrent", false))
     , delay_(parameters.seconds("delay", 0))
     , show_thread_(parameters.flag("show_thread", false))
+    , show_namespaces_(parameters.flag("show_namespaces", false))
   {
     parameters.noOthers();
   }
@@ -33,6 +34,13 @@ public:
       ros::WallDuration(0.02).sleep();
     }
 
+    if (show_namespaces_)
+    {
+      ROS_INFO_STREAM(name_ << " is in the namespace " << nh_.getNamespace()
+                            << " (ros::NodeHandle()); its own is "
+                            << ros::NodeHandle("~").getNamespace() << " (ros::NodeHandle(\"~\"))");
+    }
+
     subscriber_ = subscribe(topic_);
     if (!other_topic_.empty())
     {
@@ -43,11 +51,15 @@ public:
 private:
   ros::Subscriber subscribe(const std::string& topic)
   {
+    // roscpp takes no "~" in a topic's name: the node's own namespace has a handle of its own.
+    const bool is_private = topic[0] == '~';
+    ros::NodeHandle nh(is_private ? "~" : "");
     ros::SubscribeOptions options;
     options.initByFullCallbackType<const ros::MessageEvent<Message const>&>(
-        topic, queue_size_, [this](const auto& event) { subscriberCallback(event); });
+        topic.substr(is_private ? 1 : 0), queue_size_,
+        [this](const auto& event) { subscriberCallback(event); });
     options.allow_concurrent_callbacks = concurrent_;
-    ros::Subscriber subscriber = nh_.subscribe(options);
+    ros::Subscriber subscriber = nh.subscribe(options);
     ROS_INFO_STREAM(name_ << " subscribes to " << subscriber.getTopic() << ", expects "
                           << ros::message_traits::datatype<Message>() << " (its code says \""
                           << topic << "\")");
@@ -80,6 +92,7 @@ private:
   const bool concurrent_;           // may several threads be in the callback at once?
   const double delay_;              // seconds before it subscribes
   const bool show_thread_;
+  const bool show_namespaces_;
 
   ros::Subscriber subscriber_;
   ros::Subscriber other_subscriber_;

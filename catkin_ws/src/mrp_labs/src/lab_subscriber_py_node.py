@@ -21,12 +21,19 @@ class LabSubscriber:
         self.callback_duration = parameters.seconds("callback_duration", 0)
         self.delay = parameters.seconds("delay", 0)  # seconds before it subscribes
         self.show_thread = parameters.flag("show_thread", False)
+        self.show_namespaces = parameters.flag("show_namespaces", False)
         parameters.no_others()
 
     def start(self):
         begin = time.monotonic() + self.delay
         while not rospy.is_shutdown() and time.monotonic() < begin:
             time.sleep(0.02)
+
+        if self.show_namespaces:
+            rospy.loginfo(
+                f"{rospy.get_name()} is in the namespace {rospy.get_namespace()}"
+                f" (rospy.get_namespace()); its own is {rospy.get_name()} (rospy.get_name())"
+            )
 
         self.subscriber = self.subscribe(self.topic)
         if self.other_topic:

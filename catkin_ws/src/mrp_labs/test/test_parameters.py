@@ -74,6 +74,7 @@ class TestParameters(unittest.TestCase):
     def test_flag(self):
         self.check(PUBLISHERS, "latch", 1, FLAG)
         self.check(SUBSCRIBERS, "show_thread", "yes", FLAG)
+        self.check(PUBLISHERS + SUBSCRIBERS, "show_namespaces", 1, FLAG)
 
     def test_choice(self):
         self.check(PUBLISHERS[:1], "timer", "Wall", 'one of "ros", "wall", "steady"')
@@ -98,7 +99,8 @@ class TestParameters(unittest.TestCase):
     def test_misspelt(self):
         known = (
             "~burst, ~count, ~delay, ~latch, ~on_connect, ~period, ~queue_size, ~show_memory, "
-            "~size, ~start, ~step, ~timer, ~topic, ~type, ~values, ~wait_for_subscribers"
+            "~show_namespaces, ~size, ~start, ~step, ~timer, ~topic, ~type, ~values, "
+            "~wait_for_subscribers"
         )
         self.check_sentence(
             PUBLISHERS, {"qeue_size": 1}, f"parameter ~qeue_size is not known, only {known}"
