@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The publisher of the labs: what it publishes, and how, is said by its private parameters.
 
+#include <clocale>
 #include <cstdint>
 #include <cstdio>
 #include <fstream>
 #include <limits>
+#include <memory>
 #include <string>
 #include <unistd.h>
 #include <vector>
@@ -34,6 +36,7 @@ public:
     , on_connect_(parameters.flag("on_connect", false))
     , show_memory_(parameters.flag("show_memory", false))
     , show_namespaces_(parameters.flag("show_namespaces", false))
+    , shown_type_(parameters.flag("show_type", false) ? type() + " " : "")
   {
     parameters.noOthers();
     for (const std::string& value : values_)
@@ -109,7 +112,7 @@ private:
     {
       return;
     }
-    std::string line = name_ + " published " + valueText(first);
+    std::string line = name_ + " published " + shown_type_ + valueText(first);
     if (sent_ - first > 1)
     {
       line += " to " + valueText(sent_ - 1);
@@ -180,6 +183,7 @@ private:
   const bool on_connect_;
   const bool show_memory_;
   const bool show_namespaces_;
+  const std::string shown_type_;
 
   int64_t sent_ = 0;
   ros::Publisher publisher_;
@@ -191,18 +195,24 @@ private:
 int main(int argc, char* argv[])
 {
   setvbuf(stdout, nullptr, _IOLBF, BUFSIZ);  // print each line at once, also into a pipe
+  setlocale(LC_CTYPE, "C.UTF-8");         // print UTF-8, which roscpp otherwise shows as "?"
   ros::init(argc, argv, "lab_publisher_cpp_node");
   ros::NodeHandle nh;
 
   try
   {
     mrp_labs::Parameters parameters;
-    const std::string type = parameters.choice("type", mrp_labs::MessageTypes::names());
-    mrp_labs::MessageTypes::call(type, [&](auto message) {
-      LabPublisher<decltype(message)> node(parameters);
-      node.start();
-      ros::spin();
-    });
+    std::vector<std::shared_ptr<void>> publishers;
+    for (mrp_labs::Parameters& of_topic : parameters.ofEachTopic())
+    {
+      const std::string type = of_topic.choice("type", mrp_labs::MessageTypes::names());
+      mrp_labs::MessageTypes::call(type, [&](auto message) {
+        const auto publisher = std::make_shared<LabPublisher<decltype(message)>>(of_topic);
+        publishers.push_back(publisher);
+        publisher->start();
+      });
+    }
+    ros::spin();
   }
   catch (const std::invalid_argument& error)
   {

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The subscriber of the labs: prints what it receives, from whom, and, if asked to, in which thread.
 
+#include <clocale>
 #include <cstdio>
+#include <memory>
 #include <string>
 #include <unistd.h>
+#include <vector>
 
 #include <mrp_labs/message_text.h>
 #include <mrp_labs/parameters.h>
@@ -22,6 +25,7 @@ public:
     , delay_(parameters.seconds("delay", 0))
     , show_thread_(parameters.flag("show_thread", false))
     , show_namespaces_(parameters.flag("show_namespaces", false))
+    , shown_type_(parameters.flag("show_type", false) ? type() + " " : "")
   {
     parameters.noOthers();
   }
@@ -60,16 +64,15 @@ private:
         [this](const auto& event) { subscriberCallback(event); });
     options.allow_concurrent_callbacks = concurrent_;
     ros::Subscriber subscriber = nh.subscribe(options);
-    ROS_INFO_STREAM(name_ << " subscribes to " << subscriber.getTopic() << ", expects "
-                          << ros::message_traits::datatype<Message>() << " (its code says \""
-                          << topic << "\")");
+    ROS_INFO_STREAM(name_ << " subscribes to " << subscriber.getTopic() << ", expects " << type()
+                          << " (its code says \"" << topic << "\")");
     return subscriber;
   }
 
   // The event is the message and what is known about it, such as the name of its publisher.
   void subscriberCallback(const ros::MessageEvent<Message const>& event)
   {
-    const std::string value = mrp_labs::toText(*event.getConstMessage());
+    const std::string value = shown_type_ + mrp_labs::toText(*event.getConstMessage());
     const std::string where = show_thread_ ? " in thread " + std::to_string(gettid()) : "";
     ROS_INFO_STREAM(name_ << " received " << value << " from " << event.getPublisherName() << where);
     if (callback_duration_ > 0)
@@ -80,6 +83,11 @@ private:
         ROS_INFO_STREAM(name_ << " finished " << value << where);
       }
     }
+  }
+
+  static std::string type()
+  {
+    return ros::message_traits::datatype<Message>();
   }
 
   ros::NodeHandle nh_;
@@ -93,6 +101,7 @@ private:
   const double delay_;              // seconds before it subscribes
   const bool show_thread_;
   const bool show_namespaces_;
+  const std::string shown_type_;
 
   ros::Subscriber subscriber_;
   ros::Subscriber other_subscriber_;
@@ -101,33 +110,39 @@ private:
 int main(int argc, char* argv[])
 {
   setvbuf(stdout, nullptr, _IOLBF, BUFSIZ);  // print each line at once, also into a pipe
+  setlocale(LC_CTYPE, "C.UTF-8");         // print UTF-8, which roscpp otherwise shows as "?"
   ros::init(argc, argv, "lab_subscriber_cpp_node");
   ros::NodeHandle nh;
 
   try
   {
     mrp_labs::Parameters parameters;
-    const std::string type = parameters.choice("type", mrp_labs::MessageTypes::names());
     const std::string spinner = parameters.choice("spinner", { "spin", "multi-threaded", "async" });
     const int threads = parameters.number("threads", 2, 1);
-    mrp_labs::MessageTypes::call(type, [&](auto message) {
-      LabSubscriber<decltype(message)> node(parameters);
-      node.start();
-      if (spinner == "multi-threaded")
-      {
-        ros::MultiThreadedSpinner(threads).spin();
-      }
-      else if (spinner == "async")
-      {
-        ros::AsyncSpinner async_spinner(threads);
-        async_spinner.start();
-        ros::waitForShutdown();
-      }
-      else
-      {
-        ros::spin();
-      }
-    });
+    std::vector<std::shared_ptr<void>> subscribers;
+    for (mrp_labs::Parameters& of_topic : parameters.ofEachTopic())
+    {
+      const std::string type = of_topic.choice("type", mrp_labs::MessageTypes::names());
+      mrp_labs::MessageTypes::call(type, [&](auto message) {
+        const auto subscriber = std::make_shared<LabSubscriber<decltype(message)>>(of_topic);
+        subscribers.push_back(subscriber);
+        subscriber->start();
+      });
+    }
+    if (spinner == "multi-threaded")
+    {
+      ros::MultiThreadedSpinner(threads).spin();
+    }
+    else if (spinner == "async")
+    {
+      ros::AsyncSpinner async_spinner(threads);
+      async_spinner.start();
+      ros::waitForShutdown();
+    }
+    else
+    {
+      ros::spin();
+    }
   }
   catch (const std::invalid_argument& error)
   {
