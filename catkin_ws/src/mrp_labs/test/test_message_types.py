@@ -169,7 +169,10 @@ class TestMessageTypes(unittest.TestCase):
 
     def check(self, lab, group, publisher, subscriber, expected):
         """Check what a subscriber receives of a publisher: type -> values, in that order."""
-        publisher, subscriber = f"/{group}/publisher_{publisher}", f"/{group}/subscriber_{subscriber}"
+        publisher, subscriber = (
+            f"/{group}/publisher_{publisher}",
+            f"/{group}/subscriber_{subscriber}",
+        )
         texts = [f"{type_} {value}" for type_, values in expected.items() for value in values]
         received = lab.wait_until_received(subscriber, *texts, publisher=publisher)
         pair = f"{subscriber} from {publisher}"

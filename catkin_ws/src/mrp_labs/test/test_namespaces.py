@@ -97,9 +97,7 @@ class TestNamespaces(unittest.TestCase):
         if node.endswith("_cpp"):
             namespaces = f'{group} (ros::NodeHandle()); its own is {node} (ros::NodeHandle("~"))'
         else:
-            namespaces = (
-                f"{group}/ (rospy.get_namespace()); its own is {node} (rospy.get_name())"
-            )
+            namespaces = f"{group}/ (rospy.get_namespace()); its own is {node} (rospy.get_name())"
         if "publisher" in node:
             resolved = f"publishes std_msgs/UInt32 on {topic}"
         else:

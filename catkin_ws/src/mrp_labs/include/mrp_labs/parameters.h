@@ -161,7 +161,7 @@ public:
   {
     if (!isSet("topics"))
     {
-      return { *this };
+      return {*this};
     }
     const std::string allowed = "a struct of topics, each with a struct of parameters";
     XmlRpc::XmlRpcValue& topics = all_["topics"];
