@@ -2,10 +2,12 @@
 // The publisher of the labs: what it publishes, and how, is said by its private parameters.
 
 #include <unistd.h>
+#include <clocale>
 #include <cstdint>
 #include <cstdio>
 #include <fstream>
 #include <limits>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -32,7 +34,9 @@ public:
         delay_(parameters.seconds("delay", 0)),
         wait_for_subscribers_(parameters.number("wait_for_subscribers", 0)),
         on_connect_(parameters.flag("on_connect", false)),
-        show_memory_(parameters.flag("show_memory", false))
+        show_memory_(parameters.flag("show_memory", false)),
+        show_namespaces_(parameters.flag("show_namespaces", false)),
+        shown_type_(parameters.flag("show_type", false) ? type() + " " : "")
   {
     parameters.noOthers();
     for (const std::string& value : values_)
@@ -56,8 +60,19 @@ public:
       ros::WallDuration(0.02).sleep();
     }
 
-    publisher_ = nh_.advertise<Message>(
-        topic_, queue_size_, [this](const auto& subscriber) { connectCallback(subscriber); },
+    if (show_namespaces_)
+    {
+      ROS_INFO_STREAM(name_ << " is in the namespace " << nh_.getNamespace()
+                            << " (ros::NodeHandle()); its own is "
+                            << ros::NodeHandle("~").getNamespace() << " (ros::NodeHandle(\"~\"))");
+    }
+
+    // roscpp takes no "~" in a topic's name: the node's own namespace has a handle of its own.
+    const bool is_private = topic_[0] == '~';
+    ros::NodeHandle nh(is_private ? "~" : "");
+    publisher_ = nh.advertise<Message>(
+        topic_.substr(is_private ? 1 : 0), queue_size_,
+        [this](const auto& subscriber) { connectCallback(subscriber); },
         ros::SubscriberStatusCallback(), ros::VoidConstPtr(), latch_);
     ROS_INFO_STREAM(name_ << " publishes " << type() << " on " << publisher_.getTopic()
                           << " (its code says \"" << topic_ << "\")");
@@ -97,7 +112,7 @@ private:
     {
       return;
     }
-    std::string line = name_ + " published " + valueText(first);
+    std::string line = name_ + " published " + shown_type_ + valueText(first);
     if (sent_ - first > 1)
     {
       line += " to " + valueText(sent_ - 1);
@@ -168,6 +183,8 @@ private:
   int wait_for_subscribers_;
   const bool on_connect_;
   const bool show_memory_;
+  const bool show_namespaces_;
+  const std::string shown_type_;
 
   int64_t sent_ = 0;
   ros::Publisher publisher_;
@@ -179,20 +196,27 @@ private:
 int main(int argc, char* argv[])
 {
   setvbuf(stdout, nullptr, _IOLBF, BUFSIZ);  // print each line at once, also into a pipe
+  setlocale(LC_CTYPE, "C.UTF-8");            // print UTF-8, which roscpp otherwise shows as "?"
   ros::init(argc, argv, "lab_publisher_cpp_node");
   ros::NodeHandle nh;
 
   try
   {
     mrp_labs::Parameters parameters;
-    const std::string type = parameters.choice("type", mrp_labs::MessageTypes::names());
-    mrp_labs::MessageTypes::call(type,
-                                 [&](auto message)
-                                 {
-                                   LabPublisher<decltype(message)> node(parameters);
-                                   node.start();
-                                   ros::spin();
-                                 });
+    std::vector<std::shared_ptr<void>> publishers;
+    for (mrp_labs::Parameters& of_topic : parameters.ofEachTopic())
+    {
+      const std::string type = of_topic.choice("type", mrp_labs::MessageTypes::names());
+      mrp_labs::MessageTypes::call(
+          type,
+          [&](auto message)
+          {
+            const auto publisher = std::make_shared<LabPublisher<decltype(message)>>(of_topic);
+            publishers.push_back(publisher);
+            publisher->start();
+          });
+    }
+    ros::spin();
   }
   catch (const std::invalid_argument& error)
   {

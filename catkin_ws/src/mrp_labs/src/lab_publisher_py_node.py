@@ -30,6 +30,8 @@ class LabPublisher:
         self.wait_for_subscribers = parameters.number("wait_for_subscribers", 0)
         self.on_connect = parameters.flag("on_connect", False)
         self.show_memory = parameters.flag("show_memory", False)
+        self.show_namespaces = parameters.flag("show_namespaces", False)
+        self.shown_type = self.type + " " if parameters.flag("show_type", False) else ""
         parameters.no_others()
         for value in self.values:
             try:
@@ -43,6 +45,12 @@ class LabPublisher:
         begin = time.monotonic() + self.delay
         while not rospy.is_shutdown() and time.monotonic() < begin:
             time.sleep(0.02)
+
+        if self.show_namespaces:
+            rospy.loginfo(
+                f"{rospy.get_name()} is in the namespace {rospy.get_namespace()}"
+                f" (rospy.get_namespace()); its own is {rospy.get_name()} (rospy.get_name())"
+            )
 
         self.publisher = rospy.Publisher(
             self.topic,
@@ -76,12 +84,13 @@ class LabPublisher:
         self.wait_for_subscribers = 0
 
         first = self.sent
+        refused = 0
         while self.sent < first + self.burst and (self.count == 0 or self.sent < self.count):
-            self.publish(self.value_text(self.sent))
+            refused += not self.publish(self.value_text(self.sent))
             self.sent += 1
-        if self.sent == first:
+        if self.sent == first + refused:
             return
-        line = f"{rospy.get_name()} published {self.value_text(first)}"
+        line = f"{rospy.get_name()} published {self.shown_type}{self.value_text(first)}"
         if self.sent - first > 1:
             line += f" to {self.value_text(self.sent - 1)}"
         if self.show_memory:
@@ -89,10 +98,16 @@ class LabPublisher:
         rospy.loginfo(line)
 
     def publish(self, value):
+        """Publish a message, and return whether rospy took it."""
         try:
             self.publisher.publish(self.message(value))
-        except rospy.ROSSerializationException as error:
-            rospy.logerr(f"{rospy.get_name()} cannot publish {value}: {error}")
+        except (rospy.ROSSerializationException, OverflowError) as error:  # the latter: of a float
+            rospy.logerr(
+                f"{rospy.get_name()} cannot publish {self.shown_type}{value}:"
+                f" {type(error).__name__}: {error}"
+            )
+            return False
+        return True
 
     def value_text(self, index):
         """Return the text of the message with that index: the values in turn; or start, start +
@@ -132,8 +147,9 @@ def main():
     rospy.init_node("lab_publisher_py_node")
 
     try:
-        node = LabPublisher(Parameters())
-        node.start()
+        publishers = [LabPublisher(one) for one in Parameters().of_each_topic()]
+        for publisher in publishers:
+            publisher.start()
     except ValueError as error:
         rospy.logfatal(f"{rospy.get_name()}: {error}")
         sys.exit(1)

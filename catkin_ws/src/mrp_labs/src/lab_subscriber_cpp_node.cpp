@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The subscriber of the labs: prints what it receives, from whom and, if asked, in which thread.
+// The subscriber of the labs: prints what it receives, from whom, and, if asked to, in which
+// thread.
 
 #include <unistd.h>
+#include <clocale>
 #include <cstdio>
+#include <memory>
 #include <string>
+#include <vector>
 
 #include <mrp_labs/message_text.h>
 #include <mrp_labs/parameters.h>
@@ -20,7 +24,9 @@ public:
         callback_duration_(parameters.seconds("callback_duration", 0)),
         concurrent_(parameters.flag("concurrent", false)),
         delay_(parameters.seconds("delay", 0)),
-        show_thread_(parameters.flag("show_thread", false))
+        show_thread_(parameters.flag("show_thread", false)),
+        show_namespaces_(parameters.flag("show_namespaces", false)),
+        shown_type_(parameters.flag("show_type", false) ? type() + " " : "")
   {
     parameters.noOthers();
   }
@@ -33,6 +39,13 @@ public:
       ros::WallDuration(0.02).sleep();
     }
 
+    if (show_namespaces_)
+    {
+      ROS_INFO_STREAM(name_ << " is in the namespace " << nh_.getNamespace()
+                            << " (ros::NodeHandle()); its own is "
+                            << ros::NodeHandle("~").getNamespace() << " (ros::NodeHandle(\"~\"))");
+    }
+
     subscriber_ = subscribe(topic_);
     if (!other_topic_.empty())
     {
@@ -43,21 +56,24 @@ public:
 private:
   ros::Subscriber subscribe(const std::string& topic)
   {
+    // roscpp takes no "~" in a topic's name: the node's own namespace has a handle of its own.
+    const bool is_private = topic[0] == '~';
+    ros::NodeHandle nh(is_private ? "~" : "");
     ros::SubscribeOptions options;
     options.initByFullCallbackType<const ros::MessageEvent<Message const>&>(
-        topic, queue_size_, [this](const auto& event) { subscriberCallback(event); });
+        topic.substr(is_private ? 1 : 0), queue_size_,
+        [this](const auto& event) { subscriberCallback(event); });
     options.allow_concurrent_callbacks = concurrent_;
-    ros::Subscriber subscriber = nh_.subscribe(options);
-    ROS_INFO_STREAM(name_ << " subscribes to " << subscriber.getTopic() << ", expects "
-                          << ros::message_traits::datatype<Message>() << " (its code says \""
-                          << topic << "\")");
+    ros::Subscriber subscriber = nh.subscribe(options);
+    ROS_INFO_STREAM(name_ << " subscribes to " << subscriber.getTopic() << ", expects " << type()
+                          << " (its code says \"" << topic << "\")");
     return subscriber;
   }
 
   // The event is the message and what is known about it, such as the name of its publisher.
   void subscriberCallback(const ros::MessageEvent<Message const>& event)
   {
-    const std::string value = mrp_labs::toText(*event.getConstMessage());
+    const std::string value = shown_type_ + mrp_labs::toText(*event.getConstMessage());
     const std::string where = show_thread_ ? " in thread " + std::to_string(gettid()) : "";
     ROS_INFO_STREAM(name_ << " received " << value << " from " << event.getPublisherName()
                           << where);
@@ -71,6 +87,11 @@ private:
     }
   }
 
+  static std::string type()
+  {
+    return ros::message_traits::datatype<Message>();
+  }
+
   ros::NodeHandle nh_;
   const std::string name_ = ros::this_node::getName();
 
@@ -81,6 +102,8 @@ private:
   const bool concurrent_;           // may several threads be in the callback at once?
   const double delay_;              // seconds before it subscribes
   const bool show_thread_;
+  const bool show_namespaces_;
+  const std::string shown_type_;
 
   ros::Subscriber subscriber_;
   ros::Subscriber other_subscriber_;
@@ -89,35 +112,42 @@ private:
 int main(int argc, char* argv[])
 {
   setvbuf(stdout, nullptr, _IOLBF, BUFSIZ);  // print each line at once, also into a pipe
+  setlocale(LC_CTYPE, "C.UTF-8");            // print UTF-8, which roscpp otherwise shows as "?"
   ros::init(argc, argv, "lab_subscriber_cpp_node");
   ros::NodeHandle nh;
 
   try
   {
     mrp_labs::Parameters parameters;
-    const std::string type = parameters.choice("type", mrp_labs::MessageTypes::names());
     const std::string spinner = parameters.choice("spinner", {"spin", "multi-threaded", "async"});
     const int threads = parameters.number("threads", 2, 1);
-    mrp_labs::MessageTypes::call(type,
-                                 [&](auto message)
-                                 {
-                                   LabSubscriber<decltype(message)> node(parameters);
-                                   node.start();
-                                   if (spinner == "multi-threaded")
-                                   {
-                                     ros::MultiThreadedSpinner(threads).spin();
-                                   }
-                                   else if (spinner == "async")
-                                   {
-                                     ros::AsyncSpinner async_spinner(threads);
-                                     async_spinner.start();
-                                     ros::waitForShutdown();
-                                   }
-                                   else
-                                   {
-                                     ros::spin();
-                                   }
-                                 });
+    std::vector<std::shared_ptr<void>> subscribers;
+    for (mrp_labs::Parameters& of_topic : parameters.ofEachTopic())
+    {
+      const std::string type = of_topic.choice("type", mrp_labs::MessageTypes::names());
+      mrp_labs::MessageTypes::call(
+          type,
+          [&](auto message)
+          {
+            const auto subscriber = std::make_shared<LabSubscriber<decltype(message)>>(of_topic);
+            subscribers.push_back(subscriber);
+            subscriber->start();
+          });
+    }
+    if (spinner == "multi-threaded")
+    {
+      ros::MultiThreadedSpinner(threads).spin();
+    }
+    else if (spinner == "async")
+    {
+      ros::AsyncSpinner async_spinner(threads);
+      async_spinner.start();
+      ros::waitForShutdown();
+    }
+    else
+    {
+      ros::spin();
+    }
   }
   catch (const std::invalid_argument& error)
   {

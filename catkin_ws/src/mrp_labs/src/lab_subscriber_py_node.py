@@ -21,12 +21,20 @@ class LabSubscriber:
         self.callback_duration = parameters.seconds("callback_duration", 0)
         self.delay = parameters.seconds("delay", 0)  # seconds before it subscribes
         self.show_thread = parameters.flag("show_thread", False)
+        self.show_namespaces = parameters.flag("show_namespaces", False)
+        self.shown_type = self.type + " " if parameters.flag("show_type", False) else ""
         parameters.no_others()
 
     def start(self):
         begin = time.monotonic() + self.delay
         while not rospy.is_shutdown() and time.monotonic() < begin:
             time.sleep(0.02)
+
+        if self.show_namespaces:
+            rospy.loginfo(
+                f"{rospy.get_name()} is in the namespace {rospy.get_namespace()}"
+                f" (rospy.get_namespace()); its own is {rospy.get_name()} (rospy.get_name())"
+            )
 
         self.subscriber = self.subscribe(self.topic)
         if self.other_topic:
@@ -47,7 +55,7 @@ class LabSubscriber:
         return subscriber
 
     def subscriber_callback(self, msg):
-        value = to_text(msg)
+        value = self.shown_type + to_text(msg)
         where = f" in thread {threading.get_native_id()}" if self.show_thread else ""
         # The header of the connection says who is at its other end.
         publisher = msg._connection_header["callerid"]
@@ -63,8 +71,9 @@ def main():
     rospy.init_node("lab_subscriber_py_node")
 
     try:
-        node = LabSubscriber(Parameters())
-        node.start()
+        subscribers = [LabSubscriber(one) for one in Parameters().of_each_topic()]
+        for subscriber in subscribers:
+            subscriber.start()
     except ValueError as error:
         rospy.logfatal(f"{rospy.get_name()}: {error}")
         sys.exit(1)

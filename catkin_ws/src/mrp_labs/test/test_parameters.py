@@ -74,6 +74,8 @@ class TestParameters(unittest.TestCase):
     def test_flag(self):
         self.check(PUBLISHERS, "latch", 1, FLAG)
         self.check(SUBSCRIBERS, "show_thread", "yes", FLAG)
+        self.check(PUBLISHERS + SUBSCRIBERS, "show_namespaces", 1, FLAG)
+        self.check(PUBLISHERS + SUBSCRIBERS, "show_type", "no", FLAG)
 
     def test_choice(self):
         self.check(PUBLISHERS[:1], "timer", "Wall", 'one of "ros", "wall", "steady"')
@@ -95,10 +97,26 @@ class TestParameters(unittest.TestCase):
         self.check(PUBLISHERS, "values", [1, 2], "a list of strings")
         self.check(PUBLISHERS, "values", "1", "a list of strings")
 
+    def test_topics(self):
+        allowed = "a struct of topics, each with a struct of parameters"
+        self.check(PUBLISHERS + SUBSCRIBERS, "topics", ["one", "two"], allowed)
+        self.check_sentence(
+            PUBLISHERS + SUBSCRIBERS,
+            {"topics": {"one": {}, "two": 2}},
+            f"parameter ~topics is no plain value, but must be {allowed}",
+        )
+        # What is wrong with one topic is found before it, or any, is published.
+        self.check_sentence(
+            PUBLISHERS,
+            {"count": 1, "topics": {"one": {"count": 2}, "two": {"count": -1}}},
+            f"parameter ~count is -1, but must be {NUMBER}",
+        )
+
     def test_misspelt(self):
         known = (
             "~burst, ~count, ~delay, ~latch, ~on_connect, ~period, ~queue_size, ~show_memory, "
-            "~size, ~start, ~step, ~timer, ~topic, ~type, ~values, ~wait_for_subscribers"
+            "~show_namespaces, ~show_type, ~size, ~start, ~step, ~timer, ~topic, ~topics, ~type, "
+            "~values, ~wait_for_subscribers"
         )
         self.check_sentence(
             PUBLISHERS, {"qeue_size": 1}, f"parameter ~qeue_size is not known, only {known}"

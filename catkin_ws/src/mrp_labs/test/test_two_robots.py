@@ -12,31 +12,54 @@ LANGUAGES = ("cpp", "py")
 PUBLISHERS = [f"{robot}/publisher_{language}" for robot in ROBOTS for language in LANGUAGES]
 SUBSCRIBERS = [f"{robot}/subscriber_{language}" for robot in ROBOTS for language in LANGUAGES]
 
+ENOUGH = 4  # the value that shows that a publisher is heard by now, or would be
+
 
 class TestTwoRobots(unittest.TestCase):
-    def check(self, lab, expected_publishers):
-        """Check whom each subscriber hears, once it has heard the sixth value of each of them."""
+    def check(self, lab, said, resolved, publishers_of):
+        """Check what each robot's nodes say of their topic, and whom each subscriber hears.
+
+        said: the topic's name in the code, the same for both robots
+        resolved: robot -> the topic's full name
+        publishers_of: subscriber -> the publishers that it hears
+        """
         for subscriber in SUBSCRIBERS:
-            expected = expected_publishers(subscriber)
-            for publisher in expected:
-                values = lab.wait_until_received(subscriber, 6, publisher=publisher)
+            for publisher in publishers_of(subscriber):
+                values = lab.wait_until_received(subscriber, ENOUGH, publisher=publisher)
                 # The first ones may be lost, none between them.
                 numbers = list(map(int, values))
                 self.assertEqual(numbers, list(range(numbers[0], numbers[-1] + 1)), subscriber)
+        # Only now does each publisher publish to all who hear it.
+        for subscriber in SUBSCRIBERS:
             heard = {received.publisher for received in lab.received(subscriber)}
-            self.assertEqual(sorted(heard), sorted(expected), subscriber)
+            self.assertEqual(sorted(heard), sorted(publishers_of(subscriber)), subscriber)
+
+        for robot in ROBOTS:
+            for node in robot_of(robot, PUBLISHERS + SUBSCRIBERS):
+                topic = f"on {resolved(robot)}"
+                if node in SUBSCRIBERS:
+                    topic = f"to {resolved(robot)}, expects std_msgs/UInt32"
+                text = lab.logged(node)[0]
+                self.assertTrue(text.endswith(f'{topic} (its code says "{said}")'), text)
 
     def test_groups_keep_the_robots_apart(self):
         with Lab("two_robots.launch") as lab:
-            self.check(lab, lambda subscriber: robot_of(subscriber, PUBLISHERS))
+            self.check(
+                lab,
+                "great_topic",
+                lambda robot: robot + "/great_topic",
+                lambda subscriber: robot_of(subscriber, PUBLISHERS),
+            )
 
     def test_a_hard_coded_global_name_mixes_them(self):
         with Lab("two_robots.launch", "topic:=/great_topic") as lab:
-            self.check(lab, lambda subscriber: PUBLISHERS)
+            self.check(
+                lab, "/great_topic", lambda robot: "/great_topic", lambda subscriber: PUBLISHERS
+            )
 
 
 def robot_of(node, others):
-    """Return those of the others that are the same robot's as the node."""
+    """Return those of the others that are the same robot's as the node, or that robot's."""
     return [other for other in others if other.split("/")[1] == node.split("/")[1]]
 
 

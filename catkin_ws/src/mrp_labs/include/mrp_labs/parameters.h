@@ -155,6 +155,37 @@ public:
     return bool(value);
   }
 
+  /// The parameters of each topic of the node. Without ~topics it is one topic, and all parameters
+  /// are its own; with it, each topic has some by its name, and the node's count for all topics.
+  std::vector<Parameters> ofEachTopic()
+  {
+    if (!isSet("topics"))
+    {
+      return {*this};
+    }
+    const std::string allowed = "a struct of topics, each with a struct of parameters";
+    XmlRpc::XmlRpcValue& topics = all_["topics"];
+    if (topics.getType() != XmlRpc::XmlRpcValue::TypeStruct || topics.size() == 0)
+    {
+      throw wrong("topics", allowed);
+    }
+    std::vector<Parameters> result;
+    for (auto& [topic, own] : topics)
+    {
+      if (own.getType() != XmlRpc::XmlRpcValue::TypeStruct)
+      {
+        throw wrong("topics", allowed);
+      }
+      result.push_back(*this);
+      result.back().all_["topic"] = topic;
+      for (auto& [name, value] : own)
+      {
+        result.back().all_[name] = value;
+      }
+    }
+    return result;
+  }
+
   /// Call this last: a parameter that nobody has asked for is a misspelt one.
   void noOthers()
   {

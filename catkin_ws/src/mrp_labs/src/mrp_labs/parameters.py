@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The private parameters of a lab's node, each checked as it is read. The twin of parameters.h."""
 
+import copy
 import math
 
 import rosgraph
@@ -93,6 +94,26 @@ class Parameters:
         if not isinstance(value, bool):
             raise self.wrong(name, "true or false")
         return value
+
+    def of_each_topic(self):
+        """Return the parameters of each topic of the node.
+
+        Without ~topics it is one topic, and all parameters are its own; with it, each topic has
+        some by its name, and the node's count for all topics.
+        """
+        if not self._is_set("topics"):
+            return [self]
+        allowed = "a struct of topics, each with a struct of parameters"
+        topics = self._all["topics"]
+        if not isinstance(topics, dict) or not topics:
+            raise self.wrong("topics", allowed)
+        result = []
+        for topic, own in sorted(topics.items()):
+            if not isinstance(own, dict):
+                raise self.wrong("topics", allowed)
+            result.append(copy.deepcopy(self))
+            result[-1]._all.update({"topic": topic, **own})
+        return result
 
     def no_others(self):
         """Call this last: a parameter that nobody has asked for is a misspelt one."""
