@@ -27,10 +27,13 @@ _RECEIVED = re.compile(
 Received = collections.namedtuple("Received", "value publisher thread")
 
 
-def pid_of(node):
-    """Return the process id of a running node, or None if the master or the node does not answer."""
+def pid_of(node, master_uri=None):
+    """Return the process id of a running node, or None if the master or the node does not answer.
+
+    master_uri: if not the test's own
+    """
     try:
-        uri = rosgraph.Master("/test").lookupNode(node)
+        uri = rosgraph.Master("/test", master_uri=master_uri).lookupNode(node)
         _, _, pid = xmlrpc.client.ServerProxy(uri).getPid("/test")
         return pid
     except (rosgraph.MasterException, OSError):
