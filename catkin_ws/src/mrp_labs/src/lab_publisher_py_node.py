@@ -18,7 +18,7 @@ class LabPublisher:
         self.topic = parameters.topic("topic", "great_topic")
         self.queue_size = parameters.number_or_none("queue_size", 10)  # 0: unlimited
         self.latch = parameters.flag("latch", False)
-        self.timer_type = parameters.choice("timer", ["ros", "steady"])
+        self.timer_type = parameters.choice("timer", ["ros", "ros-reset", "steady"])
         self.period = parameters.seconds("period", 0.5)
         self.burst = parameters.number("burst", 1, least=1)  # messages in each period
         self.count = parameters.number("count", 0)  # messages in all, 0: no end
@@ -64,8 +64,13 @@ class LabPublisher:
             f' (its code says "{self.topic}")'
         )
 
-        if self.timer_type == "ros":
-            self.timer = rospy.Timer(rospy.Duration(self.period), self.timer_callback)
+        if self.timer_type != "steady":
+            # Without reset, the timer ends when the ROS clock jumps back.
+            self.timer = rospy.Timer(
+                rospy.Duration(self.period),
+                self.timer_callback,
+                reset=self.timer_type == "ros-reset",
+            )
         else:
             # rospy has no timer but the one that follows the ROS clock.
             self.timer = threading.Thread(target=self.steady_timer, daemon=True)

@@ -13,6 +13,7 @@ import rostest
 from mrp_labs.message_text import MESSAGE_TYPES
 
 PUBLISHERS = ("lab_publisher_cpp_node", "lab_publisher_py_node.py")
+CLOCK = ("lab_clock_py_node.py",)
 SUBSCRIBERS = ("lab_subscriber_cpp_node", "lab_subscriber_py_node.py")
 
 ANY_NUMBER = "a whole number"
@@ -65,6 +66,10 @@ class TestParameters(unittest.TestCase):
         self.check(PUBLISHERS, "size", [1, 2], NUMBER)
         self.check(SUBSCRIBERS[1:], "buff_size", 0, POSITIVE)
         self.check(SUBSCRIBERS[:1], "threads", 0, POSITIVE)
+        self.check(CLOCK, "begin", 0, POSITIVE)
+        self.check(CLOCK, "factor", 0.5, POSITIVE)
+        self.check(CLOCK, "jump", -3600, NUMBER)
+        self.check(CLOCK, "jump_every", "often", POSITIVE)
 
     def test_seconds(self):
         self.check(PUBLISHERS, "period", -0.5, SECONDS)
@@ -79,8 +84,8 @@ class TestParameters(unittest.TestCase):
 
     def test_choice(self):
         self.check(PUBLISHERS[:1], "timer", "Wall", 'one of "ros", "wall", "steady"')
-        # rospy has no timer on the wall's clock.
-        self.check(PUBLISHERS[1:], "timer", "wall", 'one of "ros", "steady"')
+        # rospy has no timer on the wall's clock, but one that a jump back of the ROS clock would end.
+        self.check(PUBLISHERS[1:], "timer", "wall", 'one of "ros", "ros-reset", "steady"')
         self.check(SUBSCRIBERS[:1], "spinner", 2, 'one of "spin", "multi-threaded", "async"')
         allowed = "one of " + ", ".join(f'"{type_}"' for type_ in MESSAGE_TYPES)
         self.check(SUBSCRIBERS, "type", "std_msgs/Uint32", allowed)
@@ -120,6 +125,11 @@ class TestParameters(unittest.TestCase):
         )
         self.check_sentence(
             PUBLISHERS, {"qeue_size": 1}, f"parameter ~qeue_size is not known, only {known}"
+        )
+        self.check_sentence(
+            CLOCK,
+            {"jmp": 1},
+            "parameter ~jmp is not known, only ~begin, ~factor, ~jump, ~jump_every",
         )
 
 

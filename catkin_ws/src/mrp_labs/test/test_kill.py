@@ -1,0 +1,170 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Nodes and masters that die: what goes on, what comes back, and what never does."""
+
+import contextlib
+import itertools
+import os
+import re
+import signal
+import socket
+import unittest
+
+import rosgraph
+import rostest
+from lab import PACKAGE, Lab, Process, pid_of
+from waiting import wait_until
+
+PUBLISHERS = ("/kill/publisher_cpp", "/kill/publisher_py")
+SUBSCRIBERS = ("/kill/subscriber_cpp", "/kill/subscriber_py")
+WITNESSES = ("/kill/witness_cpp", "/kill/witness_py")
+NODES = PUBLISHERS + SUBSCRIBERS
+PAIRS = list(itertools.product(SUBSCRIBERS, PUBLISHERS))
+WITNESS_PAIRS = list(itertools.product(WITNESSES, PUBLISHERS))
+ENOUGH = 2  # values
+
+
+def values(lab, subscriber, publisher):
+    return list(map(int, lab.values(subscriber, publisher)))
+
+
+def wait_for_more(lab, pairs):
+    """Wait until each of these subscribers has received some more of its publisher."""
+    before = {pair: len(values(lab, *pair)) for pair in pairs}
+    for pair in pairs:
+        lab.wait_for(
+            lambda: len(values(lab, *pair)) >= before[pair] + ENOUGH,
+            lambda: f"{pair}: more values than {values(lab, *pair)}",
+        )
+
+
+def breaks(lab, subscriber, publisher):
+    """Return how often a value was not the one before plus one."""
+    found = values(lab, subscriber, publisher)
+    return sum(after != before + 1 for before, after in zip(found, found[1:]))
+
+
+def pids(nodes, master_uri=None):
+    return {node: pid_of(node, master_uri) for node in nodes}
+
+
+def free_port():
+    with socket.socket() as probe:
+        probe.bind(("localhost", 0))
+        return str(probe.getsockname()[1])
+
+
+def kill(lab, pid):
+    """kill -9, and wait until roslaunch has said so."""
+    os.kill(pid, signal.SIGKILL)
+    died = rf"has died \[pid {pid}, exit code -9,|REQUIRED process \S+ has died"
+    lab.wait_for(
+        lambda: any(re.search(died, line) for line in list(lab.lines)),
+        f"roslaunch says that {pid} has died",
+    )
+
+
+class TestKill(unittest.TestCase):
+    def test_the_others_go_on(self):
+        with Lab("kill.launch") as lab:
+            wait_for_more(lab, PAIRS)
+            pid = pids(NODES)
+            kill(lab, pid["/kill/publisher_cpp"])
+            wait_for_more(lab, [(subscriber, "/kill/publisher_py") for subscriber in SUBSCRIBERS])
+            kill(lab, pid["/kill/subscriber_py"])
+            wait_for_more(lab, [("/kill/subscriber_cpp", "/kill/publisher_py")])
+            self.assertEqual([breaks(lab, *pair) for pair in PAIRS], [0, 0, 0, 0])
+            # Nobody has taken the dead ones from the master's list.
+            publishers, subscribers, _ = rosgraph.Master("/test").getSystemState()
+            self.assertEqual(sorted(dict(publishers)["/kill/great_topic"]), sorted(PUBLISHERS))
+            self.assertEqual(sorted(dict(subscribers)["/kill/great_topic"]), sorted(SUBSCRIBERS))
+            self.assertIsNone(pid_of("/kill/publisher_cpp"))
+            self.assertIsNone(pid_of("/kill/subscriber_py"))
+
+    def test_respawn(self):
+        with Lab("kill.launch", "respawn:=true") as lab:
+            wait_for_more(lab, PAIRS)
+            for victim in NODES:
+                pid = pid_of(victim)
+                before = {pair: breaks(lab, *pair) for pair in PAIRS}
+                kill(lab, pid)
+                lab.wait_for(lambda: pid_of(victim) not in (None, pid), victim + " is back")
+                wait_for_more(lab, PAIRS)
+                for pair in PAIRS:
+                    new = breaks(lab, *pair) - before[pair]
+                    self.assertLessEqual(new, 1 if victim in pair else 0, f"{victim}: {pair}")
+            for subscriber, publisher in PAIRS:
+                # A publisher that is back begins again.
+                found = values(lab, subscriber, publisher)
+                fallen = [after for before, after in zip(found, found[1:]) if after < before]
+                self.assertEqual(len(fallen), 1, f"{subscriber}: {found}")
+
+    def test_required(self):
+        # Two at a time, each with a master of its own.
+        with contextlib.ExitStack() as stack:
+            labs = []
+            for victim in PUBLISHERS:
+                port = free_port()
+                lab = stack.enter_context(Lab("kill_required.launch", "-p", port))
+                labs.append((lab, "http://localhost:" + port, victim))
+            for lab, uri, victim in labs:
+                wait_for_more(lab, PAIRS)
+                pid = pids(NODES, uri)
+                kill(lab, pid["/kill/subscriber_cpp"])
+                wait_for_more(lab, [("/kill/subscriber_py", publisher) for publisher in PUBLISHERS])
+                kill(lab, pid["/kill/subscriber_py"])
+                kill(lab, pid[victim])
+                self.assertEqual(lab.wait(), 0, str(lab))
+                for one in pid.values():
+                    wait_until(lambda: not os.path.exists(f"/proc/{one}"), f"{one} of {lab} ends")
+
+    def test_master(self):
+        port = free_port()
+        uri = "http://localhost:" + port
+
+        def roscore():
+            process = Process("roscore", "-p", port)
+            process.wait_for(lambda: rosgraph.is_master_online(uri), "the master answers")
+            return process
+
+        with roscore() as master, Lab(
+            "kill_master.launch", extra_env={"ROS_MASTER_URI": uri}
+        ) as lab:
+            wait_for_more(lab, PAIRS + WITNESS_PAIRS)
+            pid = pids(NODES + WITNESSES, uri)
+            self.assertEqual(master.stop(), 0, str(master))
+            self.assertFalse(rosgraph.is_master_online(uri))
+            wait_for_more(lab, PAIRS + WITNESS_PAIRS)
+            with roscore():
+                wait_for_more(lab, PAIRS + WITNESS_PAIRS)
+                for pair in PAIRS + WITNESS_PAIRS:
+                    self.assertEqual(breaks(lab, *pair), 0, pair)
+                self.check_who_never_reconnects(lab, pid)
+
+    def check_who_never_reconnects(self, lab, pid):
+        for subscriber in SUBSCRIBERS:
+            kill(lab, pid[subscriber])
+            lab.wait_for(
+                lambda: sum("subscribes" in text for text in lab.logged(subscriber)) == 2,
+                subscriber + " is back",
+            )
+        # New subscribers hear nothing of old publishers.
+        before = {pair: len(values(lab, *pair)) for pair in PAIRS}
+        wait_for_more(lab, WITNESS_PAIRS)
+        for pair in PAIRS:
+            self.assertEqual(len(values(lab, *pair)), before[pair], pair)
+
+        # They hear new publishers, which old subscribers do not: there, no count begins again.
+        for publisher in PUBLISHERS:
+            kill(lab, pid[publisher])
+        wait_for_more(lab, PAIRS)
+        for pair in PAIRS:
+            new = values(lab, *pair)[before[pair] :]
+            self.assertEqual(new, list(range(new[0], new[-1] + 1)), pair)
+            self.assertLess(new[0], values(lab, *pair)[before[pair] - 1], pair)
+        for pair in WITNESS_PAIRS:
+            self.assertEqual(breaks(lab, *pair), 0, pair)
+
+
+if __name__ == "__main__":
+    rostest.rosrun(PACKAGE, "kill", TestKill)

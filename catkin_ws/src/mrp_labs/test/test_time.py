@@ -1,0 +1,111 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Which timers go by a simulated clock: when there is none, when it is fast, when it jumps."""
+
+import re
+import unittest
+
+import lab
+import rostest
+
+CPP = ("/time/publisher_wall_cpp", "/time/publisher_steady_cpp")
+PY = ("/time/publisher_steady_py",)
+ROS = ("/time/publisher_ros_cpp", "/time/publisher_ros_py")
+SUBSCRIBERS = ("/time/subscriber_cpp", "/time/subscriber_py")
+ALL_LEVELS = ("DEBUG", "INFO", "WARN", "ERROR", "FATAL")
+
+ROS_CPP, ROS_PY = ROS
+RESET_PY = "/time/publisher_reset_py"
+CLOCK = "/time/clock"
+MOVED_BACKWARDS = "rospy.exceptions.ROSTimeMovedBackwardsException"
+
+
+def published(running, publisher, begin=0, end=None):
+    """Return the values that a publisher says it published, in some of the lab's lines."""
+    found = (
+        re.search(re.escape(publisher) + r" published (\d+)$", line)
+        for line in running.lines[begin:end]
+    )
+    return [int(match[1]) for match in found if match]
+
+
+def wait_until_published(running, publishers, count, begin=0):
+    """Wait until each of the publishers has published so many more; return the number of lines."""
+    for publisher in publishers:
+        running.wait_for(
+            lambda: len(published(running, publisher, begin)) >= count,
+            f"{count} values of {publisher} after line {begin}",
+        )
+    return len(running.lines)
+
+
+def times(line):
+    """Return the wall's and the simulated time in a line, in seconds."""
+    wall, simulated = re.match(r"\[ ?INFO\] \[([\d.]+), ([\d.]+)\]", line).groups()
+    return float(wall), float(simulated)
+
+
+class TestTime(unittest.TestCase):
+    def test_no_clock(self):
+        with lab.Lab("time_no_clock.launch") as running:
+            for subscriber in SUBSCRIBERS:
+                for publisher in CPP + PY:
+                    running.wait_until_received(subscriber, 8, publisher=publisher)
+            for publisher in ROS:
+                # Alive, but this is all that it has said.
+                self.assertIsNotNone(lab.pid_of(publisher), publisher)
+                self.assertEqual(
+                    running.logged(publisher, ALL_LEVELS),
+                    ['publishes std_msgs/UInt32 on /time/great_topic (its code says "great_topic")'],
+                )
+            # It is the clock that was missing, and nothing else.
+            with lab.Process("rosrun", lab.PACKAGE, "lab_clock_py_node.py"):
+                for subscriber in SUBSCRIBERS:
+                    for publisher in ROS:
+                        running.wait_until_received(subscriber, 2, publisher=publisher)
+
+    def test_fast_clock(self):
+        with lab.Lab("time_fast_clock.launch") as running:
+            begin = wait_until_published(running, CPP + PY + ROS, 1)
+            end = wait_until_published(running, CPP + PY, 3, begin)
+            slow = max(len(published(running, one, begin, end)) for one in CPP + PY)
+            for publisher in ROS:
+                # Ten times as many; but a busy machine may keep a timer from some.
+                self.assertGreater(len(published(running, publisher, begin, end)), 4 * slow)
+                lines = [line for line in running.lines[begin:end] if publisher + " " in line]
+                first_wall, first_simulated = times(lines[0])
+                last_wall, last_simulated = times(lines[-1])
+                factor = (last_simulated - first_simulated) / (last_wall - first_wall)
+                self.assertAlmostEqual(factor, 10, delta=3, msg=publisher)
+
+    def test_jump(self):
+        publishers = (ROS_CPP, ROS_PY, RESET_PY)
+        with lab.Lab("time_jump.launch", traceback=True) as running:
+            wait_until_published(running, publishers, 1)
+
+            def line_of(what):
+                found = [i for i, line in enumerate(list(running.lines)) if what in line]
+                return found[0] if found else None
+
+            running.wait_for(lambda: line_of(CLOCK + " jumps 3600 s back"), "the jump back")
+            running.wait_for(lambda: line_of(MOVED_BACKWARDS), "rospy's timer ends")
+            end = len(running.lines)
+            wait_until_published(running, (ROS_CPP, RESET_PY), 6, end)
+
+            # Forward: all go on, but nobody publishes the 7200 values of an hour.
+            forward = line_of(CLOCK + " jumps 3600 s forward")
+            for publisher in publishers:
+                count = len(published(running, publisher, forward, end))
+                self.assertTrue(2 <= count < 100, f"{publisher}: {count}")
+                values = published(running, publisher)
+                self.assertEqual(values, list(range(1, len(values) + 1)), publisher)
+            # Back: rospy's timer has ended, and its node does not. A line of stdout may come in
+            # after a later one of stderr.
+            self.assertLessEqual(len(published(running, ROS_PY, end)), 1)
+            self.assertIsNotNone(lab.pid_of(ROS_PY))
+            tracebacks = [line for line in running.lines if line.startswith("Traceback")]
+            self.assertEqual(len(tracebacks), 1)
+
+
+if __name__ == "__main__":
+    rostest.rosrun(lab.PACKAGE, "time", TestTime)
