@@ -11,6 +11,10 @@ sys.path.insert(
     0, str(pathlib.Path(__file__).resolve().parents[2] / "catkin_ws" / "src" / "mrp" / "test")
 )
 
+# And call make as a user does: not within make.
+for name in ("MAKEFLAGS", "MAKELEVEL", "MFLAGS"):
+    os.environ.pop(name, None)
+
 
 @pytest.fixture(scope="session")
 def image():
