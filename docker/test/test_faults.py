@@ -121,7 +121,9 @@ def test_cut_network_loses_nothing_where_the_queue_has_no_bound(nodes, image):
 
     def received(lines):
         values = [int(line) for line in lines if line.isdigit()]
-        return {p: [v for v in values if contract.publisher_of(v) is p] for p in contract.PUBLISHERS}
+        return {
+            p: [v for v in values if contract.publisher_of(v) is p] for p in contract.PUBLISHERS
+        }
 
     with container(image, *echo, options=options) as name:
         wait_for_log(name, lambda lines: all(received(lines).values()))

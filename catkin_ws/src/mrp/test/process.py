@@ -13,8 +13,8 @@ from waiting import DEADLINE, wait_until
 # Colours, and the window title that roslaunch sets.
 _ESCAPES = re.compile(r"\x1b\[[0-9;]*m|\x1b\][^\x07]*\x07")
 
-# What a shell runs in the background ignores SIGINT, and so would all that is started here. A handler
-# is not inherited.
+# What a shell runs in the background ignores SIGINT, and so would all that is started here; but a
+# handler is not inherited.
 if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
     signal.signal(signal.SIGINT, signal.default_int_handler)
 
