@@ -101,7 +101,7 @@ clean:  ## delete all that was built
 # Containers. DEBIAN names the release that the images are made of: bookworm (12) or trixie (13).
 export DEBIAN ?= bookworm
 IMAGE := mrp:$(DEBIAN)
-DOCKER_RESULTS := $(CURDIR)/catkin_ws/build/docker_results/$(DEBIAN)
+DOCKER_RESULTS := $(RESULTS)/$(DEBIAN)
 COMPOSE = $(shell docker compose version > /dev/null 2>&1 && echo docker compose || echo docker-compose)
 COMPOSE_MRP = $(COMPOSE) --project-name mrp --file docker/compose.yaml
 
@@ -146,9 +146,9 @@ docker-test: docker-suite docker-containers  ## run every test in a container, a
 .PHONY: docker-suite
 docker-suite: need-docker
 	$(IMAGE_OF) --target test --tag mrp-test:$(DEBIAN) -
-	@rm -rf $(DOCKER_RESULTS); mkdir -p $(DOCKER_RESULTS)
+	@rm -rf $(DOCKER_RESULTS)/suite; mkdir -p $(DOCKER_RESULTS)/suite
 	docker run --rm --init --network none --user "$$(id -u):$$(id -g)" \
-	  --volume $(DOCKER_RESULTS):/results mrp-test:$(DEBIAN)
+	  --volume $(DOCKER_RESULTS)/suite:/results mrp-test:$(DEBIAN)
 
 .PHONY: docker-containers
 docker-containers: docker-build-ssh

@@ -47,7 +47,8 @@ def main(folder):
         if path.name.startswith("rostest-") and not failed:
             continue
         counts = f"{passed:3} passed {len(failed):3} failed"
-        print("  {:6} {}  {}".format("FAILED" if failed else "ok", counts, path.stem))
+        file = path.relative_to(folder).with_suffix("")
+        print("  {:6} {}  {}".format("FAILED" if failed else "ok", counts, file))
         total_passed += passed
         total_skipped += skipped
         all_failed += failed

@@ -2,6 +2,7 @@
 """Containers under test: started, read by `docker logs`, and taken away whatever happens."""
 
 import contextlib
+import itertools
 import json
 import pathlib
 import shutil
@@ -15,6 +16,9 @@ from process import Process
 FOLDER = pathlib.Path(__file__).resolve().parents[1]
 ROOT = FOLDER.parent
 ENOUGH = 5  # values of each publisher
+PREFIX = f"mrp_test_{uuid.uuid4().hex[:8]}_"  # of all names of this run
+
+_numbers = itertools.count(1)
 
 
 def run(*command, check=True):
@@ -40,7 +44,7 @@ def inspect(name):
 
 
 def new_name():
-    return "mrp_test_" + uuid.uuid4().hex[:12]
+    return PREFIX + str(next(_numbers))
 
 
 @contextlib.contextmanager
@@ -121,7 +125,7 @@ class Composition:
         return self
 
     def __exit__(self, *exception):
-        run(*self._compose, "down", "--timeout", "10", check=False)
+        run(*self._compose, "down", "--volumes", "--timeout", "10", check=False)
 
     def existing(self):
         """Return the ids of its containers, networks and volumes."""
@@ -158,8 +162,10 @@ class Composition:
 def compose_commands():
     """Return the commands of docker compose that are installed: v2's, v1's, or both."""
     commands = [("docker", "compose"), ("docker-compose",)]
-    return [
+    installed = [
         c
         for c in commands
         if shutil.which(c[0]) and run(*c, "version", check=False).returncode == 0
     ]
+    assert installed, "neither docker compose nor docker-compose is installed"
+    return installed

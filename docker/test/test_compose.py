@@ -10,10 +10,6 @@ from containers import Composition, compose_commands, docker, inspect, log, run
 SERVICES = ["master", *(node.name for node in contract.NODES)]
 
 
-def test_there_is_a_compose():
-    assert compose_commands(), "neither docker compose nor docker-compose is installed"
-
-
 @pytest.fixture(scope="module", params=compose_commands(), ids=" ".join)
 def compose(request):
     return request.param

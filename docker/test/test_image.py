@@ -6,8 +6,9 @@ import re
 import tarfile
 
 import pytest
-from containers import docker, inspect
+from containers import ROOT, docker, inspect
 
+README = (ROOT / "README.md").read_text()
 LARGEST = 240_000_000  # bytes, uncompressed
 
 # What a runtime image has no use for, by path.
@@ -25,6 +26,20 @@ UNWANTED = re.compile(
     r"|(tmp|mrp)/(?!install_packages\.sh|\w+\.txt).+"
     r"|opt/mrp/(?!\.|setup|local_setup|env\.sh|_setup_util|lib/|share/).+"
 )
+
+# The rows of the README's table: what belongs to each, as "source package:path". The first that
+# matches counts; the lowest layer, which is Debian's, has a row of its own.
+DEBIAN = "Debian itself: `debian:bookworm-slim` or `debian:trixie-slim`"
+PARTS = {
+    "numpy and LAPACK, which rospy depends on": r"(numpy|lapack|gcc-\d+):.*",
+    "ROS": r"ros2?-.*",
+    "Python, with its modules and their bytecode": r"python3.*|[^:]*:usr/lib/python3/.*",
+    "ICU, which Boost and log4cxx need": r"icu:.*",
+    "Boost": r"boost.*",
+    "GnuPG and OpenSSL, which rosbag needs": r"(gnupg2|gpgme1.0|openssl):.*",
+    "the tutorial": r":opt/mrp/.*",
+    "the rest": r".*",
+}
 
 
 def layers(image, folder):
@@ -61,8 +76,46 @@ def test_only_what_running_needs(files):
     assert [path for path in files if UNWANTED.fullmatch(path)] == []
 
 
+def size(members):
+    return sum(member.size for member in members)
+
+
 def test_size(image_layers):
-    assert sum(member.size for layer in image_layers for member in layer) < LARGEST
+    assert sum(map(size, image_layers)) < LARGEST
+
+
+def sources(image):
+    """Return path -> the source package that a file belongs to."""
+    show = ("--show", "--showformat", "${source:Package}\n${db-fsys:Files}")
+    result = {}
+    for line in docker("run", "--rm", "--entrypoint", "dpkg-query", image, *show).splitlines():
+        if not line.startswith(" "):
+            source = line
+        else:
+            # Some packages call usr/bin and the like by the names that lead there.
+            result[re.sub(r"^ /(?=(s?bin|lib(64)?)/)", " /usr/", line)[2:]] = source
+    return result
+
+
+def test_readme_says_what_is_in_it(image, image_layers):
+    owners = sources(image)
+    measured = {DEBIAN: size(image_layers[0]), **dict.fromkeys(PARTS, 0)}
+    for member in (member for layer in image_layers[1:] for member in layer):
+        # Bytecode is made when a package is installed, and belongs to none.
+        path = re.sub(r"__pycache__/(.+)\.cpython-\d+\.pyc", r"\1.py", member.name)
+        owned = f"{owners.get(path, '')}:{path}"
+        part = next(part for part, pattern in PARTS.items() if re.fullmatch(pattern, owned))
+        measured[part] += member.size
+    measured["all"] = sum(measured.values())
+
+    table = re.findall(r"^\| ([^|]+) \| ([\d.]+) \| ([\d.]+) \|$", README, re.MULTILINE)
+    written = {what: float(mb[image == "mrp:trixie"]) for what, *mb in table}
+    assert written.keys() == measured.keys()
+    for what, mb in written.items():
+        # An update of Debian's may change a little.
+        assert mb == pytest.approx(measured[what] / 1e6, rel=0.03, abs=0.1), what
+    assert sum(written.values()) == pytest.approx(2 * written["all"], abs=1)
+    assert inspect(image)["Size"] == pytest.approx(measured["all"], rel=0.001)
 
 
 def test_opt_mrp_is_the_install_space(files):

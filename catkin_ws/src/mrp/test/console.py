@@ -7,7 +7,8 @@ import re
 import contract
 from process import Process
 
-# What roslaunch itself prints. Into a pipe it may come late; two threads may share a line.
+# What roslaunch itself prints. Into a pipe it may come late; two threads may share a line. And what
+# rospy prints, and goes on, where two nodes that start at once both make the link `latest`.
 ROSLAUNCH_LINE = re.compile(
     r"\.\.\. logging to \S+|(Done c|C)hecking log (directory|file) .*|Press Ctrl-C to interrupt"
     r"|started roslaunch server \S+|SUMMARY|=+|PARAMETERS|NODES"
@@ -15,6 +16,7 @@ ROSLAUNCH_LINE = re.compile(
     r"auto-starting new master|ROS_MASTER_URI=\S+|setting /run_id to \S+"
     r"|process\[\S+\]: started with pid \[(?P<pid>\d+)\]|started core service \[/rosout\]"
     r"|(\[\S+\] killing on exit)*|(\.\.\. )?shutting down processing monitor\S*( complete)?|done"
+    r"|INFO: cannot create a symlink to latest log directory.*"
 )
 _ENOUGH = 10  # values of a publisher: less than fill a buffer of 4096 characters
 _LATE = 3  # values that one subscriber may be behind the other on a busy machine

@@ -13,6 +13,10 @@ from waiting import DEADLINE, wait_until
 # Colours, and the window title that roslaunch sets.
 _ESCAPES = re.compile(r"\x1b\[[0-9;]*m|\x1b\][^\x07]*\x07")
 
+# What a shell runs in the background ignores SIGINT, and so would all that is started here; but a
+# handler is not inherited.
+if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
+    signal.signal(signal.SIGINT, signal.default_int_handler)
 
 # With these, a node prints each line at once also into a pipe: the first for C++, then for Python.
 LIVE = {"ROSCONSOLE_STDOUT_LINE_BUFFERED": "1", "PYTHONUNBUFFERED": "1"}
