@@ -142,7 +142,10 @@ def test_e15_catkin_lint_finds_what_is_missing(package, tmp_path):
         text=True,
     )
     assert done.returncode == 1
-    assert {re.sub(r"^my_robotics_pkg: (CMakeLists\S+: )?", "", line) for line in done.stdout.splitlines()} == {
+    assert {
+        re.sub(r"^my_robotics_pkg: (CMakeLists\S+: )?", "", line)
+        for line in done.stdout.splitlines()
+    } == {
         "error: package 'roscpp' must be in CATKIN_DEPENDS in catkin_package()",
         "error: package 'std_msgs' must be in CATKIN_DEPENDS in catkin_package()",
         "warning: target 'publisher_cpp_node' is not installed",

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What the original page prints, built and run: the number in a test's name is the defect's."""
 
-import os
 import re
 import shutil
 import sys
@@ -20,29 +19,25 @@ SUBSCRIBER_CPP = contract.GROUP + "/" + contract.SUBSCRIBER_CPP.name
 
 
 @pytest.fixture(scope="module")
-def as_printed(tmp_path_factory):
-    """A workspace with the original as it is printed, which is built and installed."""
+def built(tmp_path_factory):
+    """A workspace with the original: built and installed as printed, then mended so that it starts.
+
+    What is mended is in the Python nodes alone, which need no building.
+    """
     folder = tmp_path_factory.mktemp("original")
-    shutil.copytree(ORIGINAL, folder / "src" / PACKAGE)
+    package = shutil.copytree(ORIGINAL, folder / "src" / PACKAGE)
     scratch.catkin_make(folder, "install")
+    mend(package, "e01_global", "e03_parenthesis", "e12_interpreter")
     return folder
 
 
 @pytest.fixture(scope="module")
-def mended(as_printed):
-    """The same, mended so far that all four nodes start."""
-    mend(as_printed / "src" / PACKAGE, "e01_global", "e03_parenthesis", "e12_interpreter")
-    scratch.catkin_make(as_printed)
-    return as_printed
-
-
-@pytest.fixture(scope="module")
-def launched(mended):
+def launched(built):
     """The four nodes, started by roslaunch and ended as Ctrl-C does; and the graph before that."""
     env = scratch.environment()
     port = env["ROS_MASTER_URI"].rsplit(":", 1)[1]
     command = ("roslaunch", "-p", port, PACKAGE, "pub_sub.launch")
-    command = scratch.sourced(mended / "devel" / "setup.bash", *command)
+    command = scratch.sourced(built / "devel" / "setup.bash", *command)
     with pytest.MonkeyPatch.context() as patch, Process(*command, env=env) as process:
         patch.setenv("ROS_MASTER_URI", env["ROS_MASTER_URI"])
         process.wait_for(
@@ -111,8 +106,8 @@ def test_e07_the_subscriber_publishes(launched):
     assert SUBSCRIBER_CPP not in launched.graph.subscribers[TOPIC]
 
 
-def test_e08_ctrl_c_aborts_the_publisher(mended, master):
-    node = mended / "devel" / "lib" / PACKAGE / "publisher_cpp_node"
+def test_e08_ctrl_c_aborts_the_publisher(built, master):
+    node = built / "devel" / "lib" / PACKAGE / "publisher_cpp_node"
     with run(node) as process:
         published(["/" + contract.TOPIC])
         assert process.stop() == -6, str(process)
@@ -137,10 +132,10 @@ def test_e10_opening_bracket_is_missing(launched):
     assert "PUBLISHER PY NODE] namespace of node = /mrp/" in texts, str(launched)
 
 
-def test_e15_no_node_is_installed(as_printed):
-    assert (as_printed / "install" / "share" / PACKAGE / "package.xml").exists()
-    assert not (as_printed / "install" / "lib" / PACKAGE).exists()
-    assert not (as_printed / "install" / "share" / PACKAGE / "launch").exists()
+def test_e15_no_node_is_installed(built):
+    assert (built / "install" / "share" / PACKAGE / "package.xml").exists()
+    assert not (built / "install" / "lib" / PACKAGE).exists()
+    assert not (built / "install" / "share" / PACKAGE / "launch").exists()
 
 
 @pytest.mark.parametrize(
@@ -200,10 +195,10 @@ def test_p01_what_python_prints(launched):
     assert not any("namespace of nh" in line for line in printed)
 
 
-def test_p01_what_cpp_prints(mended, master):
+def test_p01_what_cpp_prints(built, master):
     shown = [line for line in SHOWN if "CPP NODE" in line]
     assert all(re.match(r"\[ INFO\] \[\d+\.\d{6}\]: ", line) for line in shown)
-    with run(mended / "devel" / "lib" / PACKAGE / "publisher_cpp_node") as process:
+    with run(built / "devel" / "lib" / PACKAGE / "publisher_cpp_node") as process:
         process.wait_for(lambda: process.lines, "a line")
         assert re.match(r"\[ INFO\] \[\d+\.\d{9}\]: \[PUBLISHER CPP NODE\]", process.lines[0])
 

@@ -34,7 +34,9 @@ class Quote(SphinxDirective):
         if path.name == "prose.txt":
             quote = nodes.block_quote("", nodes.paragraph(line, line), classes=["quote", self.name])
         else:
-            language = "cmake" if path.name == "CMakeLists.txt" else LANGUAGES.get(path.suffix, "text")
+            language = (
+                "cmake" if path.name == "CMakeLists.txt" else LANGUAGES.get(path.suffix, "text")
+            )
             quote = nodes.literal_block(line, line, language=language, classes=["quote", self.name])
         self.set_source_info(quote)
         return [quote]
