@@ -15,6 +15,7 @@ extensions = [
     "sphinx_inline_tabs",
     "sphinx_copybutton",
     "source_code",
+    "quote",
     "terminal",
     "proof",
     "picture",

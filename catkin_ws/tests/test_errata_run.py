@@ -1,0 +1,208 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What the original page prints, built and run: the number in a test's name is the defect's."""
+
+import re
+import shutil
+import sys
+
+import contract
+import pytest
+import rosgraph
+import scratch
+from errata import ORIGINAL, PACKAGE, line_of, mend, replace
+from graph import Graph
+from process import LIVE, Process
+from waiting import wait_until
+
+TOPIC = contract.GROUP + "/" + contract.TOPIC
+SUBSCRIBER_CPP = contract.GROUP + "/" + contract.SUBSCRIBER_CPP.name
+
+
+@pytest.fixture(scope="module")
+def built(tmp_path_factory):
+    """A workspace with the original: built and installed as printed, then mended so that it starts.
+
+    What is mended is in the Python nodes alone, which need no building.
+    """
+    folder = tmp_path_factory.mktemp("original")
+    package = shutil.copytree(ORIGINAL, folder / "src" / PACKAGE)
+    scratch.catkin_make(folder, "install")
+    mend(package, "e01_global", "e03_parenthesis", "e12_interpreter")
+    return folder
+
+
+@pytest.fixture(scope="module")
+def launched(built):
+    """The four nodes, started by roslaunch and ended as Ctrl-C does; and the graph before that."""
+    env = scratch.environment()
+    port = env["ROS_MASTER_URI"].rsplit(":", 1)[1]
+    command = ("roslaunch", "-p", port, PACKAGE, "pub_sub.launch")
+    command = scratch.sourced(built / "devel" / "setup.bash", *command)
+    with pytest.MonkeyPatch.context() as patch, Process(*command, env=env) as process:
+        patch.setenv("ROS_MASTER_URI", env["ROS_MASTER_URI"])
+        process.wait_for(
+            lambda: from_both(received(process)),
+            lambda: f"odd values, and each even one twice: {received(process)}",
+        )
+        process.graph = Graph()
+        process.code = process.stop()
+    return process
+
+
+def received(process):
+    """Return what the Python subscriber says that it received."""
+    texts = [contract.logged_text(line) or "" for line in list(process.lines)]
+    values = [contract.received_value(contract.SUBSCRIBER_PY, text) for text in texts]
+    return [value for value in values if value is not None]
+
+
+def from_both(values):
+    return any(v % 2 for v in values) and any(values.count(v) == 2 for v in values if v % 2 == 0)
+
+
+@pytest.fixture
+def master(monkeypatch):
+    """A master of the test's own."""
+    uri = scratch.environment()["ROS_MASTER_URI"]
+    monkeypatch.setenv("ROS_MASTER_URI", uri)
+    with Process("rosmaster", "--core", "-p", uri.rsplit(":", 1)[1]) as process:
+        process.wait_for(rosgraph.is_master_online, "the master answers")
+        yield process
+
+
+@pytest.fixture
+def package(tmp_path):
+    """A copy of the original for one test, of which the Python nodes start."""
+    folder = shutil.copytree(ORIGINAL, tmp_path / PACKAGE)
+    mend(folder, "e01_global", "e03_parenthesis")
+    return folder
+
+
+def run(*command):
+    return Process(*map(str, command), extra_env=LIVE)
+
+
+def published(topics):
+    """Return the topics that somebody publishes, but for the log, once these are among them."""
+    wait_until(
+        lambda: set(topics) <= set(Graph().publishers),
+        lambda: f"{topics} among {Graph().publishers}",
+    )
+    return set(Graph().publishers) - {"/rosout"}
+
+
+def test_e05_two_nodes_of_one_name(package, master):
+    """The name that the Python subscriber gives itself is another node's: it ends that one."""
+    node = package / "src" / "subscriber_py_node.py"
+    with run(sys.executable, node) as first:
+        first.wait_for(lambda: "/plain_py_node" in Graph().nodes, "the node is registered")
+        with run(sys.executable, node):
+            first.wait()
+    assert any("new node registered with same name" in line for line in first.lines), str(first)
+
+
+def test_e07_the_subscriber_publishes(launched):
+    assert SUBSCRIBER_CPP in launched.graph.publishers[TOPIC]
+    assert SUBSCRIBER_CPP not in launched.graph.subscribers[TOPIC]
+
+
+def test_e08_ctrl_c_aborts_the_publisher(built, master):
+    node = built / "devel" / "lib" / PACKAGE / "publisher_cpp_node"
+    with run(node) as process:
+        published(["/" + contract.TOPIC])
+        assert process.stop() == -6, str(process)
+    assert any("lock_error" in line for line in process.errors), str(process)
+
+
+def test_e08_its_lines_are_lost_and_roslaunch_says_nothing(launched):
+    assert any("lock_error" in line for line in launched.lines)
+    assert not any("CPP NODE" in line for line in launched.lines), str(launched)
+    assert launched.code == 0
+
+
+def test_e09_two_slashes_are_warned_of(launched):
+    text = f"'{contract.GROUP}//{contract.TOPIC}' is not a legal ROS graph resource name"
+    warnings = [line for line in launched.errors if text in line]
+    assert len(warnings) == 2, str(launched)  # the two Python nodes
+    assert all("UserWarning" in line for line in warnings)
+
+
+def test_e10_opening_bracket_is_missing(launched):
+    texts = list(map(contract.logged_text, launched.lines))
+    assert "PUBLISHER PY NODE] namespace of node = /mrp/" in texts, str(launched)
+
+
+def test_e15_no_node_is_installed(built):
+    assert (built / "install" / "share" / PACKAGE / "package.xml").exists()
+    assert not (built / "install" / "lib" / PACKAGE).exists()
+    assert not (built / "install" / "share" / PACKAGE / "launch").exists()
+
+
+@pytest.mark.parametrize(
+    ("name", "topic"),
+    [
+        ("great_topic", "/group_namespace/great_topic"),  # what is printed
+        ("~great_topic", "/group_namespace/publisher_py_node/great_topic"),  # what it is said to be
+    ],
+)
+def test_e19_what_is_relative_to_the_node(package, master, name, topic):
+    node = package / "src" / "publisher_py_node.py"
+    line = line_of(package / "snippets" / "relative_to_node.py", "rospy.Publisher")
+    replace(node, line_of(node, "rospy.Publisher"), line.replace('"great_topic"', f'"{name}"'))
+    with run(sys.executable, node, "__ns:=/group_namespace"):
+        assert published([topic]) == {topic}
+
+
+def test_e20_a_counter_too_large_ends_the_timer_alone(package, master):
+    node = package / "src" / "publisher_py_node.py"
+    replace(node, "self.counter = 1", "self.counter = 2**32 - 5")
+    # It takes a subscriber: rospy packs no message that nobody is to get.
+    subscriber = package / "src" / "subscriber_py_node.py"
+    with run(sys.executable, subscriber), run(sys.executable, node) as process:
+        process.wait_for(
+            lambda: any("exceeds specified width [uint32]" in line for line in list(process.lines)),
+            "the counter does not fit",
+        )
+        # It is the thread that has ended, not the node: that goes on until Ctrl-C.
+        assert any(line.startswith("Exception in thread") for line in process.errors)
+        assert "/publisher_py_node" in Graph().nodes
+        assert process.stop() == 0, str(process)
+
+
+# The console that the original shows is not that of its own code.
+
+SHOWN = (ORIGINAL / "console.txt").read_text().splitlines()
+STARTED = re.compile(r"process\[(\S+)-(\d+)\]: started")
+
+
+def test_p01_numbers_of_the_processes(launched):
+    assert {number for _, number in STARTED.findall("\n".join(SHOWN))} == {"1"}
+    assert STARTED.findall("\n".join(launched.lines)) == [
+        ("rosout", "1"),
+        ("mrp/publisher_cpp_node", "2"),
+        ("mrp/publisher_py_node", "3"),
+        ("mrp/subscriber_cpp_node", "4"),
+        ("mrp/subscriber_py_node", "5"),
+    ]
+
+
+def test_p01_what_python_prints(launched):
+    shown = [line for line in SHOWN if "PY NODE" in line]
+    printed = [line for line in launched.lines if "PY NODE" in line]
+    assert all(line.startswith("[ INFO] [") for line in shown)
+    assert all(re.match(r"\[INFO\] \[\d+\.\d{6}\]: ", line) for line in printed), str(launched)
+    assert any("namespace of nh = /mrp/" in line for line in shown)
+    assert not any("namespace of nh" in line for line in printed)
+
+
+def test_p01_what_cpp_prints(built, master):
+    shown = [line for line in SHOWN if "CPP NODE" in line]
+    assert all(re.match(r"\[ INFO\] \[\d+\.\d{6}\]: ", line) for line in shown)
+    with run(built / "devel" / "lib" / PACKAGE / "publisher_cpp_node") as process:
+        process.wait_for(lambda: process.lines, "a line")
+        assert re.match(r"\[ INFO\] \[\d+\.\d{9}\]: \[PUBLISHER CPP NODE\]", process.lines[0])
+
+
+def test_p01_misspelt_names(launched):
+    assert sum("publishder" in line for line in SHOWN) == 2
+    assert not any("publishder" in line for line in launched.lines)
