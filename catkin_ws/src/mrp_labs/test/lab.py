@@ -26,11 +26,17 @@ _RECEIVED = re.compile(
 Received = collections.namedtuple("Received", "value publisher thread")
 
 
+def path_of(launch_file):
+    """Return the path of one of the labs' launch files: see Lab."""
+    return roslib.packages.find_resource(PACKAGE, launch_file)[0]
+
+
 class Lab(Process):
     """A lab that runs, and the lines that it has printed so far.
 
     launch_file: such as "latch.launch"
-    arguments: those of roslaunch, such as "period:=1"
+    arguments: those of roslaunch, such as "period:=1", or the paths of more launch files: several
+        labs at once take less time than one after another
 
     Use it in a `with`: on leaving without an error, the lab is ended as by Ctrl-C, and must end
     cleanly: with exit code 0, no traceback and no abort.
