@@ -26,6 +26,7 @@ public:
         timer_type_(parameters.choice("timer", {"ros", "wall", "steady"})),
         period_(parameters.seconds("period", 0.5)),
         burst_(parameters.number("burst", 1, 1)),
+        first_burst_(parameters.number("first_burst", burst_, 1)),
         count_(parameters.number("count", 0)),
         start_(parameters.number("start", 1, std::numeric_limits<int>::min())),
         step_(parameters.number("step", 1, std::numeric_limits<int>::min())),
@@ -103,7 +104,8 @@ private:
     wait_for_subscribers_ = 0;
 
     const int64_t first = sent_;
-    for (int i = 0; i < burst_ && (count_ == 0 || sent_ < count_); ++i)
+    const int burst = sent_ == 0 ? first_burst_ : burst_;
+    for (int i = 0; i < burst && (count_ == 0 || sent_ < count_); ++i)
     {
       publisher_.publish(message(valueText(sent_)));
       ++sent_;
@@ -174,7 +176,8 @@ private:
   const std::string timer_type_;
   const double period_;  // seconds
   const int burst_;      // messages in each period
-  const int count_;      // messages in all, 0: no end
+  const int first_burst_;
+  const int count_;  // messages in all, 0: no end
   const int start_;
   const int step_;
   const std::vector<std::string> values_;

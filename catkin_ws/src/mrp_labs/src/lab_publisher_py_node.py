@@ -21,6 +21,7 @@ class LabPublisher:
         self.timer_type = parameters.choice("timer", ["ros", "ros-reset", "steady"])
         self.period = parameters.seconds("period", 0.5)
         self.burst = parameters.number("burst", 1, least=1)  # messages in each period
+        self.first_burst = parameters.number("first_burst", self.burst, least=1)
         self.count = parameters.number("count", 0)  # messages in all, 0: no end
         self.start_value = parameters.number("start", 1, least=None)
         self.step = parameters.number("step", 1, least=None)
@@ -90,7 +91,8 @@ class LabPublisher:
 
         first = self.sent
         refused = 0
-        while self.sent < first + self.burst and (self.count == 0 or self.sent < self.count):
+        burst = self.first_burst if self.sent == 0 else self.burst
+        while self.sent < first + burst and (self.count == 0 or self.sent < self.count):
             refused += not self.publish(self.value_text(self.sent))
             self.sent += 1
         if self.sent == first + refused:

@@ -23,6 +23,7 @@ public:
         queue_size_(parameters.number("queue_size", 10)),
         callback_duration_(parameters.seconds("callback_duration", 0)),
         concurrent_(parameters.flag("concurrent", false)),
+        wait_for_publishers_(parameters.number("wait_for_publishers", 0)),
         delay_(parameters.seconds("delay", 0)),
         show_thread_(parameters.flag("show_thread", false)),
         show_namespaces_(parameters.flag("show_namespaces", false)),
@@ -33,6 +34,10 @@ public:
 
   void start()
   {
+    while (ros::ok() && publishers() < wait_for_publishers_)
+    {
+      ros::WallDuration(0.1).sleep();
+    }
     const ros::WallTime begin = ros::WallTime::now() + ros::WallDuration(delay_);
     while (ros::ok() && ros::WallTime::now() < begin)
     {
@@ -54,6 +59,26 @@ public:
   }
 
 private:
+  // How many publishers of the topic the master knows. Without a subscription, nobody else does.
+  int publishers() const
+  {
+    XmlRpc::XmlRpcValue response;
+    XmlRpc::XmlRpcValue state;
+    if (!ros::master::execute("getSystemState", name_, response, state, true))
+    {
+      return 0;  // Ctrl-C has ended the node meanwhile
+    }
+    XmlRpc::XmlRpcValue& topics = state[0];  // of publishers: a name and a list of nodes each
+    for (int i = 0; i < topics.size(); ++i)
+    {
+      if (std::string(topics[i][0]) == nh_.resolveName(topic_))
+      {
+        return topics[i][1].size();
+      }
+    }
+    return 0;
+  }
+
   ros::Subscriber subscribe(const std::string& topic)
   {
     // roscpp takes no "~" in a topic's name: the node's own namespace has a handle of its own.
@@ -100,7 +125,8 @@ private:
   const int queue_size_;            // 0: unlimited
   const double callback_duration_;  // seconds
   const bool concurrent_;           // may several threads be in the callback at once?
-  const double delay_;              // seconds before it subscribes
+  const int wait_for_publishers_;
+  const double delay_;  // seconds from then on before it subscribes
   const bool show_thread_;
   const bool show_namespaces_;
   const std::string shown_type_;

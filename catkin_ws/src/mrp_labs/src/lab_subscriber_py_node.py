@@ -6,6 +6,7 @@ import sys
 import threading
 import time
 
+import rosgraph
 import rospy
 from mrp_labs.message_text import MESSAGE_TYPES, to_text
 from mrp_labs.parameters import Parameters
@@ -19,13 +20,16 @@ class LabSubscriber:
         self.queue_size = parameters.number_or_none("queue_size", 10)
         self.buff_size = parameters.number("buff_size", 65536, least=1)  # bytes
         self.callback_duration = parameters.seconds("callback_duration", 0)
-        self.delay = parameters.seconds("delay", 0)  # seconds before it subscribes
+        self.wait_for_publishers = parameters.number("wait_for_publishers", 0)
+        self.delay = parameters.seconds("delay", 0)  # seconds from then on before it subscribes
         self.show_thread = parameters.flag("show_thread", False)
         self.show_namespaces = parameters.flag("show_namespaces", False)
         self.shown_type = self.type + " " if parameters.flag("show_type", False) else ""
         parameters.no_others()
 
     def start(self):
+        while not rospy.is_shutdown() and self.publishers() < self.wait_for_publishers:
+            time.sleep(0.1)
         begin = time.monotonic() + self.delay
         while not rospy.is_shutdown() and time.monotonic() < begin:
             time.sleep(0.02)
@@ -39,6 +43,12 @@ class LabSubscriber:
         self.subscriber = self.subscribe(self.topic)
         if self.other_topic:
             self.other_subscriber = self.subscribe(self.other_topic)
+
+    def publishers(self):
+        """Return how many publishers of the topic the master knows. Without a subscription, nobody
+        else does."""
+        publishers, _, _ = rosgraph.Master(rospy.get_name()).getSystemState()
+        return len(dict(publishers).get(rospy.resolve_name(self.topic), []))
 
     def subscribe(self, topic):
         subscriber = rospy.Subscriber(
@@ -74,7 +84,7 @@ def main():
         subscribers = [LabSubscriber(one) for one in Parameters().of_each_topic()]
         for subscriber in subscribers:
             subscriber.start()
-    except ValueError as error:
+    except (ValueError, rospy.ROSException) as error:
         rospy.logfatal(f"{rospy.get_name()}: {error}")
         sys.exit(1)
     rospy.spin()

@@ -28,6 +28,11 @@ _RECEIVED = re.compile(
 Received = collections.namedtuple("Received", "value publisher thread")
 
 
+def path_of(launch_file):
+    """Return the path of one of the labs' launch files: see Lab."""
+    return roslib.packages.find_resource(PACKAGE, launch_file)[0]
+
+
 def pid_of(node, master_uri=None):
     """Return the process id of a running node, or None if the master or the node does not answer.
 
@@ -45,7 +50,8 @@ class Lab(Process):
     """A lab that runs, and the lines that it has printed so far.
 
     launch_file: such as "latch.launch"
-    arguments: those of roslaunch, such as "period:=1"
+    arguments: those of roslaunch, such as "period:=1", or the paths of more launch files: several
+        labs at once take less time than one after another
 
     traceback: whether one belongs to the claim
 

@@ -60,7 +60,9 @@ class TestParameters(unittest.TestCase):
         self.check(PUBLISHERS, "queue_size", -1, NUMBER)
         self.check(SUBSCRIBERS, "queue_size", "ten", NUMBER)
         self.check(SUBSCRIBERS, "queue_size", True, NUMBER)
+        self.check(SUBSCRIBERS, "wait_for_publishers", -1, NUMBER)
         self.check(PUBLISHERS, "burst", 0, POSITIVE)
+        self.check(PUBLISHERS, "first_burst", 0, POSITIVE)
         self.check(PUBLISHERS, "count", 1.5, NUMBER)
         self.check(PUBLISHERS, "start", "one", ANY_NUMBER)
         self.check(PUBLISHERS, "size", [1, 2], NUMBER)
@@ -119,9 +121,9 @@ class TestParameters(unittest.TestCase):
 
     def test_misspelt(self):
         known = (
-            "~burst, ~count, ~delay, ~latch, ~on_connect, ~period, ~queue_size, ~show_memory, "
-            "~show_namespaces, ~show_type, ~size, ~start, ~step, ~timer, ~topic, ~topics, ~type, "
-            "~values, ~wait_for_subscribers"
+            "~burst, ~count, ~delay, ~first_burst, ~latch, ~on_connect, ~period, ~queue_size, "
+            "~show_memory, ~show_namespaces, ~show_type, ~size, ~start, ~step, ~timer, ~topic, "
+            "~topics, ~type, ~values, ~wait_for_subscribers"
         )
         self.check_sentence(
             PUBLISHERS, {"qeue_size": 1}, f"parameter ~qeue_size is not known, only {known}"

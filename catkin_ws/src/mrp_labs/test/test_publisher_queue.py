@@ -1,0 +1,83 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""A publisher's queue while the connection is full: 5 drops the oldest, 0 grows, None waits."""
+
+import re
+import unittest
+
+import rostest
+from lab import PACKAGE, Lab, path_of
+
+LANGUAGES = ("cpp", "py")
+COUNT = 20  # messages that each publisher publishes
+QUEUE = 5
+MEGABYTES = 4  # of each message
+# Messages that a connection may hold: far more than were ever seen in one, which is 3.
+IN_CONNECTION = 10
+
+
+class TestPublisherQueue(unittest.TestCase):
+    def numbers(self, lab, group, language):
+        """Wait for the last value of a publisher; return all that have arrived, as numbers."""
+        values = lab.wait_until_received(
+            f"/{group}/subscriber_py", text_of(COUNT), publisher=f"/{group}/publisher_{language}"
+        )
+        numbers = [int(value.split('"')[1]) for value in values]
+        self.assertEqual(values, list(map(text_of, numbers)))
+        return numbers
+
+    def test_publisher_queue(self):
+        with Lab(
+            "publisher_queue.launch",
+            path_of("publisher_queue_unlimited.launch"),
+            path_of("publisher_queue_none.launch"),
+        ) as lab:
+            for language in LANGUAGES:
+                self.check_overflow(lab, language)
+                self.check_unlimited(lab, language)
+            self.check_none(lab)
+
+    def check_overflow(self, lab, language):
+        numbers = self.numbers(lab, "publisher_queue", language)
+        # Some were on their way already. Then come those in the queue, which are the newest ones:
+        # the one before them has been dropped.
+        newest = list(range(COUNT - QUEUE + 1, COUNT + 1))
+        self.assertEqual(numbers[-QUEUE:], newest, f"{language}: {numbers}")
+        self.assertNotIn(COUNT - QUEUE, numbers, f"{language}: {numbers}")
+        self.assertEqual(numbers, sorted(set(numbers)), language)
+
+    def check_unlimited(self, lab, language):
+        numbers = self.numbers(lab, "publisher_queue_unlimited", language)
+        self.assertEqual(numbers, list(range(1, COUNT + 1)), language)
+
+        lines = lab.logged(f"/publisher_queue_unlimited/publisher_{language}")
+        published = re.findall(r"published (\d+) to (\d+), memory: (\d+) MB", "\n".join(lines))
+        self.assertEqual(
+            [(first, last) for first, last, _ in published],
+            [("1", "5"), ("6", "10"), ("11", "15"), ("16", "20")],
+        )
+        memory = [int(megabytes) for _, _, megabytes in published]
+        self.assertGreater(memory[-1] - memory[0], QUEUE * MEGABYTES, f"{language}: {memory}")
+
+    def check_none(self, lab):
+        numbers = self.numbers(lab, "publisher_queue_none", "py")
+        self.assertEqual(numbers, list(range(1, COUNT + 1)))
+
+        # It published only as fast as the subscriber received.
+        received = 0
+        published = 0
+        for line in list(lab.lines):
+            if "/publisher_queue_none/subscriber_py received" in line:
+                received += 1
+            elif "/publisher_queue_none/publisher_py published" in line:
+                published += 1
+                self.assertLessEqual(published, received + IN_CONNECTION, str(lab))
+        self.assertEqual(published, COUNT)
+
+
+def text_of(number):
+    return f'"{number}" ({MEGABYTES}000000 bytes)'
+
+
+if __name__ == "__main__":
+    rostest.rosrun(PACKAGE, "publisher_queue", TestPublisherQueue)
