@@ -95,7 +95,30 @@ class Timeline(Picture):
         return self.svg(width, height, parts)
 
 
+class Queue(Picture):
+    def draw(self, text):
+        published = re.findall(r"published (\d+)(?: to (\d+))?", text)
+        last = max(int(number) for pair in published for number in pair if number)
+        received = {}
+        for name, number in re.findall(r"/(\w+) received \"?(\d+)", text):
+            received.setdefault(name, set()).add(int(number))
+        left, box, row = 140, 28, 40
+        parts = []
+        for index, (name, numbers) in enumerate(received.items()):
+            y = row * index + 8
+            parts.append(f'<text x="0" y="{y + 18}" class="label">{name}</text>')
+            for number in range(1, last + 1):
+                x = left + (number - 1) * box
+                css_class = "received" if number in numbers else "dropped"
+                parts.append(
+                    f'<rect x="{x}" y="{y}" width="{box - 4}" height="26" class="{css_class}"/>'
+                )
+                parts.append(f'<text x="{x + 12}" y="{y + 17}" class="value">{number}</text>')
+        return self.svg(left + last * box, row * len(received) + 8, parts)
+
+
 def setup(app):
     app.add_directive("ros-graph", Graph)
     app.add_directive("timeline", Timeline)
+    app.add_directive("queue", Queue)
     return {"parallel_read_safe": False}
