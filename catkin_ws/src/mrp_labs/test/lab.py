@@ -106,3 +106,12 @@ class Lab(Process):
             lambda: f"{node} received {wanted}, not only {self.values(node, publisher)}",
         )
         return self.values(node, publisher)
+
+    def wait_for_count(self, node, count, publisher=None):
+        """Wait until a subscriber node has received that many values, whichever; return all that it
+        has. The first ones of a publisher are lost to a subscriber that starts after it."""
+        self.wait_for(
+            lambda: len(self.values(node, publisher)) >= count,
+            lambda: f"{node} received {count} values, not only {self.values(node, publisher)}",
+        )
+        return self.values(node, publisher)

@@ -162,10 +162,12 @@ class TestMessageTypes(unittest.TestCase):
                 for type_, refused in REFUSED.items()
                 for value, words in refused.items()
             ]
-            py_errors = lab.logged("/out_of_range/publisher_py", levels=("WARN", "ERROR"))
-            self.assertEqual(sorted(py_errors), sorted(wanted))
-            cpp_errors = lab.logged("/out_of_range/publisher_cpp", levels=("WARN", "ERROR"))
-            self.assertEqual(cpp_errors, [])
+            lab.wait_for(
+                lambda: len(errors(lab, "/out_of_range/publisher_py")) >= len(wanted),
+                lambda: f"{len(wanted)} values are refused",
+            )
+            self.assertEqual(sorted(errors(lab, "/out_of_range/publisher_py")), sorted(wanted))
+            self.assertEqual(errors(lab, "/out_of_range/publisher_cpp"), [])
 
     def check(self, lab, group, publisher, subscriber, expected):
         """Check what a subscriber receives of a publisher: type -> values, in that order."""
@@ -182,6 +184,10 @@ class TestMessageTypes(unittest.TestCase):
             # Two topics of the same type take turns as they like.
             for texts in (in_order[:2], in_order[2:]) if "String" in type_ else (in_order,):
                 self.assertEqual([text for text in received if text in texts], texts, pair)
+
+
+def errors(lab, node):
+    return lab.logged(node, levels=("WARN", "ERROR"))
 
 
 if __name__ == "__main__":

@@ -112,7 +112,7 @@ class TestParameters(unittest.TestCase):
             {"topics": {"one": {}, "two": 2}},
             f"parameter ~topics is no plain value, but must be {allowed}",
         )
-        # What is wrong with one topic is found before it, or any, is published.
+        # Those of each topic are checked.
         self.check_sentence(
             PUBLISHERS,
             {"count": 1, "topics": {"one": {"count": 2}, "two": {"count": -1}}},
