@@ -11,6 +11,7 @@ from lab import PACKAGE, Lab, path_of
 LANGUAGES = ("cpp", "py")
 COUNT = 20  # messages that each publisher publishes
 QUEUE = 5
+MOST_KEPT = {"cpp": QUEUE + 1, "py": 2 * QUEUE}
 MEGABYTES = 4  # of each message
 # Messages that a connection may hold: far more than were ever seen in one, which is 3.
 IN_CONNECTION = 10
@@ -39,12 +40,14 @@ class TestPublisherQueue(unittest.TestCase):
 
     def check_overflow(self, lab, language):
         numbers = self.numbers(lab, "publisher_queue", language)
-        # Some were on their way already. Then come those in the queue, which are the newest ones:
-        # the one before them has been dropped.
-        newest = list(range(COUNT - QUEUE + 1, COUNT + 1))
-        self.assertEqual(numbers[-QUEUE:], newest, f"{language}: {numbers}")
-        self.assertNotIn(COUNT - QUEUE, numbers, f"{language}: {numbers}")
         self.assertEqual(numbers, sorted(set(numbers)), language)
+        lost = set(range(1, COUNT + 1)) - set(numbers)
+        self.assertTrue(lost, language)
+        # What comes behind the last loss was in the queue: the newest five. On a busy machine, some
+        # more were being sent: in roscpp one, in rospy all that its sending thread took at once.
+        kept = COUNT - max(lost)
+        self.assertGreaterEqual(kept, QUEUE, f"{language}: {numbers}")
+        self.assertLessEqual(kept, MOST_KEPT[language], f"{language}: {numbers}")
 
     def check_unlimited(self, lab, language):
         numbers = self.numbers(lab, "publisher_queue_unlimited", language)
