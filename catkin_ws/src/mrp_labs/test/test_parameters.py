@@ -86,7 +86,7 @@ class TestParameters(unittest.TestCase):
 
     def test_choice(self):
         self.check(PUBLISHERS[:1], "timer", "Wall", 'one of "ros", "wall", "steady"')
-        # rospy has no timer on the wall's clock, but one that a jump back of the ROS clock would end.
+        # rospy has no timer on the wall's clock, but one that may outlive a jump back of the clock.
         self.check(PUBLISHERS[1:], "timer", "wall", 'one of "ros", "ros-reset", "steady"')
         self.check(SUBSCRIBERS[:1], "spinner", 2, 'one of "spin", "multi-threaded", "async"')
         allowed = "one of " + ", ".join(f'"{type_}"' for type_ in MESSAGE_TYPES)

@@ -61,7 +61,9 @@ class TestThreads(unittest.TestCase):
         for subscriber, together in expected.items():
             for publisher in PUBLISHERS:
                 lab.wait_for(
-                    lambda: len(lab.values("/threads/subscriber_" + subscriber, publisher)) >= ENOUGH,
+                    lambda: (
+                        len(lab.values("/threads/subscriber_" + subscriber, publisher)) >= ENOUGH
+                    ),
                     f"{ENOUGH} values of {publisher} at {subscriber}",
                 )
             lab.wait_for(

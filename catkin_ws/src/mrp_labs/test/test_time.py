@@ -52,12 +52,10 @@ class TestTime(unittest.TestCase):
                 for publisher in CPP + PY:
                     running.wait_until_received(subscriber, 8, publisher=publisher)
             for publisher in ROS:
-                # Alive, but this is all that it has said.
+                # Alive, but all that it has said is on which topic it would publish.
                 self.assertIsNotNone(lab.pid_of(publisher), publisher)
-                self.assertEqual(
-                    running.logged(publisher, ALL_LEVELS),
-                    ['publishes std_msgs/UInt32 on /time/great_topic (its code says "great_topic")'],
-                )
+                (only,) = running.logged(publisher, ALL_LEVELS)
+                self.assertIn("publishes std_msgs/UInt32 on /time/great_topic", only)
             # It is the clock that was missing, and nothing else.
             with lab.Process("rosrun", lab.PACKAGE, "lab_clock_py_node.py"):
                 for subscriber in SUBSCRIBERS:

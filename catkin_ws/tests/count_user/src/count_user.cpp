@@ -10,7 +10,7 @@ int main()
   mrp_labs::Count count;
   count.counter = 7;
   count.language = "any";
-  std::cout << "counter: " << count.counter << "\nlanguage: " << count.language << "\nmd5sum: "
-            << ros::message_traits::md5sum(count) << std::endl;
+  std::cout << "counter: " << count.counter << "\nlanguage: " << count.language
+            << "\nmd5sum: " << ros::message_traits::md5sum(count) << std::endl;
   return 0;
 }

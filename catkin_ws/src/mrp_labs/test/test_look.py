@@ -1,0 +1,186 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""One graph, looked at with the very commands that a student types."""
+
+import os
+import re
+import shlex
+import signal
+import tempfile
+import unittest
+
+import lab
+import rostest
+from process import LIVE
+
+PUBLISHERS = ("/look/publisher_cpp", "/look/publisher_py")
+SUBSCRIBERS = ("/look/subscriber_cpp", "/look/subscriber_py")
+TOPIC = "/look/great_topic"
+RECORDED = 10  # messages
+
+
+def start(command):
+    return lab.Process(*shlex.split(command), extra_env=LIVE)
+
+
+def typed(*commands):
+    """Run commands side by side; return what each has printed, without empty lines."""
+    result = []
+    processes = [start(command) for command in commands]
+    for process in processes:
+        with process:
+            code = process.wait()
+            assert code == 0, f"exit code {code} of {process}"
+            result.append([line.strip() for line in process.lines if line.strip()])
+    return result
+
+
+def average(process):
+    """Return the last average that rostopic hz or bw has printed, or 0."""
+    found = re.findall(r"average(?: rate)?: ([\d.]+)", "\n".join(process.lines))
+    return float(found[-1]) if found else 0
+
+
+def is_near(value, expected):
+    return 0.8 * expected < value < 1.2 * expected
+
+
+def without_address(lines):
+    """Return the lines, each without the address of a node or of a connection."""
+    return [re.sub(r" \(.*", "", line) for line in lines]
+
+
+def wait_until_connected(running):
+    for subscriber in SUBSCRIBERS:
+        for publisher in PUBLISHERS:
+            running.wait_for(
+                lambda: running.values(subscriber, publisher), f"{publisher} to {subscriber}"
+            )
+
+
+def plays_to_both():
+    try:
+        (info,) = typed("rosnode info /player")
+    except AssertionError:  # the master does not know it yet
+        return False
+    return all(f"* to: {subscriber}" in info for subscriber in SUBSCRIBERS)
+
+
+class TestLook(unittest.TestCase):
+    def test_commands(self):
+        with lab.Lab("look.launch") as running:
+            wait_until_connected(running)
+            self.check_commands_that_end()
+            self.check_commands_until_ctrl_c()
+            self.check_roswtf(running)
+
+    def check_commands_that_end(self):
+        nodes, ping, publisher, subscriber, topics, verbose, info, type_, echo = typed(
+            "rosnode list",
+            "rosnode ping -c 1 /look/publisher_py",
+            "rosnode info /look/publisher_cpp",
+            "rosnode info /look/subscriber_py",
+            "rostopic list",
+            "rostopic list -v",
+            f"rostopic info {TOPIC}",
+            f"rostopic type {TOPIC}",
+            f"rostopic echo -n 6 {TOPIC}",
+        )
+        self.assertEqual([node for node in nodes if "/look/" in node], [*PUBLISHERS, *SUBSCRIBERS])
+        self.assertIn("xmlrpc reply from", ping[-1])
+        # The connections: to each subscriber, from each publisher.
+        text = "\n".join(without_address(publisher))
+        self.assertIn(f"Publications:\n* {TOPIC} [std_msgs/UInt32]\n", text)
+        self.assertIn("Subscriptions: None", text)
+        for one in SUBSCRIBERS:
+            self.assertIn(f"* topic: {TOPIC}\n* to: {one}\n* direction: outbound", text)
+        text = "\n".join(without_address(subscriber))
+        self.assertIn(f"Subscriptions:\n* {TOPIC} [std_msgs/UInt32]\n", text)
+        for one in PUBLISHERS:
+            self.assertIn(f"* topic: {TOPIC}\n* to: {one}\n* direction: inbound", text)
+
+        self.assertIn(TOPIC, topics)
+        self.assertIn(f"* {TOPIC} [std_msgs/UInt32] 2 publishers", verbose)
+        self.assertTrue(any(line.startswith(f"* {TOPIC} [std_msgs/UInt32] ") for line in verbose))
+        self.assertEqual(type_, ["std_msgs/UInt32"])
+        self.assertEqual(
+            [line for line in without_address(info) if "rostopic" not in line],
+            ["Type: std_msgs/UInt32", "Publishers:"]
+            + [f"* {one}" for one in PUBLISHERS]
+            + ["Subscribers:"]
+            + [f"* {one}" for one in SUBSCRIBERS],
+        )
+        # Both counts, each without a gap.
+        values = [int(line[len("data: ") :]) for line in echo if line.startswith("data: ")]
+        self.assertEqual(len(values), 6)
+        for parity in (0, 1):
+            count = [value for value in values if value % 2 == parity]
+            self.assertTrue(count, values)
+            self.assertEqual(count, list(range(count[0], count[-1] + 1, 2)))
+
+    def check_commands_until_ctrl_c(self):
+        with start(f"rostopic hz {TOPIC}") as hz, start(f"rostopic bw {TOPIC}") as bw, start(
+            "rosgraph"
+        ) as graph:
+            # Two publishers, two messages a second each, four bytes a message.
+            hz.wait_for(lambda: is_near(average(hz), 4), "4 messages a second")
+            bw.wait_for(lambda: is_near(average(bw), 16), "16 bytes a second")
+            self.assertIn("mean: 4.00B min: 4.00B max: 4.00B", "\n".join(bw.lines))
+            graph.wait_for(lambda: "Services:" in graph.lines, "the graph")
+            text = "\n".join(graph.lines)
+            for publisher in PUBLISHERS:
+                self.assertRegex(text, rf"  {publisher} :\n    Inbound:\n    Outbound:\n")
+            for subscriber in SUBSCRIBERS:
+                inbound = re.search(rf"  {subscriber} :\n    Inbound:\n(.*\n.*)\n    Out", text)
+                self.assertEqual(sorted(inbound[1].split()), list(PUBLISHERS))
+            for process in (hz, bw, graph):
+                self.assertEqual(process.stop(), 0, str(process))
+
+    def check_roswtf(self, running):
+        # About Debian it has something to say too, but about a healthy graph nothing.
+        (healthy,) = typed("roswtf")
+        self.assertEqual(healthy[-2:], ["Online checks summary:", "No errors or warnings"])
+
+        pid = lab.pid_of("/look/publisher_py")
+        os.kill(pid, signal.SIGKILL)
+        running.wait_for(
+            lambda: any(f"has died [pid {pid}" in line for line in list(running.lines)),
+            "roslaunch says that it has died",
+        )
+        wtf, nodes = typed("roswtf", "rosnode list")
+        online = wtf[wtf.index("Online checks summary:") :]
+        place = online.index("ERROR Could not contact the following nodes:")
+        self.assertEqual(online[place + 1], "* /look/publisher_py")
+        # It is dead, and still on the list.
+        self.assertIn("/look/publisher_py", nodes)
+
+    def test_bag(self):
+        with tempfile.TemporaryDirectory() as folder:
+            bag = os.path.join(folder, "counts.bag")
+            with lab.Lab("look.launch") as running:
+                wait_until_connected(running)
+                typed(f"rosbag record --limit={RECORDED} --output-name={bag} {TOPIC}")
+            info, echo = typed(f"rosbag info {bag}", f"rostopic echo -b {bag} -p {TOPIC}")
+            self.assertIn(
+                f"topics:      {TOPIC}   {RECORDED} msgs    : std_msgs/UInt32 (2 connections)", info
+            )
+            self.assertEqual(echo[0], "%time,field.data")
+            recorded = [line.split(",")[1] for line in echo[1:]]
+            self.assertEqual(len(recorded), RECORDED)
+            for parity in (0, 1):
+                count = [int(value) for value in recorded if int(value) % 2 == parity]
+                self.assertEqual(count, list(range(count[0], count[-1] + 1, 2)), recorded)
+
+            with lab.Lab("look_playback.launch") as running:
+                with start(f"rosbag play --pause {bag} __name:=player") as player:
+                    running.wait_for(plays_to_both, "both are connected to the player")
+                    # As the space bar does.
+                    typed("rosservice call /player/pause_playback false")
+                    self.assertEqual(player.wait(), 0, str(player))
+                for subscriber in SUBSCRIBERS:
+                    running.wait_until_received(subscriber, recorded[-1])
+                    self.assertEqual(running.values(subscriber, "/player"), recorded, subscriber)
+
+
+if __name__ == "__main__":
+    rostest.rosrun(lab.PACKAGE, "look", TestLook)
