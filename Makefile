@@ -26,6 +26,7 @@ PACKAGES := $(addprefix catkin_ws/apt/,build.txt runtime.txt tools.txt test.txt 
 BUILT := catkin_ws/devel/.built
 RESULTS := $(CURDIR)/catkin_ws/build/test_results
 SITE := $(CURDIR)/catkin_ws/build/docs
+SCREENSHOTS := $(CURDIR)/catkin_ws/build/screenshots
 
 .PHONY: help
 help:  ## print the targets
@@ -85,7 +86,9 @@ docs-record: deps  ## do what the pages say, and record what they show of it
 .PHONY: test-browser
 test-browser: docs  ## open every page in a real browser
 	@$(INSTALL) catkin_ws/apt/test.txt catkin_ws/apt/browser.txt
+	@rm -rf $(SCREENSHOTS)
 	@$(IN_WORKSPACE) /usr/bin/python3 -m pytest --junit-xml=$(RESULTS)/browser.xml browser_tests
+	@echo "Look at the pages: $(SCREENSHOTS)"
 
 .PHONY: doctor
 doctor:  ## find what keeps the tutorial from running on this machine
