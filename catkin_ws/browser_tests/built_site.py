@@ -23,15 +23,16 @@ def pages_with(text):
 
 @contextlib.contextmanager
 def served():
-    """Serve the site as `make docs-serve` does: (process, address). At the end, press Ctrl-C."""
+    """Serve the site as `make docs-serve` does, at the address that it prints, until Ctrl-C."""
     command = [sys.executable, WORKSPACE / "tools" / "serve.py", SITE]
     with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as server:
         try:
             line = server.stdout.readline()
             address = re.fullmatch(r"Open (http://127\.0\.0\.1:\d+/) \(Ctrl-C ends it\)\n", line)
             assert address, line
-            yield server, address.group(1)
+            yield address.group(1)
             server.send_signal(signal.SIGINT)
-            assert server.wait(timeout=60) == 0
+            code = server.wait(timeout=60)
+            assert code == 0, f"serve.py: exit code {code} after Ctrl-C"
         finally:
             server.kill()

@@ -9,6 +9,11 @@ from browser import SIZES
 _CONTRAST = pathlib.Path(__file__).with_name("contrast.js").read_text()
 
 
+def assert_none(faults):
+    """Fail if there are faults, and show them all."""
+    assert not faults, "\n".join(faults)
+
+
 @contextlib.contextmanager
 def _all_shown(browser):
     """Have all tabs shown at once, and no colour that is still on its way to another."""

@@ -14,5 +14,5 @@ def browser(tmp_path_factory):
 
 @pytest.fixture(scope="session")
 def addresses():
-    with served() as (_, address):
+    with served() as address:
         yield {"file": SITE.as_uri() + "/", "served": address}

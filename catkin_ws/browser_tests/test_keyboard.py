@@ -66,6 +66,7 @@ def test_the_phones_menu_opens_and_closes_by_keyboard(phone, browser, key):
     assert has_focus(browser, "[role=button][aria-label=Menu][aria-expanded=false]")
     browser.press(key)
     assert menu_is_shown(browser)
+    assert browser.find("[aria-label=Menu][aria-expanded=true]")
     assert has_focus(browser, ".wy-nav-side a")
     browser.press(Keys.TAB)
     assert has_focus(browser, "[role=search] input")

@@ -35,7 +35,7 @@ def search(browser, word):
 def test_it_finds_a_page_that_has_the_word(browser, address, word):
     found = search(browser, word)
     assert found
-    assert faults(browser, address) == []
+    checks.assert_none(faults(browser, address))
     browser.driver.get(found[0])
     # The word is marked on the page.
     marked = browser.run(
@@ -43,7 +43,7 @@ def test_it_finds_a_page_that_has_the_word(browser, address, word):
         ".map((one) => one.textContent.toLowerCase())"
     )
     assert set(marked) == {word}
-    assert faults(browser, address) == []
+    checks.assert_none(faults(browser, address))
 
 
 def faults(browser, address):
