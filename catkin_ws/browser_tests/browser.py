@@ -12,18 +12,19 @@ SIZES = {"desktop": (1280, 800), "phone": (360, 740)}
 SECONDS = 60  # that the browser may take for anything, on a machine that is busy with other things
 
 # The browser asks for nothing by itself, and finds no host but this one. Root has no sandbox.
-_ARGUMENTS = """--headless --no-sandbox --disable-gpu --disable-dev-shm-usage --no-first-run
---disable-background-networking --disable-component-update --disable-sync --disable-quic
---host-resolver-rules=MAP * ~NOTFOUND, EXCLUDE 127.0.0.1"""
+_ARGUMENTS = [
+    *"--headless --no-sandbox --disable-gpu --disable-dev-shm-usage --no-first-run".split(),
+    *"--disable-background-networking --disable-component-update --disable-sync".split(),
+    "--host-resolver-rules=MAP * ~NOTFOUND, EXCLUDE 127.0.0.1",
+]
 
 
 class Browser:
     def __init__(self, profile):
         options = webdriver.ChromeOptions()
         options.binary_location = "/usr/bin/chromium"
-        for argument in _ARGUMENTS.replace("\n", " ").split(" --"):
-            options.add_argument("--" + argument.lstrip("-"))
-        options.add_argument(f"--user-data-dir={profile}")
+        for argument in (*_ARGUMENTS, f"--user-data-dir={profile}"):
+            options.add_argument(argument)
         options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
         self.driver = webdriver.Chrome(service=Service("/usr/bin/chromedriver"), options=options)
         self.driver.set_page_load_timeout(SECONDS)
