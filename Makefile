@@ -69,9 +69,11 @@ lint:  ## check the style of all sources
 	@$(INSTALL) $(PACKAGES) catkin_ws/apt/lint.txt
 	@$(IN_WORKSPACE) tools/lint.sh
 
+# Made anew each time: otherwise Sphinx keeps pages that are no more, and an old style sheet.
 .PHONY: docs
 docs:  ## build the tutorial's pages
 	@$(INSTALL) catkin_ws/apt/docs.txt
+	@rm -rf $(SITE)
 	@$(IN_WORKSPACE) /usr/bin/python3 -m sphinx -q -W --keep-going -d build/doctrees src/mrp/doc $(SITE)
 	@echo "Open file://$(SITE)/index.html"
 

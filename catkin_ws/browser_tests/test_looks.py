@@ -3,6 +3,7 @@
 
 import base64
 import itertools
+import re
 
 import checks
 import pytest
@@ -25,6 +26,11 @@ def view(request, browser, addresses):
 def mode(request, browser, view):
     browser.prefer(request.param)
     return request.param
+
+
+def test_the_page_is_dark_in_dark_mode_alone(browser, mode):
+    colour = browser.run("return getComputedStyle(document.body).backgroundColor")
+    assert (max(map(int, re.findall(r"\d+", colour))) < 64) == (mode == "dark"), colour
 
 
 def test_text_has_contrast(browser, mode):
