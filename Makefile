@@ -26,6 +26,7 @@ PACKAGES := $(addprefix catkin_ws/apt/,build.txt runtime.txt tools.txt test.txt 
 BUILT := catkin_ws/devel/.built
 RESULTS := $(CURDIR)/catkin_ws/build/test_results
 SITE := $(CURDIR)/catkin_ws/build/docs
+SCREENSHOTS := $(CURDIR)/catkin_ws/build/screenshots
 
 .PHONY: help
 help:  ## print the targets
@@ -68,9 +69,11 @@ lint:  ## check the style of all sources
 	@$(INSTALL) $(PACKAGES) catkin_ws/apt/lint.txt
 	@$(IN_WORKSPACE) tools/lint.sh
 
+# Made anew each time: otherwise Sphinx keeps pages that are no more, and an old style sheet.
 .PHONY: docs
 docs:  ## build the tutorial's pages
 	@$(INSTALL) catkin_ws/apt/docs.txt
+	@rm -rf $(SITE)
 	@$(IN_WORKSPACE) /usr/bin/python3 -m sphinx -q -W --keep-going -d build/doctrees src/mrp/doc $(SITE)
 	@echo "Open file://$(SITE)/index.html"
 
@@ -85,7 +88,9 @@ docs-record: deps  ## do what the pages say, and record what they show of it
 .PHONY: test-browser
 test-browser: docs  ## open every page in a real browser
 	@$(INSTALL) catkin_ws/apt/test.txt catkin_ws/apt/browser.txt
+	@rm -rf $(SCREENSHOTS)
 	@$(IN_WORKSPACE) /usr/bin/python3 -m pytest --junit-xml=$(RESULTS)/browser.xml browser_tests
+	@echo "Look at the pages: $(SCREENSHOTS)"
 
 .PHONY: doctor
 doctor:  ## find what keeps the tutorial from running on this machine

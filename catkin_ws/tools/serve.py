@@ -21,8 +21,8 @@ def main():
     handler = functools.partial(Handler, directory=sys.argv[1])
     # Port 0: any that is free.
     with http.server.ThreadingHTTPServer(("127.0.0.1", 0), handler) as server:
-        print(f"Open http://127.0.0.1:{server.server_port}/ (Ctrl-C ends it)", flush=True)
         try:
+            print(f"Open http://127.0.0.1:{server.server_port}/ (Ctrl-C ends it)", flush=True)
             server.serve_forever()
         except KeyboardInterrupt:
             pass

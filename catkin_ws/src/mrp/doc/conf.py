@@ -24,9 +24,13 @@ extensions = [
 html_theme = "sphinx_rtd_theme"
 html_static_path = ["static"]
 html_css_files = ["page.css"]
+html_js_files = ["page.js"]
+html_favicon = "static/icon.svg"
 html_show_sourcelink = False
 html_show_sphinx = False
 graphviz_output_format = "svg"
+# What was printed is there to be read, not to be typed.
+copybutton_selector = "div:not(.output) > div.highlight pre"
 
 # A link that leads nowhere is an error, as is everything that Sphinx warns of: it is run with -W.
 nitpicky = True

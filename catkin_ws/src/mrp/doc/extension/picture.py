@@ -7,16 +7,19 @@ picture shows, in words.
 .. queue:: NAME      which of the values published in recorded/NAME.txt were received
 """
 
+import html
 import json
 import re
+import subprocess
 
 from docutils import nodes
 from docutils.parsers.rst import directives
-from sphinx.ext.graphviz import graphviz
 from sphinx.util.docutils import SphinxDirective
 from terminal import recorded
 
-_LINE = re.compile(r"\[ ?INFO\] \[(?P<time>[\d.]+)\]: (?P<node>/\S+) (?P<what>published|received) (?P<value>\d+)")
+_LINE = re.compile(
+    r"\[ ?INFO\] \[(?P<time>[\d.]+)\]: (?P<node>/\S+) (?P<what>published|received) (?P<value>\d+)"
+)
 
 
 class Picture(SphinxDirective):
@@ -36,14 +39,14 @@ class Picture(SphinxDirective):
         return [self.draw(path.read_text())]
 
     def svg(self, width, height, parts):
-        """Return an SVG of that size that becomes as wide as the page at most."""
-        alt = nodes.Text(self.options["alt"]).astext().replace("&", "&amp;").replace("<", "&lt;")
+        """Return an SVG within the page: so page.css gives it the page's colours, and its width."""
+        alt = html.escape(self.options["alt"])
         text = "\n".join(
             [
-                f'<svg class="picture" role="img" viewBox="0 0 {width} {height}" '
-                f'style="max-width: {width}px" aria-label="{alt}">',
+                f'<div class="picture"><svg role="img" viewBox="0 0 {width} {height}" '
+                f'style="--width: {width}px" aria-label="{alt}">',
                 *parts,
-                "</svg>",
+                "</svg></div>",
             ]
         )
         return nodes.raw(text, text, format="html")
@@ -54,7 +57,7 @@ class Graph(Picture):
 
     def draw(self, text):
         graph = json.loads(text)
-        lines = ["digraph {", "rankdir=LR", 'node [fontname="sans-serif"]']
+        lines = ["digraph {", "rankdir=LR", "bgcolor=transparent", 'node [fontname="sans-serif"]']
         for topic, type_ in graph["topics"].items():
             lines.append(f'"topic {topic}" [shape=box label="{topic}\\n{type_}"]')
         for node in graph["nodes"]:
@@ -63,11 +66,19 @@ class Graph(Picture):
             lines.append(f'"{node}" -> "topic {topic}"')
         for node, topic in graph["subscribers"]:
             lines.append(f'"topic {topic}" -> "{node}"')
-        drawing = graphviz()
-        drawing["code"] = "\n".join([*lines, "}"])
-        drawing["options"] = {"docname": self.env.docname}
-        drawing["alt"] = self.options["alt"]
-        return drawing
+        drawn = subprocess.run(
+            ["dot", "-Tsvg"],
+            input="\n".join([*lines, "}"]),
+            check=True,
+            stdout=subprocess.PIPE,
+            text=True,
+        ).stdout
+        width, height = map(float, re.search(r'viewBox="\S+ \S+ (\S+) (\S+)"', drawn).groups())
+        parts = re.search(r"<svg[^>]*>(.*)</svg>", drawn, re.DOTALL).group(1)
+        # Graphviz gives the same ids to the parts of every graph, and a page may have several. And
+        # the script that marks a searched word on the page stops at an SVG's titles.
+        parts = re.sub(r' id="[^"]*"|<title>.*?</title>\n', "", parts)
+        return self.svg(width, height, [parts])
 
 
 class Timeline(Picture):

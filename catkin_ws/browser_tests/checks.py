@@ -1,0 +1,65 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What can be wrong with an open page: each check returns a list of faults."""
+
+import contextlib
+import pathlib
+
+from browser import SIZES
+
+_CONTRAST = pathlib.Path(__file__).with_name("contrast.js").read_text()
+
+
+def assert_none(faults):
+    """Fail if there are faults, and show them all."""
+    assert not faults, "\n".join(faults)
+
+
+@contextlib.contextmanager
+def _all_shown(browser):
+    """Have all tabs shown at once, and no colour that is still on its way to another."""
+    style = "* { transition: none !important } .tab-content { display: block !important }"
+    browser.run(
+        "document.head.append(window.added = document.createElement('style'));"
+        "added.textContent = arguments[0]",
+        style,
+    )
+    yield
+    browser.run("added.remove()")
+
+
+def console(browser):
+    return browser.console()
+
+
+def requests(browser, address):
+    """Every request succeeds, and none goes elsewhere than to the site's address."""
+    asked, failures = browser.requests()
+    inside = (address, "data:", "about:")
+    return [f"{url}: is outside" for url in asked if not url.startswith(inside)] + failures
+
+
+def width(browser, size):
+    """The page itself scrolls up and down only; a block of code may scroll sideways."""
+    with _all_shown(browser):
+        wide = browser.run("return document.scrollingElement.scrollWidth")
+    available = SIZES[size][0]
+    return [f"the page is {wide} wide, and the screen {available}"] if wide > available else []
+
+
+def pictures(browser):
+    """Every picture says in words what it shows; a decorative one has an empty alt."""
+    return browser.run(
+        """
+        const says = (one) => one.closest("[role=img][aria-label]:not([aria-label=''])");
+        return [...document.querySelectorAll("img, svg, object, embed, canvas")]
+          .filter((one) => !(one.tagName === "IMG" ? one.hasAttribute("alt") : says(one)))
+          .filter((one) => one.tagName === "svg" ? !one.parentElement.closest("svg") : true)
+          .map((one) => one.outerHTML.slice(0, 200) + ": has no text alternative");
+        """
+    )
+
+
+def contrast(browser):
+    """All visible text has a contrast of at least 4.5 to what is behind it, as WCAG asks."""
+    with _all_shown(browser):
+        return browser.run(_CONTRAST)

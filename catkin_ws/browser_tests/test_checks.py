@@ -1,0 +1,89 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The checks find what they are there for: pages with one fault each, and harmless ones."""
+
+import checks
+import pytest
+
+FINE = '<h1>A page</h1><p>With <a href="other.html">a link</a>.</p><img src="p.svg" alt="A line">'
+TEXT = '<p style="color: {}; background: {}">Some text</p>'
+
+FAULTS = {
+    "a script that throws": ("<script>undefinedFunction()</script>", "console"),
+    "a warning on the console": ("<script>console.warn('beware')</script>", "console"),
+    "a script that is not there": ('<script src="gone.js"></script>', "requests console"),
+    "a picture that is not there": ('<img src="gone.png" alt="Gone">', "requests console"),
+    "a font from outside": (
+        "<style>@font-face { font-family: other; src: url(https://fonts.example/one.woff) }"
+        "h1 { font-family: other }</style>",
+        "requests console",
+    ),
+    "a stylesheet from outside": (
+        '<link rel="stylesheet" href="https://style.example/one.css">',
+        "requests console",
+    ),
+    "a request from outside by a script": (
+        "<script>new Image().src = 'https://count.example/'</script>",
+        "requests console",
+    ),
+    "a word that is too long": ("<p>" + "long" * 50 + "</p>", "width"),
+    "a table that is too wide": ('<table style="width: 600px"><tr><td>1</table>', "width"),
+    "an image without alt": ('<img src="p.svg">', "pictures"),
+    "an svg that says nothing": ("<svg><circle r='9'/></svg>", "pictures"),
+    "an object that says nothing": (
+        '<object data="p.svg" type="image/svg+xml"></object>',
+        "pictures",
+    ),
+    "an empty label": ('<svg role="img" aria-label=""></svg>', "pictures"),
+    "grey on white": (TEXT.format("#777", "#fff"), "contrast"),
+    "white on a light blue": (TEXT.format("#fff", "#2980b9"), "contrast"),
+    "half transparent black on white": (TEXT.format("rgba(0, 0, 0, 0.5)", "#fff"), "contrast"),
+    "the text of an svg": (
+        '<svg role="img" aria-label="One"><text y="20" fill="#999">Text</text></svg>',
+        "contrast",
+    ),
+}
+
+HARMLESS = {
+    "nothing else": "",
+    "code that scrolls in itself": '<pre style="overflow: auto">' + "long" * 50 + "</pre>",
+    "black on white": TEXT.format("#000", "#fff"),
+    "the least contrast": TEXT.format("#767676", "#fff"),
+    "faint text that is hidden": '<p style="color: #eee; display: none">Text</p>',
+    "a picture in the page's own text": '<img alt="A dot" src="data:image/svg+xml,<svg/>">',
+}
+
+
+@pytest.fixture
+def failed(browser, tmp_path):
+    """Return a function that opens a page with these elements, and names the checks that fail."""
+    svg = '<svg xmlns="http://www.w3.org/2000/svg"><path d="M0 0h9" stroke="red"/></svg>'
+    (tmp_path / "p.svg").write_text(svg)
+
+    def check(elements):
+        (tmp_path / "page.html").write_text(
+            "<!DOCTYPE html><meta name='viewport' content='width=device-width'>" + FINE + elements
+        )
+        address = tmp_path.as_uri() + "/"
+        browser.open(address + "page.html", "phone")
+        browser.prefer("light")
+        faults = {
+            "requests": checks.requests(browser, address),
+            "console": checks.console(browser),
+            "width": checks.width(browser, "phone"),
+            "pictures": checks.pictures(browser),
+            "contrast": checks.contrast(browser),
+        }
+        return " ".join(name for name in faults if faults[name])
+
+    return check
+
+
+@pytest.mark.parametrize("fault", FAULTS)
+def test_a_fault_is_found(failed, fault):
+    elements, check = FAULTS[fault]
+    assert failed(elements) == check
+
+
+@pytest.mark.parametrize("harmless", HARMLESS)
+def test_what_is_harmless_is_not(failed, harmless):
+    assert failed(HARMLESS[harmless]) == ""

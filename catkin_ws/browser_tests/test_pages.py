@@ -1,0 +1,37 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Every page, at both widths, as a file and served."""
+
+import itertools
+
+import checks
+import pytest
+from browser import SIZES
+from built_site import PAGES
+
+
+@pytest.fixture(
+    scope="module",
+    params=itertools.product(("file", "served"), SIZES, PAGES),
+    ids=" ".join,
+)
+def view(request, browser, addresses):
+    """An open page: (address of the site, size)."""
+    where, size, page = request.param
+    browser.open(addresses[where] + page, size)
+    return addresses[where], size
+
+
+def test_the_console_stays_empty(browser, view):
+    checks.assert_none(checks.console(browser))
+
+
+def test_no_request_fails_or_goes_outside(browser, view):
+    checks.assert_none(checks.requests(browser, view[0]))
+
+
+def test_the_page_does_not_scroll_sideways(browser, view):
+    checks.assert_none(checks.width(browser, view[1]))
+
+
+def test_every_picture_has_a_text_alternative(browser, view):
+    checks.assert_none(checks.pictures(browser))

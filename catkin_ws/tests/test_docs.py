@@ -1,0 +1,83 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The site that `make docs` builds: its links. What needs a browser is in browser_tests/."""
+
+import html.parser
+import pathlib
+import subprocess
+import sys
+import urllib.parse
+
+import pytest
+
+WORKSPACE = pathlib.Path(__file__).resolve().parent.parent
+
+
+@pytest.fixture(scope="module")
+def site(tmp_path_factory):
+    """The folder of the site, built for these tests."""
+    folder = tmp_path_factory.mktemp("site")
+    done = subprocess.run(
+        [sys.executable, "-m", "sphinx", "-q", "-W", WORKSPACE / "src/mrp/doc", folder],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+    )
+    assert done.returncode == 0, done.stdout
+    return folder
+
+
+class Page(html.parser.HTMLParser):
+    """The links of a page, and what they may lead to in it."""
+
+    def __init__(self, path):
+        super().__init__()
+        self.links, self.ids = [], []
+        self.feed(path.read_text())
+
+    def handle_starttag(self, tag, attributes):
+        for name, value in attributes:
+            if name in ("href", "src"):
+                self.links.append(value)
+            elif name == "id":
+                self.ids.append(value)
+
+
+def broken_links(folder):
+    """Return 'page: link' of every link that leads to no file of the site, or to no id in it."""
+    pages = {path.resolve(): Page(path) for path in folder.rglob("*.html")}
+    assert pages
+    broken = []
+    for path, page in pages.items():
+        for link in page.links:
+            url = urllib.parse.urlsplit(link)
+            if url.scheme or url.netloc:
+                continue
+            name = urllib.parse.unquote(url.path)
+            target = (path.parent / name).resolve() if name else path
+            inside = folder.resolve() in target.parents and target.is_file()
+            fragment = urllib.parse.unquote(url.fragment)
+            if not inside or (fragment and fragment not in pages[target].ids):
+                broken.append(f"{path.relative_to(folder.resolve())}: {link}")
+    return broken
+
+
+def test_every_link_within_the_site_leads_somewhere(site):
+    assert broken_links(site) == []
+
+
+def test_no_page_has_an_id_twice(site):
+    for path in site.rglob("*.html"):
+        ids = Page(path).ids
+        assert {one for one in ids if ids.count(one) > 1} == set(), path.name
+
+
+def test_broken_links_are_found(tmp_path):
+    (tmp_path / "b").mkdir()
+    (tmp_path / "b" / "there.html").write_text('<p id="here">')
+    (tmp_path / "page.html").write_text(
+        '<a href="b/there.html#here"><a href="#top" id="top"><a href="https://example.org/#x">'
+        '<a href="b/there.html#gone"><a href="gone.html"><a href="#gone"><a href="/etc/passwd">'
+        '<img src="gone.png"><a href="b">'
+    )
+    links = ["b/there.html#gone", "gone.html", "#gone", "/etc/passwd", "gone.png", "b"]
+    assert broken_links(tmp_path) == [f"page.html: {link}" for link in links]
