@@ -31,12 +31,12 @@ _PROMPT = re.compile(r"<reader (\d+)> $")
 _ESCAPES = re.compile(r"\x1b\[[0-9;?]*[a-zA-Z]|\x1b\][^\x07]*\x07|\x07")
 
 
-class StepFailed(Exception):
+class StepError(Exception):
     """Says which step of which page failed, and how."""
 
 
 def build(folder, *options):
-    """Build the site. Raises StepFailed with what Sphinx said if that failed."""
+    """Build the site. Raises StepError with what Sphinx said if that failed."""
     done = subprocess.run(
         [sys.executable, "-m", "sphinx", "-q", "-W", "--keep-going", *options, DOC, folder],
         stdout=subprocess.PIPE,
@@ -44,7 +44,7 @@ def build(folder, *options):
         text=True,
     )
     if done.returncode != 0:
-        raise StepFailed(done.stdout)
+        raise StepError(done.stdout)
 
 
 def steps(site):
@@ -72,7 +72,7 @@ class Reader:
             self._master = f"http://localhost:{probe.getsockname()[1]}"
 
     def do(self, step):
-        """Do a step of a page. Raises StepFailed if it does not go as the page says."""
+        """Do a step of a page. Raises StepError if it does not go as the page says."""
         try:
             if step["kind"] == "file":
                 path = self.home / step["path"]
@@ -80,9 +80,9 @@ class Reader:
                 path.write_text(step["text"])
             else:
                 self._type(step)
-        except (StepFailed, pexpect.ExceptionPexpect) as error:
+        except (StepError, pexpect.ExceptionPexpect) as error:
             where = f"{step['page']}.rst, line {step['line']}"
-            raise StepFailed(f"{where}: {step.get('commands', '')}\n{error}") from None
+            raise StepError(f"{where}: {step.get('commands', '')}\n{error}") from None
 
     def _type(self, step):
         terminal = self._terminals.get(step["terminal"])
@@ -148,7 +148,7 @@ class Terminal:
         self._begin(command)
         actual = self._wait_for_prompt()
         if actual != code:
-            raise StepFailed(f"{command}: exit code {actual}, expected {code}\n{self._text()}")
+            raise StepError(f"{command}: exit code {actual}, expected {code}\n{self._text()}")
         return self._lines()
 
     def run_until(self, command, pattern):
@@ -156,7 +156,7 @@ class Terminal:
         self._begin(command)
         pattern = re.compile(f"[^\r\n]*(?:{pattern})[^\r\n]*\r\n")
         if self._shell.expect([pattern, _PROMPT]) == 1:
-            raise StepFailed(f"it ended before it printed {pattern.pattern}:\n{self._text()}")
+            raise StepError(f"it ended before it printed {pattern.pattern}:\n{self._text()}")
         return self._lines()
 
     def stop(self):
@@ -190,7 +190,9 @@ def graph(master_uri):
     master = rosgraph.Master("/run_page", master_uri=master_uri)
     publishers, subscribers, _ = master.getSystemState()
     edges = {
-        kind: sorted([node, topic] for topic, nodes in state if topic != "/rosout" for node in nodes)
+        kind: sorted(
+            [node, topic] for topic, nodes in state if topic != "/rosout" for node in nodes
+        )
         for kind, state in (("publishers", publishers), ("subscribers", subscribers))
     }
     edges = {
@@ -236,5 +238,5 @@ if __name__ == "__main__":
         sys.exit(__doc__)
     try:
         record()
-    except StepFailed as error:
+    except StepError as error:
         sys.exit(f"error: {error}")

@@ -51,7 +51,10 @@ def all_tests():
         for rostest in (WORKSPACE / "src" / package / "test").glob("*.test"):
             for path in rostest.parent.glob(f"test_{rostest.stem}.*"):
                 files[path] = f"{package}/{rostest.stem}"
-    for prefix, folder in (("workspace", WORKSPACE / "tests"), ("docker", ROOT / "docker" / "test")):
+    for prefix, folder in (
+        ("workspace", WORKSPACE / "tests"),
+        ("docker", ROOT / "docker" / "test"),
+    ):
         for path in folder.glob("test_*.py"):
             files[path] = f"{prefix}/{path.stem}"
     tests = {f"{files[path]}/{case}": path for path in files for case in test_cases(path)}
@@ -127,7 +130,10 @@ class Labs(Generated):
                 f".. literalinclude:: /../../mrp_labs/launch/{launch.name}",
                 "   :language: xml",
                 "",
-                *(f"- {proof.split('/')[-1].replace('_', ' ')} :proof:`{proof}`" for proof in proofs),
+                *(
+                    f"- {proof.split('/')[-1].replace('_', ' ')} :proof:`{proof}`"
+                    for proof in proofs
+                ),
                 "",
             ]
         return "\n".join(parts)
