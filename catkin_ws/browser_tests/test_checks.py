@@ -28,6 +28,8 @@ FAULTS = {
     "a word that is too long": ("<p>" + "long" * 50 + "</p>", "width"),
     "a table that is too wide": ('<table style="width: 600px"><tr><td>1</table>', "width"),
     "an image without alt": ('<img src="p.svg">', "pictures"),
+    "an image with an empty alt": ('<img src="p.svg" alt="">', "pictures"),
+    "an image whose alt is its path": ('<img src="p.svg" alt="p.svg">', "pictures"),
     "an svg that says nothing": ("<svg><circle r='9'/></svg>", "pictures"),
     "an object that says nothing": (
         '<object data="p.svg" type="image/svg+xml"></object>',
