@@ -17,6 +17,7 @@ proofs.json, by which a test sees whether each of them was run, and passed.
 """
 
 import ast
+import functools
 import json
 import pathlib
 import re
@@ -44,6 +45,7 @@ def test_cases(path):
     ]
 
 
+@functools.lru_cache
 def all_tests():
     """Return proof -> the test's file, of everything that a proof may be."""
     files = {}
