@@ -71,7 +71,7 @@ private:
     XmlRpc::XmlRpcValue& topics = state[0];  // of publishers: a name and a list of nodes each
     for (int i = 0; i < topics.size(); ++i)
     {
-      if (std::string(topics[i][0]) == nh_.resolveName(topic_))
+      if (std::string(topics[i][0]) == ros::names::resolve(topic_))
       {
         return topics[i][1].size();
       }
