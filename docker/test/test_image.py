@@ -113,7 +113,7 @@ def test_readme_says_what_is_in_it(image, image_layers):
     assert written.keys() == measured.keys()
     for what, mb in written.items():
         # An update of Debian's may change a little.
-        assert mb == pytest.approx(measured[what] / 1e6, rel=0.03, abs=0.1), what
+        assert mb == pytest.approx(measured[what] / 1e6, rel=0.03, abs=0.1), f"{what}: {measured}"
     assert sum(written.values()) == pytest.approx(2 * written["all"], abs=1)
     assert inspect(image)["Size"] == pytest.approx(measured["all"], rel=0.001)
 
