@@ -5,7 +5,7 @@ import checks
 import pytest
 from selenium.webdriver.common.keys import Keys
 
-WORDS = ["publisher", "namespace"]
+WORDS = ["publisher", "namespace", "latch"]
 
 
 @pytest.fixture(params=["file", "served"])
