@@ -8,6 +8,11 @@ import signal
 import subprocess
 import sys
 
+# What a shell runs in the background ignores SIGINT, and so would all that is started here; but a
+# handler is not inherited.
+if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+
 WORKSPACE = pathlib.Path(__file__).resolve().parent.parent
 SITE = WORKSPACE / "build" / "docs"
 PAGES = sorted(path.relative_to(SITE).as_posix() for path in SITE.rglob("*.html"))

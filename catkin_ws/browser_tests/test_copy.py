@@ -52,4 +52,4 @@ def test_the_button_copies_exactly_the_code(page, browser):
         field.send_keys(Keys.CONTROL, "v")
         pasted = field.get_property("value")
         # Without its last line's end: pasted into a terminal, that would run it at once.
-        assert pasted == code.rstrip("\n")
+        assert pasted == code.removesuffix("\n")

@@ -140,7 +140,7 @@ int main(int argc, char* argv[])
   // Print each line at once, also into a pipe, and in one piece, also if others write there, too.
   setvbuf(stdout, nullptr, _IOLBF, BUFSIZ);
   setvbuf(stderr, nullptr, _IOLBF, BUFSIZ);
-  setlocale(LC_CTYPE, "C.UTF-8");            // print UTF-8, which roscpp otherwise shows as "?"
+  setlocale(LC_CTYPE, "C.UTF-8");  // print UTF-8, which roscpp otherwise shows as "?"
   ros::init(argc, argv, "lab_subscriber_cpp_node");
   ros::NodeHandle nh;
 
