@@ -98,7 +98,8 @@ def test_e12_interpreter_that_debian_has_not(tmp_path):
         text=True,
     )
     assert done.returncode == 127
-    assert done.stderr == "/usr/bin/env: 'python': No such file or directory\n"
+    # Debian 13's env leaves out its folder.
+    assert done.stderr.endswith("env: 'python': No such file or directory\n")
 
 
 def gxx(source, *options):

@@ -38,6 +38,8 @@ def masked(text):
 
     Lines of several nodes come in any order, and more or fewer of a kind: so it is a set.
     """
+    # Debian 13's env leaves out its folder, and the language decides upon the quotes.
+    text = text.replace("/usr/bin/env:", "env:").translate(str.maketrans("‘’", "''"))
     return {re.sub(r"(?<![\w.])-?\d+(\.\d+)?(?=s?(?!\w))", "#", line) for line in text.splitlines()}
 
 
