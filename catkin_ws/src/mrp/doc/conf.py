@@ -34,3 +34,13 @@ copybutton_selector = "div:not(.output) > div.highlight pre"
 
 # A link that leads nowhere is an error, as is everything that Sphinx warns of: it is run with -W.
 nitpicky = True
+
+# These only show code, define words, set tasks or list what there is (extension/proof.py).
+pages_without_claims = [
+    "index",
+    "pages/exercises",
+    "pages/glossary",
+    "pages/labs",
+    "pages/tests",
+    "pages/tldr",
+]

@@ -9,8 +9,9 @@ tests. What the proof may be:
     docker/FILE/CASE      a test case of docker/test/FILE.py
     broken/NAME           a variant of the tutorial that the tests must catch
 
-A proof that does not exist is a warning, and so an error. All that pages claim goes into the file
-proofs.json, by which a test sees whether each of them was run, and passed.
+A proof that does not exist is a warning, and so an error; so is a section that has none, and shows
+nothing recorded either, unless conf.py lists its page in pages_without_claims. All that pages claim
+goes into the file proofs.json, by which a test sees whether each of them was run, and passed.
 
 .. labs::   every lab: its claim, its launch file, its tests
 .. tests::  every test that a proof may be
@@ -157,6 +158,21 @@ class Tests(SphinxDirective):
         return [nodes.bullet_list("", *items)]
 
 
+def _warn_of_unproved(app, doctree):
+    """Warn of each section that has no proof, and shows nothing that was recorded.
+
+    A section with sections in it only introduces them.
+    """
+    if app.env.docname in app.config.pages_without_claims:
+        return
+    for section in doctree.findall(nodes.section):
+        inside = list(section.findall(nodes.Element))[1:]
+        if any(isinstance(node, nodes.section) for node in inside):
+            continue
+        if not any({"proof", "output"} & set(node.get("classes")) for node in inside):
+            logger.warning("no proof in this section: %s", section.next_node(nodes.title).astext())
+
+
 def _forget(app, env, docname):
     if hasattr(env, "mrp_proofs"):
         env.mrp_proofs.pop(docname, None)
@@ -172,6 +188,8 @@ def setup(app):
     app.add_role("proof", ProofRole())
     app.add_directive("labs", Labs)
     app.add_directive("tests", Tests)
+    app.add_config_value("pages_without_claims", [], "env")
+    app.connect("doctree-read", _warn_of_unproved)
     app.connect("env-purge-doc", _forget)
     app.connect("build-finished", _write)
     return {"parallel_read_safe": False}
