@@ -61,7 +61,7 @@ test: build  ## build, run every test, and print one summary
 .PHONY: labs
 labs:  ## list the labs: each is a launch file that shows one claim
 	@for file in catkin_ws/src/mrp_labs/launch/*.launch; do \
-	  printf '  %-44s %s\n' "roslaunch mrp_labs $$(basename $$file)" \
+	  printf '  %-52s %s\n' "roslaunch mrp_labs $$(basename $$file)" \
 	    "$$(sed -n '1s/<!-- \(.*\) -->/\1/p' $$file)"; done
 
 .PHONY: lint
