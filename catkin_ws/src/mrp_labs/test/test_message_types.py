@@ -141,15 +141,17 @@ REFUSED = {
 
 class TestMessageTypes(unittest.TestCase):
     def test_extremes(self):
-        groups = {"integers": INTEGERS, "floats": FLOATS, "structures": STRUCTURES}
+        launches = {
+            "message_types_integers.launch": ("integers", INTEGERS),
+            "message_types_floats.launch": ("floats", FLOATS),
+            "message_types_structures.launch": ("structures", STRUCTURES),
+        }
         with contextlib.ExitStack() as stack:
-            labs = {
-                group: stack.enter_context(Lab(f"message_types_{group}.launch")) for group in groups
-            }
-            for group, expected in groups.items():
+            labs = {launch: stack.enter_context(Lab(launch)) for launch in launches}
+            for launch, (group, expected) in launches.items():
                 for publisher in LANGUAGES:
                     for subscriber in LANGUAGES:
-                        self.check(labs[group], group, publisher, subscriber, expected)
+                        self.check(labs[launch], group, publisher, subscriber, expected)
 
     def test_out_of_range(self):
         with Lab("message_types_out_of_range.launch") as lab:
