@@ -5,11 +5,18 @@ import os
 import shutil
 import signal
 
+import pytest
 from containers import ROOT, docker, enough, run
 from process import Process
 
 
-def test_docker_run_ends_on_ctrl_c_and_leaves_no_container():
+@pytest.fixture
+def built():
+    """The image is that of these sources, so that no target has to build it first."""
+    run("make", "-C", ROOT, "docker-build")
+
+
+def test_docker_run_ends_on_ctrl_c_and_leaves_no_container(built):
     with Process("make", "-C", str(ROOT), "docker-run") as process:
         process.wait_for(lambda: enough(process.lines), "values at both subscribers")
         # Ctrl-C reaches make and all that it runs.
@@ -19,7 +26,7 @@ def test_docker_run_ends_on_ctrl_c_and_leaves_no_container():
     assert "done" in process.lines, str(process)
 
 
-def test_docker_up_shows_all_and_docker_down_takes_it_away():
+def test_docker_up_shows_all_and_docker_down_takes_it_away(built):
     def printed():
         """Return what the nodes printed: docker compose puts the container's name before it."""
         return [line.partition("| ")[2] for line in list(process.lines)]
