@@ -11,7 +11,6 @@ author = "The mrp maintainers"
 copyright = "The mrp maintainers. Text: CC BY 4.0"
 
 extensions = [
-    "sphinx.ext.graphviz",
     "sphinx_inline_tabs",
     "sphinx_copybutton",
     "source_code",
@@ -28,7 +27,6 @@ html_js_files = ["page.js"]
 html_favicon = "static/icon.svg"
 html_show_sourcelink = False
 html_show_sphinx = False
-graphviz_output_format = "svg"
 # What was printed is there to be read, not to be typed.
 copybutton_selector = "div:not(.output) > div.highlight pre"
 
