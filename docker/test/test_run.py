@@ -5,7 +5,7 @@ import re
 
 import contract
 import pytest
-from console import ROSLAUNCH_LINE, _check_live
+from console import ROSLAUNCH_LINE, check_live
 from containers import (
     container,
     docker,
@@ -31,7 +31,7 @@ def test_console_is_live_and_ends_on_ctrl_c(image, options):
     with removed(new_name()) as name:
         with Process("docker", "run", "--rm", "--name", name, *options, image) as process:
             process.wait_for(lambda: enough(process.lines), "values at both subscribers")
-            _check_live(received(process.lines))
+            check_live(received(process.lines))
             code = process.stop()
         assert code == 0, str(process)
         assert run("docker", "inspect", name, check=False).returncode != 0, "not removed"

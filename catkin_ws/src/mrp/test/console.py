@@ -38,7 +38,7 @@ def check_console(namespace, *roslaunch, env=None):
             lambda: any(len(values) >= _ENOUGH for values in received(process.lines).values()),
             lambda: f"{_ENOUGH} values in {received(process.lines)}",
         )
-        _check_live(received(process.lines))
+        check_live(received(process.lines))
         code = process.stop()
     assert code == 0, f"exit code {code} of {process}"
 
@@ -62,7 +62,11 @@ def check_console(namespace, *roslaunch, env=None):
         assert fault is None, f"{pair}: {fault} in {process}"
 
 
-def _check_live(values):
+def check_live(values):
+    """Raise AssertionError if one subscriber's values are held back, behind those of the other.
+
+    values: (subscriber's name, publisher's name) -> values, as of received()
+    """
     for publisher in contract.PUBLISHERS:
         shown = [values[s.name, publisher.name][-1:] for s in contract.SUBSCRIBERS]
         assert all(shown) and abs(shown[0][0] - shown[1][0]) <= _LATE * contract.STEP, (
