@@ -13,6 +13,7 @@
 
 #include <mrp_labs/message_text.h>
 #include <mrp_labs/parameters.h>
+#include <mrp_labs/start.h>
 #include <ros/ros.h>
 
 template <class Message>
@@ -55,17 +56,10 @@ public:
 
   void start()
   {
-    const ros::WallTime begin = ros::WallTime::now() + ros::WallDuration(delay_);
-    while (ros::ok() && ros::WallTime::now() < begin)
-    {
-      ros::WallDuration(0.02).sleep();
-    }
-
+    mrp_labs::wait(delay_);
     if (show_namespaces_)
     {
-      ROS_INFO_STREAM(name_ << " is in the namespace " << nh_.getNamespace()
-                            << " (ros::NodeHandle()); its own is "
-                            << ros::NodeHandle("~").getNamespace() << " (ros::NodeHandle(\"~\"))");
+      mrp_labs::printNamespaces();
     }
 
     // roscpp takes no "~" in a topic's name: the node's own namespace has a handle of its own.

@@ -10,6 +10,7 @@ import time
 import rospy
 from mrp_labs.message_text import MESSAGE_TYPES, from_text, pad_to
 from mrp_labs.parameters import Parameters
+from mrp_labs.start import print_namespaces, wait
 
 
 class LabPublisher:
@@ -43,15 +44,9 @@ class LabPublisher:
         self.sent = 0
 
     def start(self):
-        begin = time.monotonic() + self.delay
-        while not rospy.is_shutdown() and time.monotonic() < begin:
-            time.sleep(0.02)
-
+        wait(self.delay)
         if self.show_namespaces:
-            rospy.loginfo(
-                f"{rospy.get_name()} is in the namespace {rospy.get_namespace()}"
-                f" (rospy.get_namespace()); its own is {rospy.get_name()} (rospy.get_name())"
-            )
+            print_namespaces()
 
         self.publisher = rospy.Publisher(
             self.topic,

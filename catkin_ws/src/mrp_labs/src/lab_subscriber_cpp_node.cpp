@@ -11,6 +11,7 @@
 
 #include <mrp_labs/message_text.h>
 #include <mrp_labs/parameters.h>
+#include <mrp_labs/start.h>
 #include <ros/ros.h>
 
 template <class Message>
@@ -34,21 +35,14 @@ public:
 
   void start()
   {
-    while (ros::ok() && publishers() < wait_for_publishers_)
+    while (ros::ok() && wait_for_publishers_ > 0 && publishers() < wait_for_publishers_)
     {
       ros::WallDuration(0.1).sleep();
     }
-    const ros::WallTime begin = ros::WallTime::now() + ros::WallDuration(delay_);
-    while (ros::ok() && ros::WallTime::now() < begin)
-    {
-      ros::WallDuration(0.02).sleep();
-    }
-
+    mrp_labs::wait(delay_);
     if (show_namespaces_)
     {
-      ROS_INFO_STREAM(name_ << " is in the namespace " << nh_.getNamespace()
-                            << " (ros::NodeHandle()); its own is "
-                            << ros::NodeHandle("~").getNamespace() << " (ros::NodeHandle(\"~\"))");
+      mrp_labs::printNamespaces();
     }
 
     subscriber_ = subscribe(topic_);

@@ -10,6 +10,7 @@ import rosgraph
 import rospy
 from mrp_labs.message_text import MESSAGE_TYPES, to_text
 from mrp_labs.parameters import Parameters
+from mrp_labs.start import print_namespaces, wait
 
 
 class LabSubscriber:
@@ -28,17 +29,15 @@ class LabSubscriber:
         parameters.no_others()
 
     def start(self):
-        while not rospy.is_shutdown() and self.publishers() < self.wait_for_publishers:
+        while (
+            not rospy.is_shutdown()
+            and self.wait_for_publishers > 0
+            and self.publishers() < self.wait_for_publishers
+        ):
             time.sleep(0.1)
-        begin = time.monotonic() + self.delay
-        while not rospy.is_shutdown() and time.monotonic() < begin:
-            time.sleep(0.02)
-
+        wait(self.delay)
         if self.show_namespaces:
-            rospy.loginfo(
-                f"{rospy.get_name()} is in the namespace {rospy.get_namespace()}"
-                f" (rospy.get_namespace()); its own is {rospy.get_name()} (rospy.get_name())"
-            )
+            print_namespaces()
 
         self.subscriber = self.subscribe(self.topic)
         if self.other_topic:
