@@ -1,0 +1,401 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Python starts with this file, in a confined run of a Python node, and tells what the node does.
+
+It writes one JSON object a line to the file MRP_CHECK_HOOK. Places are those of the package's own
+code, which lies under MRP_CHECK_SOURCES:
+
+    {"event": "init" | "publisher" | "subscriber" | "publish" | "timer", "file", "line", ...}
+    {"event": "exit", "code", "file", "line"}   sys.exit() with another code than 0
+
+With MRP_CHECK_WRAP, a JSON object with "field", "start", "step" and "modulus", it looks for the
+counter of what is published, after three messages sets it near its end, and tells what follows:
+
+    {"event": "set", "names", "next"}    or   {"event": "not_found"}
+    {"event": "after", "value"}          or   {"event": "error", "text", "value", "file", "line"}
+
+On SIGUSR1 it prints where each thread stands.
+"""
+
+import ctypes
+import faulthandler
+import fractions
+import importlib.abc
+import importlib.util
+import itertools
+import json
+import os
+import signal
+import sys
+import types
+
+_SOURCES = os.path.realpath(os.environ.get("MRP_CHECK_SOURCES", "/nowhere")) + "/"
+_WRAP = json.loads(os.environ.get("MRP_CHECK_WRAP", "null"))
+
+_LOOK = 3  # messages after which the counter should be known
+_GIVE_UP = 8
+_AFTER = 4  # messages that are told after the counter was set
+_FRAMES = 8
+
+
+def _tell(event, **what):
+    try:
+        with open(os.environ["MRP_CHECK_HOOK"], "a") as file:
+            file.write(json.dumps({"event": event, **what}, default=str) + "\n")
+    except (OSError, KeyError, ValueError):
+        pass  # the node goes on in any case
+
+
+def _is_own(frame):
+    return os.path.realpath(frame.f_code.co_filename).startswith(_SOURCES)
+
+
+def _own_frames():
+    """Return the frames of the package's own code that led here, the innermost first."""
+    frame, frames = sys._getframe(2), []
+    while frame and len(frames) < _FRAMES:
+        if _is_own(frame):
+            frames.append(frame)
+        frame = frame.f_back
+    return frames
+
+
+def _place(frames):
+    """Return the file, relative to the sources, and the line of the innermost frame."""
+    if not frames:
+        return {"file": None, "line": None}
+    path = os.path.realpath(frames[0].f_code.co_filename)
+    return {"file": path[len(_SOURCES) :], "line": frames[0].f_lineno}
+
+
+# --- What the node calls
+
+
+def _tell_calls(rospy):
+    told = set()
+
+    def tell_once(event, **what):
+        key = (event, what.get("file"), what.get("line"))
+        # What rospy does by itself is no news.
+        if key not in told and what["file"] and what.get("topic") != "/rosout":
+            told.add(key)
+            _tell(event, **what)
+
+    def before(owner, name, event, describe):
+        original = getattr(owner, name)
+
+        def called(*arguments, **keywords):
+            frames = _own_frames()
+            try:
+                tell_once(event, **_place(frames), **describe(arguments, keywords))
+            except Exception:  # the node decides itself what it makes of its mistake
+                pass
+            return original(*arguments, **keywords)
+
+        called.__name__, called.__doc__ = name, original.__doc__
+        setattr(owner, name, called)
+
+    def first(arguments, keywords, name, index):
+        return arguments[index] if len(arguments) > index else keywords.get(name)
+
+    def callback_of(arguments, keywords):
+        function = first(arguments, keywords, "callback", 3)
+        code = getattr(getattr(function, "__func__", function), "__code__", None)
+        path = os.path.realpath(code.co_filename) if code else ""
+        own = path.startswith(_SOURCES)
+        return {
+            "topic": first(arguments, keywords, "name", 1),
+            "callback_file": path[len(_SOURCES) :] if own else None,
+            "callback_line": code.co_firstlineno if own else None,
+        }
+
+    before(rospy, "init_node", "init", lambda a, k: {"name": first(a, k, "name", 0)})
+    before(rospy.Publisher, "__init__", "publisher", lambda a, k: {"topic": first(a, k, "name", 1)})
+    before(rospy.Subscriber, "__init__", "subscriber", callback_of)
+    before(rospy.Timer, "__init__", "timer", lambda a, k: {})
+    before(rospy.Rate, "__init__", "timer", lambda a, k: {})
+    _watch_publish(rospy, tell_once)
+
+
+def _watch_publish(rospy, tell_once):
+    original = rospy.Publisher.publish
+    wrap = _Wrap(_WRAP) if _WRAP else None
+
+    def publish(self, *arguments, **keywords):
+        frames = _own_frames()
+        place = _place(frames)
+        tell_once("publish", topic=self.resolved_name, **place)
+        value = None
+        if wrap:
+            try:
+                message = rospy.msg.args_kwds_to_message(self.data_class, arguments, keywords)
+                value = _field(message, _WRAP["field"])
+            except Exception:
+                pass  # original() fails on it, too
+        try:
+            result = original(self, *arguments, **keywords)
+        except BaseException as error:
+            if wrap:
+                wrap.failed(error, value, place)
+            raise
+        if wrap and value is not None:
+            wrap.published(value, frames)
+        return result
+
+    publish.__doc__ = original.__doc__
+    rospy.Publisher.publish = publish
+
+
+def _field(message, path):
+    for name in path.split("."):
+        message = getattr(message, name)
+    return message
+
+
+def _tell_exits():
+    for module, name in ((sys, "exit"), (os, "_exit")):
+        original = getattr(module, name)
+
+        def leave(code=0, _original=original):
+            if code not in (0, None):
+                _tell("exit", code=code, **_place(_own_frames()))
+            _original(code)
+
+        setattr(module, name, leave)
+
+
+class _AfterRospy(importlib.abc.MetaPathFinder):
+    """Has _tell_calls done as soon as the node has imported rospy, not before."""
+
+    def find_spec(self, name, path, target=None):
+        if name != "rospy":
+            return None
+        sys.meta_path.remove(self)
+        spec = importlib.util.find_spec(name)
+        if spec and spec.loader:
+            load = spec.loader.exec_module
+
+            def exec_module(module):
+                load(module)
+                _tell_calls(module)
+
+            spec.loader.exec_module = exec_module
+        return spec
+
+
+# --- The counter
+
+
+class _Wrap:
+    """Finds what follows the published values, sets it, and tells what is published then.
+
+    Everything that holds a whole number and that the publishing code can see is compared with the
+    published values: what is an affine function of them (as x = 2 * value + 1), at three messages,
+    follows them. All that follows is set; so it does not matter which of it is only a copy.
+    """
+
+    def __init__(self, rule):
+        start, step, modulus = rule["start"], rule["step"], rule["modulus"]
+        self.step = step
+        self.last = start + (modulus - 1 - start) // step * step  # before it wraps round
+        self.seen, self.after, self.done = [], None, False
+
+    def published(self, value, frames):
+        if self.done:
+            return
+        if self.after is not None:
+            _tell("after", value=value)
+            self.after += 1
+            self.done = self.after >= _AFTER
+            return
+        slots = {slot.key: slot for slot in _slots(frames)}
+        self.seen.append((value, {key: slot.value for key, slot in slots.items()}))
+        if len(self.seen) >= _LOOK:
+            self._set(slots)
+        if self.after is None and len(self.seen) >= _GIVE_UP:
+            self.done = True
+            _tell("not_found")
+
+    def _set(self, slots):
+        recent = self.seen[-_LOOK:]
+        names = []
+        for key, slot in slots.items():
+            relation = _relation([(v, found.get(key)) for v, found in recent])
+            if relation is None:
+                continue
+            # As if the last value but one had just been published.
+            number = relation(self.last - self.step)
+            if number is not None and slot.set(number):
+                names.append(slot.name)
+        if names:
+            self.after = 0
+            _tell("set", names=sorted(set(names)), next=self.last)
+
+    def failed(self, error, value, place):
+        if self.after is not None and not self.done:
+            self.done = True
+            _tell("error", text=f"{type(error).__name__}: {error}", value=value, **place)
+
+
+def _relation(pairs):
+    """Return the function that gives a slot's number for a published value, or None.
+
+    pairs: (published value, number in the slot) of some messages
+    """
+    if any(number is None for _, number in pairs):
+        return None
+    (v0, n0), (v1, n1) = pairs[:2]
+    if v0 == v1 or n0 == n1:
+        return None
+    slope = fractions.Fraction(n1 - n0, v1 - v0)
+    if any(n0 + slope * (v - v0) != n for v, n in pairs):
+        return None
+
+    def number_for(value):
+        number = n0 + slope * (value - v0)
+        return int(number) if number.denominator == 1 else None
+
+    return number_for
+
+
+class _Slot:
+    """Something that holds a whole number.
+
+    key: the same at each message
+    """
+
+    def __init__(self, key, name, held, put):
+        self.key, self.name = key, name
+        self._held, self._put = held, put
+        self.value = _number(held)
+
+    def set(self, number):
+        try:
+            self._put(_like(self._held, number))
+            return True
+        except Exception:
+            return False
+
+
+def _number(held):
+    """Return the whole number that something is, or None if it is none."""
+    if isinstance(held, bool):
+        return None
+    if isinstance(held, int):
+        return held
+    if isinstance(held, float) and held.is_integer():
+        return int(held)
+    if isinstance(held, itertools.count):
+        return held.__reduce__()[1][0]
+    if type(held).__module__ == "numpy" and hasattr(held, "__index__"):
+        return int(held)
+    if isinstance(held, ctypes._SimpleCData) and isinstance(held.value, int):
+        return held.value
+    return None
+
+
+def _put_inside(held):
+    return lambda one: setattr(held, "value", one.value)
+
+
+def _like(held, number):
+    if isinstance(held, itertools.count):
+        return itertools.count(number, *held.__reduce__()[1][1:])
+    return type(held)(number)
+
+
+def _slots(frames):
+    seen = set()
+    for depth, frame in enumerate(frames):
+        variables = frame.f_locals
+        if variables is frame.f_globals:
+            continue
+        for name, held in list(variables.items()):
+            put = _local_setter(frame, name)
+            key = ("local", depth, frame.f_code.co_name, name)
+            yield from _slots_of(held, key, name, put, seen, 0)
+    for frame in frames:
+        if id(frame.f_globals) in seen:
+            continue
+        seen.add(id(frame.f_globals))
+        for name, held in list(frame.f_globals.items()):
+            if not name.startswith("__"):
+                put = _item_setter(frame.f_globals, name)
+                yield from _slots_of(held, ("global", name), name, put, seen, 0)
+
+
+def _slots_of(held, key, name, put, seen, depth):
+    if _number(held) is not None:
+        # A C number is changed in its place: others may hold the same one.
+        inside = isinstance(held, ctypes._SimpleCData)
+        yield _Slot(key, name, held, _put_inside(held) if inside else put)
+        return
+    skip = (str, bytes, types.ModuleType, types.FunctionType, types.BuiltinFunctionType)
+    if depth > 3 or id(held) in seen or held is None or isinstance(held, skip):
+        return
+    is_array = type(held).__module__ == "numpy" and getattr(held, "ndim", 0) == 1
+    if isinstance(held, (list, dict)) or is_array:
+        if len(held) <= 20:
+            seen.add(id(held))
+            items = list(held.items() if isinstance(held, dict) else enumerate(held))
+            for index, one in items:
+                setter = _item_setter(held, index)
+                yield from _slots_of(one, (*key, index), name, setter, seen, depth + 1)
+        return
+    names = list(getattr(held, "__dict__", None) or ()) if _is_of_package(held) else []
+    if isinstance(held, type):
+        names = [n for n in names if not n.startswith("__")]
+    elif _is_of_package(held):
+        # Not what is computed at each look, such as a property.
+        of_class = vars(type(held)).items()
+        names += [n for n, v in of_class if not n.startswith("__") and not hasattr(v, "__get__")]
+        names += list(getattr(type(held), "__slots__", ()))
+    elif hasattr(held, "_md5sum"):  # a message that is kept, and published again and again
+        names = list(held.__slots__)
+    seen.add(id(held))
+    for attribute in names:
+        try:
+            one = getattr(held, attribute)
+        except Exception:
+            continue
+        # An attribute of the class is set there: all its objects share it.
+        owner = held if isinstance(held, type) or attribute in _own_names(held) else type(held)
+        setter = _attribute_setter(owner, attribute)
+        yield from _slots_of(one, (*key, attribute), attribute, setter, seen, depth + 1)
+
+
+def _own_names(held):
+    return set(getattr(held, "__dict__", ())) | set(getattr(held, "__slots__", ()))
+
+
+def _is_of_package(held):
+    """Return whether something is a class of the package's own code, or an object of one."""
+    kind = held if isinstance(held, type) else type(held)
+    module = sys.modules.get(kind.__module__)
+    path = os.path.realpath(getattr(module, "__file__", None) or "")
+    # What catkin's relay runs calls itself __main__, but lies elsewhere.
+    return path.startswith(_SOURCES) or kind.__module__ in ("__main__", "builtins.__main__")
+
+
+def _item_setter(container, index):
+    return lambda value: container.__setitem__(index, value)
+
+
+def _attribute_setter(owner, name):
+    return lambda value: setattr(owner, name, value)
+
+
+def _local_setter(frame, name):
+    def put(value):
+        frame.f_locals[name] = value
+        if sys.version_info < (3, 13):
+            to_fast = ctypes.pythonapi.PyFrame_LocalsToFast
+            to_fast.argtypes = [ctypes.py_object, ctypes.c_int]
+            to_fast(frame, 0)
+
+    return put
+
+
+if "MRP_CHECK_HOOK" in os.environ:
+    faulthandler.register(signal.SIGUSR1, all_threads=True)
+    sys.meta_path.insert(0, _AfterRospy())
+    _tell_exits()

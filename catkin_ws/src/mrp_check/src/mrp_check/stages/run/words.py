@@ -1,0 +1,36 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""How findings word what was seen."""
+
+from __future__ import annotations
+
+import re
+
+# What a node logs is shown on the console behind this.
+PREFIX = re.compile(r"\[ ?(?P<level>DEBUG|INFO|WARN|ERROR|FATAL)\] \[[\d., ]+\]: ?")
+
+_SIGNALS = {
+    5: "a failed assertion",
+    6: "abort",
+    8: "division by zero",
+    9: "kill",
+    11: "invalid memory",
+    15: "SIGTERM",
+}
+
+
+def few(values):
+    """Return the first values as a text."""
+    return ", ".join(map(str, values[:4])) + (", ..." if len(values) > 4 else "")
+
+
+def last_words(lines):
+    """Return the last line that says something, or an empty text."""
+    lines = [line.strip() for line in lines if PREFIX.sub("", line).strip()]
+    return lines[-1][:300] if lines else ""
+
+
+def code_text(code):
+    """Return an exit code in words; a negative one is a signal."""
+    if code is not None and code < 0:
+        return f"killed by signal {-code} ({_SIGNALS.get(-code, 'see man 7 signal')})"
+    return f"with exit code {code}"

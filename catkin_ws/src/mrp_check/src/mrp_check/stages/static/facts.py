@@ -1,0 +1,67 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What the sources say: where each node's name, topics, messages, counters and lines are.
+
+The later stages use it to name the file and the line of what they see happen.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+
+
+@dataclasses.dataclass
+class Place:
+    """Something in a source.
+
+    file: relative to the package
+    line: from 1
+    kind: init, publisher, subscriber, publish, timer, counter (a first value), step (its change),
+          data (a message's field is set), log, print, spin, loop, sleep, exit, signal, catch (of
+          KeyboardInterrupt), thread, function; in C++ also handle, global (at file scope),
+          discarded and local (what is made and ends too soon)
+    text: the constant text, such as a topic's or a node's name, or a line that is logged with {}
+          for each value in it; None if the source does not say it plainly
+    values: more that the source says plainly: type, queue, queue_line, latch, period (seconds),
+            oneshot, level, name, value, step, modulus, code, bits, function, unused
+    """
+
+    file: str
+    line: int
+    kind: str
+    text: str | None = None
+    values: dict = dataclasses.field(default_factory=dict)
+
+
+@dataclasses.dataclass
+class Facts:
+    """What all sources say.
+
+    places: of all sources, in order
+    sources: name of a node of the spec -> the files it is made of, the main one first
+    launch: name of a node of the launch file -> (file, line of its <node>)
+    unread: the files that could not be read to their end: what they lack proves nothing
+    """
+
+    places: list[Place] = dataclasses.field(default_factory=list)
+    sources: dict[str, list[str]] = dataclasses.field(default_factory=dict)
+    launch: dict[str, tuple[str, int]] = dataclasses.field(default_factory=dict)
+    unread: set[str] = dataclasses.field(default_factory=set)
+
+    def of(self, node, *kinds):
+        """Return the places of these kinds in the sources of a node of the spec, in order."""
+        files = self.sources.get(node, [])
+        found = [p for p in self.places if p.file in files and (not kinds or p.kind in kinds)]
+        return sorted(found, key=lambda place: (files.index(place.file), place.line))
+
+    def place_of(self, node, *kinds):
+        """Return (file, line) of the first place of the first kind that there is.
+
+        Without any, it is the node's <node> in the launch file, or its source's first line; without
+        these, (None, None).
+        """
+        for kind in kinds:
+            for place in self.of(node, kind):
+                return place.file, place.line
+        if self.sources.get(node):
+            return self.sources[node][0], 1
+        return self.launch.get(node, (None, None))

@@ -1,0 +1,85 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Small packages for the tests of the checker's rules: a rule sees the files, nothing is built."""
+
+import pathlib
+
+from mrp_check import check, spec
+from mrp_check.package import Package
+from mrp_check.stages import cmake, uses
+from mrp_check.stages.catkin import Catkin
+from mrp_check.stages.static import facts, python_facts, python_rules
+
+MANIFEST = """<?xml version="1.0"?>
+<package format="3">
+  <name>some_pkg</name>
+  <version>0.1.0</version>
+  <description>A package.</description>
+  <maintainer email="someone@some.example">Someone</maintainer>
+  <license>BSD-3-Clause</license>
+  <buildtool_depend>catkin</buildtool_depend>
+  <depend>roscpp</depend>
+  <depend>rospy</depend>
+  <depend>std_msgs</depend>
+</package>
+"""
+CMAKE = """cmake_minimum_required(VERSION 3.10)
+project(some_pkg)
+find_package(catkin REQUIRED COMPONENTS roscpp rospy std_msgs)
+catkin_package(CATKIN_DEPENDS roscpp rospy std_msgs)
+catkin_install_python(PROGRAMS src/odd.py DESTINATION bin)
+"""
+PUB_SUB = spec.read(spec.find("pub_sub"))
+
+
+def make(folder, **files):
+    """Make a package of files (double underscores stand for slashes, one for a dot); return it."""
+    folder = pathlib.Path(folder)
+    given = {"package.xml": MANIFEST, "CMakeLists.txt": CMAKE}
+    given.update({name.replace("__", "/").replace("_DOT_", "."): f for name, f in files.items()})
+    for name, content in given.items():
+        path = folder / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_bytes(content if isinstance(content, bytes) else content.encode())
+        if name.endswith(".py"):
+            path.chmod(0o755)
+    return Package(folder)
+
+
+def workspace_of(package, folder):
+    """Return a Workspace for a package in a new folder; close its `catkin` in the end."""
+    folder.mkdir()
+    workspace = check._workspace(package, folder, 120, lambda sentence: None)
+    workspace.catkin = Catkin(workspace)
+    return workspace
+
+
+def model_of(package):
+    """Return what CMakeLists.txt says, read as text."""
+    text = package.text("CMakeLists.txt")
+    calls = cmake.parsed(text, "CMakeLists.txt")
+    model = cmake.Model(package.root, calls, complete=True)
+    uses.is_ros_package.cache_clear()
+    return model
+
+
+def python_findings(folder, source):
+    """Return the findings of the Python rules about a source, that of a file src/odd.py."""
+    package = make(folder, src__odd_DOT_py=source)
+    read, problem = python_rules.read(package, "src/odd.py")
+    return [problem] if problem else list(python_rules.findings(package, read))
+
+
+def python_facts_of(folder, source):
+    """Return the Facts of a package whose node publisher_py_node is the source."""
+    package = make(folder, src__odd_DOT_py=source)
+    read, problem = python_rules.read(package, "src/odd.py")
+    assert problem is None
+    found = facts.Facts(places=python_facts.places(read))
+    found.sources["publisher_py_node"] = ["src/odd.py"]
+    return package, found
+
+
+def told(findings, *severities):
+    """Return (id, line) of the findings with these severities; of errors and warnings if none."""
+    severities = severities or ("error", "warning")
+    return [(finding.id, finding.line) for finding in findings if finding.severity in severities]

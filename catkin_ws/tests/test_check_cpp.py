@@ -1,0 +1,172 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The checker's rules about C++ sources, as clang reads them; nothing is built."""
+
+import json
+import pathlib
+import re
+import subprocess
+
+import check_rules
+import pytest
+from check_rules import PUB_SUB, told
+from mrp_check.stages import static
+from mrp_check.stages.static import facts as facts_
+from mrp_check.stages.static import node_rules
+
+FOLDER = pathlib.Path(__file__).resolve().parents[1] / "src" / "mrp" / "src"
+PUBLISHER, SUBSCRIBER = "publisher_cpp_node", "subscriber_cpp_node"
+SOURCES = {name: (FOLDER / f"{name}.cpp").read_text() for name in (PUBLISHER, SUBSCRIBER)}
+
+
+def findings(folder, node, source):
+    """Return what the rules say of a node of the tutorial that is made of a source."""
+    package = check_rules.make(folder, src__a_DOT_cpp=source)
+    task = {"folder": str(folder), "units": [[str(folder / "src/a.cpp"), "-std=gnu++17"]]}
+    done = subprocess.run(
+        ["/usr/bin/python3", static._CPP_FACTS, json.dumps(task)],
+        stdout=subprocess.PIPE,
+        check=True,
+    )
+    (said,) = json.loads(done.stdout).values()
+    assert said["errors"] == []
+    facts = facts_.Facts()
+    static._mark_unused(facts, static._take(package, facts, "src/a.cpp", said))
+    facts.sources[node] = ["src/a.cpp"]
+    model = check_rules.model_of(package)
+    return list(node_rules.findings(package, PUB_SUB, model, None, facts))
+
+
+def replaced(node, *changes):
+    source = SOURCES[node]
+    for old, new in changes:
+        assert source.count(old) == 1, old
+        source = source.replace(old, new)
+    return source
+
+
+INIT = '  ros::init(argc, argv, "publisher_cpp_node");\n'
+TIMER = "timer_ = nh_.createTimer(ros::Duration(0.5), &PublisherCppNode::timerCallback, this);"
+ADVERTISE = 'publisher_ = nh_.advertise<std_msgs::UInt32>("great_topic", 10);'
+SUBSCRIBE = "subscriber_ = nh_.subscribe"
+
+# The node, what is replaced, and the finding: its id, the text of its line, and a word of it.
+BROKEN = {
+    "no_init": (PUBLISHER, [(INIT, "")], "node-start", "main(", r"ros::init"),
+    "handle_first": (
+        PUBLISHER,
+        [(INIT, ""), ('  ros::NodeHandle nh("~");\n', '  ros::NodeHandle nh("~");\n' + INIT)],
+        "node-start",
+        'nh("~")',
+        "before",
+    ),
+    "global_handle": (
+        PUBLISHER,
+        [("int main(", "ros::NodeHandle early;\n\nint main(")],
+        "node-start",
+        "early",
+        "before main",
+    ),
+    "other_name": (
+        PUBLISHER,
+        [('"publisher_cpp_node"', '"publisher"')],
+        "node-name",
+        "ros::init",
+        PUBLISHER,
+    ),
+    "no_spin": (PUBLISHER, [("  ros::spin();\n", "")], "spin", "return 0", "end"),
+    "spin_once": (SUBSCRIBER, [("ros::spin()", "ros::spinOnce()")], "spin", "spinOnce", "at once"),
+    "local": (
+        PUBLISHER,
+        [(ADVERTISE, "ros::Publisher " + ADVERTISE)],
+        "lifetime",
+        "advertise",
+        "PublisherCppNode",
+    ),
+    "discarded": (
+        SUBSCRIBER,
+        [(SUBSCRIBE, "nh_.subscribe")],
+        "lifetime",
+        "subscribe",
+        "kept nowhere",
+    ),
+    "timer_discarded": (
+        PUBLISHER,
+        [(TIMER, TIMER.replace("timer_ = ", ""))],
+        "lifetime",
+        "createTimer",
+        "kept nowhere",
+    ),
+    "no_timer": (PUBLISHER, [(TIMER, "")], "callbacks", "void timerCallback", "nobody ever"),
+    "short_counter": (
+        PUBLISHER,
+        [("uint32_t counter_", "uint16_t counter_")],
+        "wrap",
+        "uint16_t",
+        "65535",
+    ),
+    "signed_counter": (
+        PUBLISHER,
+        [("uint32_t counter_", "int counter_")],
+        "wrap",
+        "int counter_",
+        "undefined",
+    ),
+    "float_counter": (
+        PUBLISHER,
+        [("uint32_t counter_", "float counter_")],
+        "wrap",
+        "float",
+        "never wraps",
+    ),
+    "short_queue": (SUBSCRIBER, [('"great_topic", 10', '"great_topic", 1')], "queue", "1,", "one"),
+}
+
+
+@pytest.mark.parametrize(("node", "changes", "id_", "line", "words"), BROKEN.values(), ids=BROKEN)
+def test_broken_line_is_found(node, changes, id_, line, words, tmp_path):
+    source = replaced(node, *changes)
+    found = findings(tmp_path, node, source)
+    assert [finding.id for finding in found] == [id_], found
+    assert line in source.splitlines()[found[0].line - 1]
+    assert re.search(words, f"{found[0].message} {found[0].expected}")
+
+
+OWN_THREAD = """  ros::AsyncSpinner one(1);
+  one.start();
+  ros::waitForShutdown();
+"""
+LOOP = """  ros::Rate rate(10);
+  while (ros::ok())
+  {
+    ros::spinOnce();
+    rate.sleep();
+  }
+"""
+LAMBDA = "[this](const ros::TimerEvent& e) { timerCallback(e); }"
+CORRECT = {
+    "as_it_is": (PUBLISHER, []),
+    "subscriber": (SUBSCRIBER, []),
+    "global_publisher": (
+        PUBLISHER,
+        [
+            ("  ros::Publisher publisher_;\n", ""),
+            ("class Pub", "ros::Publisher publisher_;\n\nclass Pub"),
+        ],
+    ),
+    "own_thread": (SUBSCRIBER, [("  ros::spin();\n", OWN_THREAD)]),
+    "loop": (SUBSCRIBER, [("  ros::spin();\n", LOOP)]),
+    "lambda": (PUBLISHER, [("&PublisherCppNode::timerCallback, this", LAMBDA)]),
+    "on_the_heap": (
+        PUBLISHER,
+        [
+            ("  PublisherCppNode node;", "  auto node = std::make_unique<PublisherCppNode>();"),
+            ("#include <cstdint>", "#include <cstdint>\n#include <memory>"),
+        ],
+    ),
+    "long_counter": (PUBLISHER, [("uint32_t counter_", "uint64_t counter_")]),
+}
+
+
+@pytest.mark.parametrize(("node", "changes"), CORRECT.values(), ids=CORRECT)
+def test_what_is_correct_is_not_flagged(node, changes, tmp_path):
+    assert told(findings(tmp_path, node, replaced(node, *changes))) == []

@@ -1,0 +1,244 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The checker's reports, and its command line: exit codes and messages."""
+
+import html.parser
+import json
+import os
+import subprocess
+import xml.etree.ElementTree as ElementTree
+
+import jsonschema
+import pytest
+import scratch
+from mrp_check import causes, check, resources
+from mrp_check.finding import Finding
+from mrp_check.report import console, json_, junit
+from mrp_check.report import html as html_report
+from mrp_check.requirements import REQUIREMENTS
+from mrp_check.stages.static.facts import Facts
+
+CHECK = scratch.WORKSPACE / "src" / "mrp_check" / "scripts" / "check"
+CAUSE = Finding(
+    "spin",
+    "It never spins.",
+    "src/a.py",
+    3,
+    expected="rospy.spin()",
+    seen="<nothing & more>",
+    fix="Add\n+rospy.spin()",
+    stage="static",
+)
+RESULT = Finding("values", "No value came.", "src/a.py", 9, consequence_of="spin", stage="run")
+NOTE = Finding("lifetime", "It is not kept.", "src/a.py", 4, severity="note", stage="static")
+
+
+def report(*findings, reason=""):
+    verdicts = {id_: check.MET for id_ in REQUIREMENTS}
+    verdicts.update({f.id: check.BROKEN for f in findings if f.severity == "error"})
+    verdicts.update({f.id: check.UNCHECKED for f in findings if f.consequence_of})
+    broken = any(f.severity == "error" for f in findings)
+    verdict = check.UNCHECKED if reason else check.FINDINGS if broken else check.MET
+    return check.Report("a_pkg", "An exercise", verdict, list(findings), verdicts, reason)
+
+
+REPORTS = [report(), report(CAUSE, RESULT, NOTE), report(reason="There is no folder x.")]
+
+
+@pytest.mark.parametrize("one", REPORTS, ids=lambda one: one.verdict)
+def test_json_is_as_its_schema_says(one):
+    schema = json.loads((resources.folder("schema") / "report.json").read_text())
+    jsonschema.validate(json.loads(json_.text(one)), schema)
+
+
+def test_schema_refuses_what_is_no_report():
+    schema = json.loads((resources.folder("schema") / "report.json").read_text())
+    data = json.loads(json_.text(report(CAUSE)))
+    data["findings"][0]["line"] = 0
+    with pytest.raises(jsonschema.ValidationError):
+        jsonschema.validate(data, schema)
+
+
+def test_junit_counts():
+    suite = ElementTree.fromstring(junit.text(report(CAUSE, RESULT, NOTE)))
+    counts = {name: int(suite.get(name)) for name in ("tests", "failures", "errors", "skipped")}
+    assert counts == {"tests": len(REQUIREMENTS), "failures": 1, "errors": 0, "skipped": 1}
+    (failure,) = suite.iter("failure")
+    assert failure.get("message") == CAUSE.message
+    assert ElementTree.fromstring(junit.text(REPORTS[2])).get("errors") == "1"
+
+
+def test_junit_is_xml_whatever_was_printed():
+    text = junit.text(report(Finding("console", "It printed \x1b[2J\x00.", seen="\ufffe")))
+    assert "\x1b" not in text
+    ElementTree.fromstring(text)
+
+
+class Reader(html.parser.HTMLParser):
+    """Collects a page's text and tags, and fails where one is not closed."""
+
+    VOID = {"meta", "br"}
+
+    def __init__(self, text):
+        super().__init__()
+        self.open, self.tags, self.text = [], [], ""
+        self.feed(text)
+        assert self.open == []
+
+    def handle_starttag(self, tag, attributes):
+        self.tags.append((tag, dict(attributes)))
+        if tag not in self.VOID:
+            self.open.append(tag)
+
+    def handle_endtag(self, tag):
+        assert self.open.pop() == tag
+
+    def handle_data(self, data):
+        self.text += data
+
+
+@pytest.mark.parametrize("one", REPORTS, ids=lambda one: one.verdict)
+def test_page_needs_nothing_else(one):
+    page = Reader(html_report.text(one))
+    names = {tag for tag, _ in page.tags}
+    assert not names & {"script", "link", "img", "iframe"}
+    for finding in one.findings:
+        assert finding.message in page.text
+    assert one.reason in page.text
+
+
+def test_page_shows_what_a_package_says_as_text():
+    page = Reader(html_report.text(report(Finding("console", "<script>alert(1)</script>"))))
+    assert "<script>alert(1)</script>" in page.text
+
+
+def test_console_shows_verdicts_causes_first_and_pages():
+    text = console.text(report(NOTE, RESULT, CAUSE))
+    assert "  [FAIL] Each node waits for callbacks (spin)" in text
+    assert "  [--]   Publishers publish the right values (values)" in text
+    assert text.index("src/a.py:3: error:") < text.index("src/a.py:9: error:")
+    assert text.index("src/a.py:9: error:") < text.index("src/a.py:4: note:")
+    assert "  page:     pages/publisher.html" in text
+    assert text.endswith("1 of 37 requirements are not met; 1 could not be checked.")
+
+
+def test_console_has_colours_only_where_asked():
+    assert "\x1b" not in console.text(report(CAUSE))
+    assert "\x1b[31m" in console.text(report(CAUSE), colours=True)
+    assert "\x1b" not in console.text(report(Finding("console", "It printed \x1b[2J.")))
+
+
+def facts():
+    found = Facts()
+    found.sources = {"a": ["src/a.py"], "b": ["src/b.py"]}
+    return found
+
+
+def findings(*entries):
+    return [
+        Finding(id_, "It is so.", file, line, stage=stage, node=node)
+        for id_, file, line, stage, node in entries
+    ]
+
+
+@pytest.mark.parametrize(
+    ("entries", "expected"),
+    [
+        # What one node does wrong, it does wrong when it runs, and others notice.
+        ([("spin", "src/a.py", 1, "static", "a"), ("starts", "src/a.py", 1, "run", "a")], ["spin"]),
+        (
+            [
+                ("python-syntax", "src/a.py", 1, "static", None),
+                ("values", "src/a.py", 5, "run", "a"),
+            ],
+            ["python-syntax"],
+        ),
+        (
+            [
+                ("python-syntax", "src/a.py", 1, "static", None),
+                ("received", "src/b.py", 5, "run", "b"),
+            ],
+            ["python-syntax"],
+        ),
+        (
+            [
+                ("python-names", "src/a.py", 5, "static", None),
+                ("spin", "src/a.py", 5, "static", "a"),
+            ],
+            ["python-names"],
+        ),
+        # Another node's own fault is its own.
+        ([("spin", "src/a.py", 1, "static", "a"), ("exit", "src/b.py", 5, "stop", "b")], [None]),
+        ([("queue", "src/a.py", 1, "static", "a"), ("values", "src/a.py", 5, "run", "a")], [None]),
+        # What keeps all from being built.
+        (
+            [("configure", "CMakeLists.txt", 1, "build", None), ("starts", None, None, "run", "b")],
+            ["configure"],
+        ),
+        (
+            [
+                ("targets", "CMakeLists.txt", 4, "files", None),
+                ("configure", "CMakeLists.txt", 4, "build", None),
+            ],
+            ["targets"],
+        ),
+        # Two faults of the same kind in two sources are two.
+        (
+            [
+                ("compile", "src/a.cpp", 4, "build", None),
+                ("compile", "src/b.cpp", 4, "build", None),
+            ],
+            [None],
+        ),
+    ],
+    ids=range(9),
+)
+def test_consequences(entries, expected):
+    told = causes.told_once(findings(*entries), facts())
+    assert [finding.consequence_of for finding in told] == [None, *expected]
+
+
+def test_the_same_is_told_once():
+    entry = ("spin", "src/a.py", 1, "static", "a")
+    assert len(causes.told_once(findings(entry, entry), facts())) == 1
+
+
+def run(*arguments, **variables):
+    env = {**scratch.environment(), "PYTHONPATH": str(CHECK.parents[1] / "src"), **variables}
+    return subprocess.run(
+        ["/usr/bin/python3", str(CHECK), *map(str, arguments)],
+        env={**env, "PYTHONDONTWRITEBYTECODE": "1"},
+        capture_output=True,
+        text=True,
+    )
+
+
+@pytest.mark.parametrize(
+    ("arguments", "says"),
+    [
+        (["no_such_folder"], "check: There is no folder no_such_folder.\n"),
+        ([os.devnull], "check: /dev/null is no folder; expected the folder of a package.\n"),
+        ([".", "--spec", "none.yaml"], "check: none.yaml: the spec cannot be read: No such file"),
+    ],
+    ids=range(3),
+)
+def test_what_cannot_be_checked_is_exit_code_2(arguments, says):
+    done = run(*arguments)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr.startswith(says)
+    assert done.stderr.count("\n") == 1
+
+
+def test_folder_without_manifest_names_the_package_in_it(tmp_path):
+    (tmp_path / "src" / "a").mkdir(parents=True)
+    (tmp_path / "src" / "a" / "package.xml").write_text("<package/>")
+    done = run(tmp_path, "--json", tmp_path / "report.json")
+    assert done.returncode == 2
+    assert f"Did you mean {tmp_path}/src/a?" in done.stderr
+    data = json.loads((tmp_path / "report.json").read_text())
+    assert (data["verdict"], data["findings"]) == ("unchecked", [])
+
+
+def test_wrong_option_is_exit_code_2():
+    done = run(".", "--only", "valuse")
+    assert done.returncode == 2
+    assert "valuse" in done.stderr

@@ -1,0 +1,384 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The stages run and stop: what is seen of nodes that really run.
+
+The nodes are Python scripts, which need no build. Each has one defect, and each publisher its own
+topic; so many defects are seen in one run.
+"""
+
+import pathlib
+import re
+import textwrap
+
+import check_rules
+import pytest
+from mrp_check import spec
+from mrp_check.finding import ERROR, NOTE
+from mrp_check.package import Package
+from mrp_check.stages import run, stop
+
+MAIN = """
+
+def main():
+    rospy.init_node("NODE")
+    rospy.loginfo("[NODE] namespace = %s", rospy.get_name())
+    node = Node()
+    rospy.spin()
+
+
+if __name__ == "__main__":
+    main()
+"""
+PUBLISHER = (
+    """\
+#!/usr/bin/python3
+import rospy
+from std_msgs.msg import Int32, String, UInt32
+
+
+class Node:
+    def __init__(self):
+        self.counter = 1
+        self.publisher = rospy.Publisher("TOPIC", UInt32, queue_size=10)
+        self.timer = rospy.Timer(rospy.Duration(0.5), self.callback)
+
+    def callback(self, event):
+        self.publisher.publish(self.counter)
+        self.counter = (self.counter + 2) % 2**32
+"""
+    + MAIN
+)
+SUBSCRIBER = (
+    """\
+#!/usr/bin/python3
+import rospy
+from std_msgs.msg import Int32, UInt32
+
+
+class Node:
+    def __init__(self):
+        self.subscriber = rospy.Subscriber("TOPIC", UInt32, self.callback, queue_size=10)
+
+    def callback(self, message):
+        rospy.loginfo("[NODE] received %d", message.data)
+"""
+    + MAIN
+)
+
+# defect: (what stands in the source, what stands there instead, the finding's id, what is in the
+# line that it names, what its message says)
+PUBLISHERS = {
+    "right": ("", "", None, None, None),
+    "start": ("self.counter = 1", "self.counter = 3", "values", "counter|publish", "begins with 3"),
+    "step": ("+ 2)", "+ 4)", "values", r"\+ 4", "after 1 came 5"),
+    "same": ("(self.counter + 2)", "self.counter", "values", "counter", "again and again"),
+    "twice": (
+        "publish(self.counter)",
+        "publish(self.counter); self.publisher.publish(self.counter)",
+        "values",
+        "publish",
+        "more than once",
+    ),
+    "silent": ("self.publisher.publish(self.counter)", "pass", "values", "Timer", "nothing in"),
+    "fast": ("Duration(0.5)", "Duration(0.4)", "rate", "Timer", "every 0.4 s"),
+    "slow": ("Duration(0.5)", "Duration(0.7)", "rate", "Timer", "every 0.7 s"),
+    "latched": ("queue_size=10", "queue_size=10, latch=True", "latch", "latch=True", "latches"),
+    "private": ('"TOPIC"', '"~TOPIC"', "topic", '"~', "is the node's own"),
+    "absolute": ('"TOPIC"', '"/TOPIC"', "topic", '"/', "does not follow the group"),
+    "hard": ('"TOPIC"', '"/lab/TOPIC"', "namespace", '"/lab/', "whatever group"),
+    "type": ('TOPIC", UInt32', 'TOPIC", Int32', "type", "Int32,", "std_msgs/Int32"),
+    "string": ("publish(self.counter)", "publish(str(self.counter))", "type", "publish", "field"),
+    "no_wrap": (" % 2**32", "", "wrap", r"counter \+ 2", "4294967295"),
+    "raises": (
+        "self.publisher.publish(",
+        "self.publsher.publish(",
+        "python-names",
+        "publsher",
+        "pub",
+    ),
+    "arity": (
+        "def callback(self, event)",
+        "def callback(self)",
+        "callbacks",
+        "def callback",
+        "takes 1 pos",
+    ),
+    "name": (
+        'init_node("NODE")',
+        'init_node("other")',
+        "node-name",
+        "init_node",
+        "calls itself other",
+    ),
+    "ends": ("    rospy.spin()", "    pass", "spin", "init_node", "ends by itself"),
+    "no_main": ("    main()\n", "    main\n", "node-start", ".", "without having started ROS"),
+    "dies": ("    node = Node()", "    node = Node(); 1 / 0", "starts", "1 / 0", "ZeroDivision"),
+    "code": ("    rospy.spin()", "    rospy.spin(); exit(3)", "exit", r"exit\(3\)", "exit code 3"),
+    "stays": (
+        "    rospy.spin()",
+        "    import time\n    rospy.spin()\n    while True: time.sleep(9)",
+        "exit",
+        "while True",
+        "does not end",
+    ),
+    "child": (
+        "    node = Node()",
+        "    node = Node()\n    import subprocess; subprocess.Popen(['sleep', '9999'])",
+        "leftovers",
+        "Popen",
+        "leaves a process behind: sleep|leaves a process behind when it ends: sleep",
+    ),
+    "line": ("namespace = %s", "namspace = %s", "console", "namspace", "where the contract says"),
+    "no_line": (
+        'rospy.loginfo("[NODE] namespace = %s", rospy.get_name())',
+        "pass",
+        "console",
+        ".",
+        "does not log",
+    ),
+    "print": ("rospy.loginfo", "print", "console", ".", "does not log|without logging"),
+    "level": ("rospy.loginfo", "rospy.logwarn", "console", "logwarn", "as WARN"),
+}
+SUBSCRIBERS = {
+    "right": ("", "", None, None, None),
+    "deaf": (
+        'rospy.loginfo("[NODE] received %d", message.data)',
+        "pass",
+        "received",
+        "Subscriber",
+        "logs none of them",
+    ),
+    "some": (
+        "        rospy",
+        "        if message.data % 2: rospy",
+        "received",
+        "rospy.loginfo|if message",
+        "logs only 21, 23",
+    ),
+    "more": ("message.data)", "message.data + 1)", "received", "loginfo", "logs 22, 23"),
+    "twice": (
+        "message.data)",
+        "message.data); rospy.loginfo('[NODE] received %d', message.data)",
+        "received",
+        "loginfo",
+        "2 times",
+    ),
+    "spelt": ("received %d", "recieved %d", "console", "recieved", "where the contract says"),
+    "print": (
+        'rospy.loginfo("[NODE] received %d", message.data)',
+        'print("[NODE] received", message.data, flush=True)',
+        "console",
+        "print|Subscriber",
+        "without logging",
+    ),
+    "raises": ("message.data", "message.dat", "python-names", "message.dat", "AttributeError"),
+    "queue": ("10)\n", "1)\n", "queue", "queue_size=1", "too short"),
+    "topic": ('"TOPIC"', '"TOPICS"', "topic", 'S"', "subscribes to /lab/"),
+    "type": ('"TOPIC", UInt32', '"TOPIC", Int32', "type", "Int32,", "std_msgs/Int32"),
+    "slashes": (
+        '"TOPIC"',
+        'rospy.get_namespace() + "/TOPIC"',
+        "warnings",
+        "get_namespace",
+        "two slashes",
+    ),
+}
+
+
+def spec_of(publishers, subscribers):
+    """Return a Spec with a node for each defect, publishers on topics of their own."""
+    topics, nodes = {}, {}
+
+    def prints(name, *more):
+        return (rf"\[{name}\] namespace = {{name}}", *(line.format(name=name) for line in more))
+
+    for key in publishers:
+        name, topics[key] = f"publisher_{key}", spec.Topic(f"of_{key}", "std_msgs/UInt32")
+        rule = spec.Values(1, 2, 2**32)
+        role = spec.Publishes(topics[key], queue=10, period=0.5, tolerance=0.1, values=rule)
+        nodes[name] = spec.Node(name, "python", publishes=role, prints=prints(name))
+    for key in subscribers:
+        name = f"subscriber_{key}"
+        topics["to_" + key] = spec.Topic("to_" + key, "std_msgs/UInt32")
+        role = spec.Subscribes(topics["to_" + key], queue=10)
+        lines = prints(name, r"\[{name}\] received {{value}}")
+        nodes[name] = spec.Node(name, "python", subscribes=role, prints=lines)
+    shutdown = spec.Shutdown("SIGINT", 0, 10)
+    return spec.Spec("test", topics, nodes, spec.Launch("all.launch", "lab"), shutdown)
+
+
+def make_package(folder, publishers, subscribers):
+    """Make a package with these defects; return its folder."""
+    scripts = folder / "scripts"
+    scripts.mkdir(parents=True)
+    (folder / "package.xml").write_text("<package><name>lab_pkg</name></package>")
+    lines = []
+    kinds = (
+        ("publisher", PUBLISHER, publishers, "of_"),
+        ("subscriber", SUBSCRIBER, subscribers, "to_"),
+    )
+    for kind, source, defects, prefix in kinds:
+        for key, (old, new, *_) in defects.items():
+            assert old in source
+            name = f"{kind}_{key}"
+            text = source.replace(old, new).replace("TOPIC", prefix + key).replace("NODE", name)
+            script = scripts / f"{name}.py"
+            script.write_text(text)
+            script.chmod(0o755)
+            lines.append(f'<node pkg="lab_pkg" type="{name}.py" name="{name}" output="screen"/>')
+    text = "\n".join(['<launch><group ns="lab">', *lines, "</group></launch>"])
+    (folder / "all.launch").write_text(text)
+    return folder
+
+
+def findings_of(folder, contract, scratch):
+    """Return what the stages run and stop find, without building anything."""
+    package = Package(folder)
+    workspace = check_rules.workspace_of(package, scratch)
+    workspace.catkin.__dict__["built"] = None
+    found = list(run.findings(package, contract, workspace))
+    found += stop.findings(package, contract, workspace)
+    workspace.catkin.close()
+    return found
+
+
+def slices(defects, count):
+    """Return the defects in groups: as many nodes at once as a busy machine can start."""
+    items = [item for item in defects.items()]
+    return [dict(items[start::count]) for start in range(count)]
+
+
+GROUPS = [(part, {}) for part in slices(PUBLISHERS, 4)] + [
+    ({}, part) for part in slices(SUBSCRIBERS, 2)
+]
+
+
+@pytest.mark.parametrize(("publishers", "subscribers"), GROUPS, ids=range(len(GROUPS)))
+def test_each_defect_is_found_at_its_place(tmp_path, publishers, subscribers):
+    folder = make_package(tmp_path / "lab_pkg", publishers, subscribers)
+    found = findings_of(folder, spec_of(publishers, subscribers), tmp_path / "scratch")
+    defects = {f"publisher_{key}": defect for key, defect in publishers.items()}
+    defects.update({f"subscriber_{key}": defect for key, defect in subscribers.items()})
+    faults = []
+    for node, (_, _, id_, line, message) in defects.items():
+        of_node = [f for f in found if f.node == node and f.severity != NOTE]
+        if id_ is None:
+            faults += [f"{node}: false alarm: {f}" for f in of_node]
+        elif not any(is_told(f, folder, id_, line, message) for f in of_node):
+            faults.append(f"{node}: {id_} is missed; found: {of_node}")
+    faults += [f"of no node: {f}" for f in found if f.node not in defects]
+    assert not faults, "\n".join(faults)
+
+
+def is_told(finding, folder, id_, line, message):
+    if finding.id != id_ or not finding.file or not re.search(message, finding.message):
+        return False
+    lines = (folder / finding.file).read_text().splitlines()
+    return bool(re.search(line, lines[finding.line - 1]))
+
+
+COUNTERS = {
+    "member": ("self.n = 1", "self.pub.publish(self.n)", "self.n = (self.n + 2) % 2**32"),
+    "factor": ("self.n = 0", "self.pub.publish(2 * self.n + 1)", "self.n = (self.n + 1) % 2**31"),
+    "message": (
+        "self.m = UInt32(1)",
+        "self.pub.publish(self.m)",
+        "self.m.data = (self.m.data + 2) % 2**32",
+    ),
+    "list": ("self.n = [1]", "self.pub.publish(self.n[0])", "self.n[0] = (self.n[0] + 2) % 2**32"),
+    "module": (
+        "global n; n = 1",
+        "global n; self.pub.publish(n)",
+        "n = (n + 2) % 2**32",
+    ),
+    "class": ("Node.n = 1", "self.pub.publish(Node.n)", "Node.n = (Node.n + 2) % 2**32"),
+    "c_number": (
+        "import ctypes; self.n = ctypes.c_uint32(1)",
+        "self.pub.publish(self.n.value)",
+        "self.n.value += 2",
+    ),
+    "property": (
+        "self.n = 0; Node.v = property(lambda self: (2 * self.n + 1) % 2**32)",
+        "self.pub.publish(self.v)",
+        "self.n += 1",
+    ),
+    "count": (
+        "import itertools; self.n = itertools.count(1, 2)",
+        "self.pub.publish(next(self.n) % 2**32)",
+        "pass",
+    ),
+}
+COUNTING = """\
+#!/usr/bin/python3
+import rospy
+from std_msgs.msg import UInt32
+
+
+class Node:
+    def __init__(self):
+        START
+        self.pub = rospy.Publisher("TOPIC", UInt32, queue_size=10)
+        self.timer = rospy.Timer(rospy.Duration(0.5), self.callback)
+
+    def callback(self, event):
+        PUBLISH
+        COUNT
+
+
+rospy.init_node("NODE")
+rospy.loginfo("[NODE] namespace = %s", rospy.get_name())
+node = Node()
+rospy.spin()
+"""
+
+
+@pytest.mark.parametrize("wraps", [True, False])
+def test_counters_of_all_kinds_are_found(tmp_path, wraps):
+    """With the wrap nothing is found, not even a note; without it, the end of each."""
+    names = [n for n in COUNTERS if wraps or n not in ("c_number", "property", "factor")]
+    folder = make_package(tmp_path / "lab_pkg", {name: ("", "") for name in names}, {})
+    for name in names:
+        start, publish, count = COUNTERS[name]
+        if not wraps:
+            count, publish = count.replace(" % 2**32", ""), publish.replace(" % 2**32", "")
+        text = COUNTING.replace("START", start).replace("PUBLISH", publish).replace("COUNT", count)
+        text = text.replace("TOPIC", f"of_{name}").replace("NODE", f"publisher_{name}")
+        (folder / "scripts" / f"publisher_{name}.py").write_text(text)
+    found = findings_of(folder, spec_of(names, []), tmp_path / "scratch")
+    if wraps:
+        assert found == []
+    else:
+        assert {(f.node, f.id) for f in found} == {(f"publisher_{name}", "wrap") for name in names}
+        assert {f.severity for f in found} == {ERROR}
+
+
+FLOODS = {
+    "prints": "while not rospy.is_shutdown(): print('x' * 1000)",
+    "publishes": "while not rospy.is_shutdown(): node.publisher.publish(1)",
+    "forks": "import os\n    for _ in range(50): os.fork()",
+    "kills_all": "import os, signal; rospy.sleep(1); os.kill(-1, signal.SIGKILL)",
+    "no_memory": "x = []\n    while True: x.append(b'x' * 10**7)",
+}
+
+
+@pytest.mark.parametrize("flood", FLOODS)
+def test_a_node_that_does_harm_is_reported_and_ended(tmp_path, flood):
+    program = FLOODS[flood]
+    folder = make_package(
+        tmp_path / "lab_pkg",
+        {"flood": ("    rospy.spin()", textwrap.indent(program, "    ").strip("\n"))},
+        {},
+    )
+    script = folder / "scripts" / "publisher_flood.py"
+    script.write_text(
+        script.read_text().replace("#!/usr/bin/python3\n", f"#!/usr/bin/python3\n# {tmp_path}\n")
+    )
+    found = findings_of(folder, spec_of(["flood"], []), tmp_path / "scratch")
+    assert any(f.severity == ERROR for f in found)
+    left = []
+    for process in pathlib.Path("/proc").glob("[0-9]*"):
+        try:
+            if str(tmp_path / "scratch").encode() in (process / "cmdline").read_bytes():
+                left.append((process / "cmdline").read_bytes())
+        except OSError:
+            continue
+    assert not left

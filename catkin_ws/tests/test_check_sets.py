@@ -1,0 +1,126 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The checker on packages whose defect is known (check_sets.py says where they are).
+
+Each correct package must be met, whatever its style; in each broken one the one defect must be
+found, with its id, at its place, and nothing else but its consequences.
+"""
+
+import json
+import os
+import pathlib
+import subprocess
+
+import check_sets
+import pytest
+import scratch
+
+CHECK = check_sets.HERE.parent / "src" / "mrp_check"
+CACHE = check_sets.HERE.parent / "build" / "ccache"
+EXERCISES = sorted(CHECK.glob("exercises/*/solution.patch"))
+
+
+@pytest.fixture
+def run_check(tmp_path):
+    """Return a function that checks the package at a folder, and returns the report's data."""
+
+    def run(folder, spec):
+        report = tmp_path / "report.json"
+        CACHE.mkdir(parents=True, exist_ok=True)
+        env = scratch.environment()
+        env.update(
+            PYTHONPATH=str(CHECK / "src"),
+            PYTHONDONTWRITEBYTECODE="1",
+            # Only what a style or a defect changes is compiled anew.
+            PATH=f"/usr/lib/ccache:{os.environ['PATH']}",
+            CCACHE_DIR=str(CACHE),
+        )
+        command = ["/usr/bin/python3", CHECK / "scripts" / "check", folder]
+        done = subprocess.run(
+            [*command, "--spec", CHECK / "specs" / spec, "--json", report, "--timeout", "900"],
+            env=env,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+        )
+        assert report.exists(), done.stdout
+        data = json.loads(report.read_text())
+        assert done.returncode == {"met": 0, "findings": 1}[data["verdict"]], done.stdout
+        return data
+
+    return run
+
+
+def shown(findings):
+    """Return findings as lines for a reader."""
+    return "\n".join(
+        "{id} {severity} {file}:{line} {message} | {expected} | {seen}".format(**one)
+        + (f" (from {one['consequence_of']})" if one["consequence_of"] else "")
+        for one in findings
+    )
+
+
+@pytest.mark.parametrize("style", check_sets.STYLES)
+def test_correct_package_is_met(style, tmp_path, run_check):
+    folder = tmp_path / "package"
+    check_sets.lay_out(style, folder)
+    report = run_check(folder, check_sets.spec_of(style))
+    warns = check_sets.fields_of(style).get("Warns", [])
+    found = [one for one in report["findings"] if one["severity"] != "note"]
+    others = [one for one in found if one["id"] not in warns]
+    assert (report["verdict"], shown(others)) == ("met", "")
+    assert {one["id"] for one in found} == set(warns)
+
+
+@pytest.mark.parametrize("patch", check_sets.PATCHES, ids=lambda patch: patch.stem)
+def test_defect_is_found(patch, tmp_path, run_check):
+    fields = check_sets.head(patch)
+    style = fields.get("Base", ["mrp"])[0]
+    folder = tmp_path / "package"
+    check_sets.lay_out(style, folder)
+    check_sets.break_(folder, patch)
+    report = run_check(folder, check_sets.spec_of(style))
+    assert_one_defect(report["findings"], fields, folder)
+    for finding in report["findings"]:
+        if "\n--- a/" in finding["fix"]:
+            text = finding["fix"].partition("\n")[2] + "\n"
+            patch = ["patch", "-p1", "--fuzz=0", "--dry-run"]
+            subprocess.run(patch, cwd=folder, input=text, text=True, check=True)
+
+
+def assert_one_defect(findings, fields, folder, severities=("error",)):
+    """Raise AssertionError unless the defect is found, and nothing that does not follow from it."""
+    causes = [
+        one for one in findings if one["severity"] in severities and not one["consequence_of"]
+    ]
+    told = [one for one in causes if check_sets.is_told(one, fields, folder)]
+    if "Missed" in fields:
+        assert not told, "it is found: take its line Missed away"
+        return
+    assert told, f"expected: {fields}\nfound:\n{shown(findings)}"
+    others = [one for one in causes if one not in told]
+    assert not others, f"besides the defect:\n{shown(others)}"
+
+
+@pytest.mark.parametrize("solution", EXERCISES, ids=lambda path: path.parent.name)
+def test_exercise_fails_for_its_own_reason_and_its_solution_passes(solution, tmp_path, run_check):
+    folder = tmp_path / "package"
+    check_sets.lay_out("mrp", folder)
+    subprocess.run(
+        ["patch", "-p1", "--fuzz=0", "--reverse", f"--input={solution}"], cwd=folder, check=True
+    )
+    report = run_check(folder, "pub_sub.yaml")
+    fields = check_sets.head(solution)
+    assert_one_defect(report["findings"], fields, folder, severities=("error", "warning"))
+    # The solution makes the tutorial's package of it, which is met: see "mrp" above.
+    check_sets.break_(folder, solution)
+    check_sets.lay_out("mrp", tmp_path / "tutorial")
+    assert contents(folder) == contents(tmp_path / "tutorial")
+
+
+def contents(folder):
+    """Return path -> bytes of all files of a folder."""
+    return {
+        path.relative_to(folder): path.read_bytes()
+        for path in pathlib.Path(folder).rglob("*")
+        if path.is_file()
+    }

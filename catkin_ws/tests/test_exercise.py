@@ -1,0 +1,107 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What `make exercise` says, from the first exercise on; the check itself is not made here."""
+
+import sys
+
+import check_sets
+import pytest
+
+sys.path.insert(0, str(check_sets.HERE.parent / "src" / "mrp_check" / "src"))
+
+from mrp_check import check, exercise
+from mrp_check.finding import WARNING, Finding
+
+COUNT = len(exercise.exercises())
+FIRST = "01_parenthesis"
+
+
+@pytest.fixture
+def checked(monkeypatch):
+    """The findings that a check will have; and, as `checked.folders`, what was checked."""
+
+    class Findings(list):
+        folders = []
+
+    findings = Findings()
+
+    def fake(path, *_, **__):
+        findings.folders.append(path)
+        return check.Report("mrp", "", check.FINDINGS, list(findings), {})
+
+    monkeypatch.setattr(check, "check", fake)
+    findings.folders.clear()
+    return findings
+
+
+def test_first_call_shows_the_task_and_makes_the_package(tmp_path, capsys, checked):
+    assert exercise.run(tmp_path / "mine") == exercise.PASSED
+    printed = capsys.readouterr().out
+    place = tmp_path / "mine" / FIRST
+    assert f"Exercise 1 of {COUNT}\n\n# A parenthesis" in printed
+    assert f"The package: {place}" in printed
+    assert (place / "TASK.md").read_text() in printed
+    assert (place / "package.xml").exists() and not (place / "doc").exists()
+    assert checked.folders == []
+
+
+def test_not_yet_says_what_and_where_and_not_how(tmp_path, capsys, checked):
+    exercise.run(tmp_path)
+    capsys.readouterr()
+    checked.append(Finding("spin", "It ends.", "src/a.py", 7, expected="spin", fix="Do this."))
+    checked.append(Finding("exit", "It follows.", consequence_of="spin"))
+    assert exercise.run(tmp_path) == exercise.NOT_YET
+    printed = capsys.readouterr().out
+    assert f"Exercise 1 of {COUNT}, {FIRST}: not yet." in printed
+    assert "src/a.py:7: It ends.\n  expected: spin\n" in printed
+    assert "Do this." not in printed and "It follows." not in printed
+    assert str(tmp_path / FIRST / "TASK.md") in printed
+    assert checked.folders == [tmp_path / FIRST]
+
+
+def test_a_warning_is_not_passed(tmp_path, checked):
+    exercise.run(tmp_path)
+    checked.append(Finding("warnings", "It warns.", severity=WARNING))
+    assert exercise.run(tmp_path) == exercise.NOT_YET
+
+
+def test_passed_goes_on_to_the_next_until_all_are_passed(tmp_path, capsys, checked):
+    for number in range(1, COUNT + 1):
+        exercise.run(tmp_path)
+        printed = capsys.readouterr().out
+        assert f"Exercise {number} of {COUNT}\n" in printed
+    exercise.run(tmp_path)
+    assert f"All {COUNT} exercises are passed." in capsys.readouterr().out
+    assert [path.name for path in checked.folders] == [one.name for one in exercise.exercises()]
+
+
+def test_hint(tmp_path, capsys, checked):
+    exercise.run(tmp_path)
+    capsys.readouterr()
+    assert exercise.run(tmp_path, hint=True) == exercise.PASSED
+    assert capsys.readouterr().out == exercise.exercises()[0].hint
+    assert checked.folders == []
+
+
+def test_reset_begins_anew(tmp_path, checked):
+    exercise.run(tmp_path)
+    script = tmp_path / FIRST / "src" / "subscriber_py_node.py"
+    before = script.read_text()
+    script.write_text("")
+    exercise.run(tmp_path)
+    (tmp_path / "passed.txt").unlink()
+    exercise.run(tmp_path, reset=True)
+    assert script.read_text() == before
+
+
+def test_every_exercise_has_a_title_and_a_hint():
+    for one in exercise.exercises():
+        assert one.task.startswith("# ") and one.hint.endswith((".\n", "?\n"))
+
+
+def test_installed_without_sources_says_what_to_do(tmp_path, monkeypatch):
+    (tmp_path / "mrp_check" / "exercises").mkdir(parents=True)
+    monkeypatch.setattr(
+        exercise.resources, "folder", lambda name: tmp_path / "mrp_check" / "exercises"
+    )
+    with pytest.raises(exercise.ExerciseError, match="in a clone of the repository"):
+        exercise.Exercise(tmp_path).lay_out(tmp_path / "mine")
