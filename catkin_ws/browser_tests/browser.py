@@ -19,7 +19,14 @@ _ARGUMENTS = [
 ]
 
 
+def wait_until(condition, what):
+    """Wait until the condition holds; return what it returned."""
+    return WebDriverWait(None, SECONDS, 0.05).until(lambda _: condition(), what)
+
+
 class Browser:
+    name = "chromium"
+
     def __init__(self, profile):
         options = webdriver.ChromeOptions()
         options.binary_location = "/usr/bin/chromium"
@@ -72,7 +79,7 @@ class Browser:
 
     def wait_until(self, condition, what):
         """Wait until the condition holds; return what it returned."""
-        return WebDriverWait(self.driver, SECONDS, 0.05).until(lambda _: condition(), what)
+        return wait_until(condition, what)
 
     def console(self):
         """Return what was written to the console since the last call: of every level."""

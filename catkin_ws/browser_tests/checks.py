@@ -34,7 +34,7 @@ def console(browser):
 def requests(browser, address):
     """Every request succeeds, and none goes elsewhere than to the site's address."""
     asked, failures = browser.requests()
-    inside = (address, "data:", "about:")
+    inside = (address, "blob:" + address, "data:", "about:")
     return [f"{url}: is outside" for url in asked if not url.startswith(inside)] + failures
 
 
@@ -47,12 +47,14 @@ def width(browser, size):
 
 
 def pictures(browser):
-    """Every picture says in words what it shows; Sphinx would have its path say it."""
+    """Every picture says in words what it shows, unless it only decorates; Sphinx would have its
+    path say it."""
     return browser.run(
         """
         const says = (one) => one.tagName === "IMG"
           ? one.alt.trim() && !/[.](svg|png|jpe?g|gif)$/.test(one.alt)
-          : one.closest("[role=img][aria-label]:not([aria-label=''])");
+          : one.closest(":is([role=img], [role=group])[aria-label]:not([aria-label=''])")
+            || one.closest("[aria-hidden=true]");
         return [...document.querySelectorAll("img, svg, object, embed, canvas")]
           .filter((one) => !says(one))
           .map((one) => one.outerHTML.slice(0, 200) + ": has no text alternative");

@@ -1,14 +1,21 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""One browser for all tests, and the site at both of its addresses: as files, and served."""
+"""One browser of each kind for all tests, and the site at both of its addresses."""
 
 import pytest
 from browser import Browser
 from built_site import SITE, served
+from firefox import Firefox
 
 
 @pytest.fixture(scope="session")
 def browser(tmp_path_factory):
     with Browser(tmp_path_factory.mktemp("profile")) as one:
+        yield one
+
+
+@pytest.fixture(scope="session")
+def firefox(tmp_path_factory):
+    with Firefox(tmp_path_factory.mktemp("firefox")) as one:
         yield one
 
 

@@ -35,3 +35,10 @@ def test_the_page_does_not_scroll_sideways(browser, view):
 
 def test_every_picture_has_a_text_alternative(browser, view):
     checks.assert_none(checks.pictures(browser))
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_firefox_has_nothing_to_complain_of(firefox, addresses, page):
+    firefox.open(addresses["served"] + page)  # of files, it does not tell what was asked for
+    checks.assert_none(checks.console(firefox))
+    checks.assert_none(checks.requests(firefox, addresses["served"]))

@@ -1,0 +1,245 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The graph: drawn where dot has put everything, with a pulse for each message that is shown.
+
+import { byId, html, setText, styleOf, svg } from "./dom.js";
+
+const LEGIBLE = 0.8; // the smallest scale: a larger graph scrolls
+const MOST_PULSES = 60;
+const PULSE = 450; // milliseconds along one edge
+const calm = matchMedia("(prefers-reduced-motion: reduce)");
+const STATES = { dead: "dead", silent: "does not answer", unknown: "not asked yet" };
+
+const lastPart = (name) => name.slice(name.lastIndexOf("/") + 1);
+
+export class Graph {
+  constructor() {
+    this.place = byId("graph");
+    this.pulses = [];
+    this.items = [];
+    this.edges = new Map();
+    this.badges = new Map();
+    this.size = null;
+    addEventListener("resize", () => this.fit());
+  }
+
+  // message: as the viewer sends it
+  draw({ graph, layout }) {
+    this.pulses = [];
+    this.edges.clear();
+    this.badges.clear();
+    if (layout.error) {
+      this.size = null;
+      this.place.replaceChildren(html("p", { class: "fault" }, layout.error));
+      return;
+    }
+    if (!graph.nodes.length) {
+      this.size = null;
+      this.place.replaceChildren(html("p", {}, "No node to show yet."));
+      return;
+    }
+    const focused = document.activeElement?.closest("#graph .item")?.dataset.key;
+    this.items = [];
+    const picture = svg("svg", {
+      role: "group",
+      "aria-label": describe(graph),
+      viewBox: `-2 -2 ${layout.width + 4} ${layout.height + 4}`,
+    });
+    picture.append(arrowheads());
+    for (const [name, x, y, width, height] of layout.groups) {
+      picture.append(
+        svg("rect", { class: "group", x, y, width, height, rx: 6 }),
+        svg("text", { class: "group-name", x: x + width / 2, y: y + 16 }, name),
+      );
+    }
+    graph.edges.forEach((edge, index) => picture.append(this.edge(edge, layout.edges[index])));
+    for (const one of graph.topics) picture.append(this.topic(one, layout.topics[one.name]));
+    for (const one of graph.nodes) picture.append(this.node(one, layout.nodes[one.name]));
+    // On top of all edges.
+    for (const { badge } of this.edges.values()) picture.append(badge);
+    this.front = svg("g", { "aria-hidden": "true" });
+    picture.append(this.front);
+    picture.addEventListener("keydown", (event) => this.key(event));
+    this.size = layout;
+    this.place.replaceChildren(picture);
+    this.fit();
+    for (const edge of this.edges.values()) edge.length = edge.path.getTotalLength();
+    const again = this.items.find((one) => one.dataset.key === focused);
+    (again ?? this.items[0])?.setAttribute("tabindex", "0");
+    again?.focus();
+    this.placeBadges();
+  }
+
+  fit() {
+    const picture = this.place.querySelector("svg");
+    if (!picture || !this.size) return;
+    const scale = Math.max(LEGIBLE, Math.min(1.25, this.place.clientWidth / (this.size.width + 4)));
+    picture.style.width = `${Math.floor((this.size.width + 4) * scale)}px`;
+  }
+
+  item(key, label, detail, ...children) {
+    const one = svg("g", { class: "item", tabindex: "-1", role: "img", "aria-label": label }, ...children);
+    one.dataset.key = key;
+    const show = () => setText(byId("detail"), detail);
+    one.addEventListener("focus", show);
+    one.addEventListener("click", () => {
+      this.focus(one);
+      show();
+    });
+    this.items.push(one);
+    return one;
+  }
+
+  node(one, [x, y, width, height]) {
+    const state = STATES[one.state];
+    const detail = `Node ${one.name}: ${state ?? "alive"}.${one.why ? ` ${one.why}` : ""}`;
+    const shape = svg("ellipse", { cx: x, cy: y, rx: width / 2, ry: height / 2 });
+    const text = svg("text", { x, y: y + (state ? -2 : 4) }, lastPart(one.name));
+    const group = this.item(`node ${one.name}`, detail, detail, shape, text);
+    group.classList.add("node", one.state);
+    if (state) group.append(svg("text", { class: "second", x, y: y + 13 }, state));
+    return group;
+  }
+
+  topic(one, [x, y, width, height]) {
+    const types = one.types.join(" or ") + (one.latched ? ", latched" : "");
+    const detail = `Topic ${one.name}: ${types}.`;
+    const shape = svg("rect", { x: x - width / 2, y: y - height / 2, width, height });
+    const group = this.item(
+      `topic ${one.name}`, detail, detail, shape,
+      svg("text", { x, y: y - 2 }, lastPart(one.name)),
+      svg("text", { class: "second", x, y: y + 13 }, one.label),
+    );
+    group.classList.add("topic");
+    return group;
+  }
+
+  edge(one, d) {
+    const path = svg("path", { d, "marker-end": `url(#arrow-${one.state})` });
+    const badge = svg("text", { class: "badge" });
+    const words = one.publishes ? `${one.from} publishes ${one.to}` : `${one.to} subscribes to ${one.from}`;
+    const reason = { mismatch: "The types differ", none: "Not connected", dead: "Dead" }[one.state];
+    const detail = `${words}.${reason ? ` ${reason}. ${one.why}` : ""}`;
+    const group = reason && one.state !== "dead" ? this.item(`edge ${one.from} ${one.to}`, detail, detail, path) : svg("g", {}, path);
+    group.classList.add("edge", one.state);
+    group.append(svg("title", {}, detail));
+    const fault = { mismatch: "✗ other type", none: "? not connected" }[one.state] ?? "";
+    this.edges.set(`${one.publishes ? "p" : "s"} ${one.from} ${one.to}`, { path, badge, fault, group });
+    return group;
+  }
+
+  // The keys that go from one part of the graph to the next.
+  key(event) {
+    const step = { ArrowRight: 1, ArrowDown: 1, ArrowLeft: -1, ArrowUp: -1 }[event.key];
+    const end = { Home: 0, End: this.items.length - 1 }[event.key];
+    if (step === undefined && end === undefined) return;
+    event.preventDefault();
+    const now = this.items.indexOf(document.activeElement);
+    this.focus(this.items[end ?? (now + step + this.items.length) % this.items.length]);
+  }
+
+  focus(one) {
+    for (const other of this.items) other.setAttribute("tabindex", "-1");
+    one.setAttribute("tabindex", "0");
+    one.focus();
+  }
+
+  // What the nodes have counted: at the edge where it happened.
+  showCounts(links, rows) {
+    this.counts = new Map();
+    const add = (key, text) => {
+      if (text) this.counts.set(key, text);
+    };
+    const dropped = new Map();
+    for (const one of links) {
+      const key = `s ${one.topic} ${one.to}`;
+      const sum = dropped.get(key) ?? { dropped: 0, missing: 0 };
+      sum.dropped += one.dropped ?? 0;
+      sum.missing += one.missing ?? 0;
+      dropped.set(key, sum);
+    }
+    for (const [key, sum] of dropped) {
+      const parts = [];
+      if (sum.dropped) parts.push(`${sum.dropped} dropped`);
+      if (sum.missing) parts.push(`${sum.missing} dropped?`);
+      add(key, parts.join(", "));
+    }
+    for (const one of rows) {
+      if (one.missing?.[0]) add(`p ${one.from} ${one.topic}`, `${one.missing[0]} missing`);
+    }
+    this.placeBadges();
+  }
+
+  placeBadges() {
+    for (const [key, edge] of this.edges) {
+      const text = [edge.fault, this.counts?.get(key)].filter(Boolean).join(", ");
+      setText(edge.badge, text);
+      edge.badge.classList.toggle("bad", edge.fault.startsWith("✗"));
+      if (text && edge.placed !== text && edge.length) {
+        const { x, y } = edge.path.getPointAtLength(edge.length * 0.55);
+        edge.badge.setAttribute("x", x);
+        edge.badge.setAttribute("y", y - 4);
+        edge.placed = text;
+      }
+    }
+  }
+
+  // A message of that publisher: to the topic, and on to all who are connected.
+  pulse(topic, publisher, subscribers) {
+    if (document.hidden) return;
+    const { colour } = styleOf(publisher);
+    this.start(`p ${publisher} ${topic}`, colour, () => {
+      for (const one of subscribers) this.start(`s ${topic} ${one}`, colour);
+    });
+  }
+
+  start(key, colour, then) {
+    const edge = this.edges.get(key);
+    if (!edge || this.pulses.length >= MOST_PULSES) return;
+    if (calm.matches) {
+      edge.group.classList.add("hit");
+      setTimeout(() => edge.group.classList.remove("hit"), PULSE);
+      then?.();
+      return;
+    }
+    const dot = svg("circle", { r: 5, class: "pulse" });
+    dot.style.fill = colour;
+    this.front.append(dot);
+    this.pulses.push({ edge, dot, then, begin: performance.now() });
+    if (this.pulses.length === 1) requestAnimationFrame((now) => this.step(now));
+  }
+
+  step(now) {
+    const going = this.pulses;
+    this.pulses = [];
+    const ended = [];
+    for (const pulse of going) {
+      const share = Math.max(0, (now - pulse.begin) / PULSE);
+      if (share >= 1) {
+        pulse.dot.remove();
+        ended.push(pulse);
+        continue;
+      }
+      const { x, y } = pulse.edge.path.getPointAtLength(share * pulse.edge.length);
+      pulse.dot.setAttribute("cx", x);
+      pulse.dot.setAttribute("cy", y);
+      this.pulses.push(pulse);
+    }
+    const wait = this.pulses.length;
+    for (const pulse of ended) pulse.then?.();
+    // start() has asked for the next frame if these were the first.
+    if (wait) requestAnimationFrame((next) => this.step(next));
+  }
+}
+
+function describe(graph) {
+  const count = (number, word) => `${number} ${word}${number === 1 ? "" : "s"}`;
+  return `Graph of ${count(graph.nodes.length, "node")} and ${count(graph.topics.length, "topic")}`;
+}
+
+function arrowheads() {
+  return svg("defs", {}, ...["ok", "mismatch", "none", "dead"].map((state) => svg(
+    "marker",
+    { id: `arrow-${state}`, class: state, viewBox: "0 0 10 10", refX: 9, refY: 5, markerWidth: 9, markerHeight: 9, orient: "auto", markerUnits: "userSpaceOnUse" },
+    svg("path", { d: "M0 0L10 5L0 10z" }),
+  )));
+}

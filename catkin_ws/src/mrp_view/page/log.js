@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The lines of /rosout, by node and level.
+
+import { byId, html, setOptions, setText } from "./dom.js";
+
+const MOST = 500; // lines that are kept
+const LEVELS = ["DEBUG", "INFO", "WARN", "ERROR", "FATAL"];
+
+export class LogView {
+  constructor() {
+    this.lines = [];
+    this.place = byId("log");
+    for (const id of ["log-node", "log-level"]) byId(id).addEventListener("change", () => this.showAll());
+  }
+
+  clear() {
+    this.lines = [];
+    this.showAll();
+  }
+
+  // count: of all lines, also of those that are left out because they come too fast
+  add(lines, count) {
+    const down = this.place.scrollTop + this.place.clientHeight >= this.place.scrollHeight - 8;
+    this.lines.push(...lines);
+    const old = this.lines.splice(0, Math.max(0, this.lines.length - MOST));
+    for (const one of old) one.element?.remove();
+    for (const one of lines) this.append(one);
+    if (lines.length) {
+      setOptions(byId("log-node"), [...new Set(this.lines.map((one) => one.node))].sort(), "all");
+      if (down) this.place.scrollTop = this.place.scrollHeight;
+    }
+    setText(byId("log-note"), `${count} lines since the viewer listens, ${this.lines.length} of them here.`);
+  }
+
+  matches(one) {
+    const node = byId("log-node").value;
+    const level = LEVELS.indexOf(one.level);
+    return (!node || one.node === node) && (level < 0 || level >= LEVELS.indexOf(byId("log-level").value));
+  }
+
+  append(one) {
+    if (!this.matches(one)) return;
+    const time = new Date(one.t * 1000).toTimeString().slice(0, 8);
+    one.element = html(
+      "p",
+      { class: `log-line ${LEVELS.includes(one.level) ? one.level : ""}` },
+      html("span", { class: "time" }, time), " ",
+      html("span", { class: "level" }, one.level), " ",
+      html("span", { class: "from" }, one.node), " ",
+      one.text,
+    );
+    this.place.append(one.element);
+  }
+
+  showAll() {
+    this.place.replaceChildren();
+    for (const one of this.lines) this.append(one);
+    this.place.scrollTop = this.place.scrollHeight;
+  }
+}

@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Takes what the viewer sends, and has each part of the page show it.
+
+import { Connection } from "./connection.js";
+import { byId, html, setText } from "./dom.js";
+import { saveCsv, savePng, saveSvg } from "./export.js";
+import { Graph } from "./graph.js";
+import { LogView } from "./log.js";
+import { History, showPlot } from "./plot.js";
+import { keyOfLink, keyOfSender, showLinks, showSenders } from "./tables.js";
+
+const NARROW = matchMedia("(max-width: 700px)");
+const LOG_TOPICS = ["/rosout", "/rosout_agg"];
+
+const graph = new Graph();
+const log = new LogView();
+const history = new History();
+const senders = new Map();
+const links = new Map();
+const shown = new Map(); // key of a sender -> [[now, count, samples], ...] of the last two seconds
+const hidden = new Set(); // topics
+let findings = [];
+let latest = null; // the last graph
+let now = 0;
+let viewerId = null;
+let state = "connecting";
+let paused = false;
+
+const options = () => ({
+  rosout: byId("show-log").checked,
+  viewer: byId("show-viewer").checked,
+  hidden: [...hidden],
+  rankdir: NARROW.matches ? "TB" : "LR",
+  paused,
+});
+const connection = new Connection(take, (value) => { state = value; showStatus(); }, options);
+
+function isShown(topic) {
+  return !hidden.has(topic) && (byId("show-log").checked || !LOG_TOPICS.includes(topic));
+}
+
+function take(message) {
+  if (paused) return;
+  if (message.t === "graph") {
+    latest = message;
+    graph.draw(message);
+    showTopics(message.all_topics);
+    showFindings();
+    showStatus();
+    showCounts();
+    return;
+  }
+  if (message.all) begin(message);
+  now = message.now;
+  for (const one of message.rows) receive(one);
+  for (const [topic, from] of message.gone ?? []) senders.delete(keyOfSender({ topic, from }));
+  for (const one of message.links) links.set(keyOfLink(one), one);
+  for (const [topic, from, to] of message.links_gone ?? []) links.delete(keyOfLink({ topic, from, to }));
+  if (message.findings) {
+    findings = message.findings;
+    showFindings();
+  }
+  if (message.log.length || message.all) log.add(message.log, message.log_count);
+  history.forget(now);
+  showTables();
+  if (message.links.length || message.links_gone?.length || message.all) showCounts();
+}
+
+// Everything comes anew: after a pause, a lost connection, or a restart of the viewer.
+function begin(message) {
+  senders.clear();
+  links.clear();
+  shown.clear();
+  log.clear();
+  if (viewerId !== message.id) history.clear();
+  viewerId = message.id;
+}
+
+function receive(one) {
+  const key = keyOfSender(one);
+  senders.set(key, one);
+  history.add(key, one.samples, now);
+  const before = shown.get(key) ?? [[now, one.count, 0]];
+  const last = before[before.length - 1];
+  before.push([now, one.count, last[2] + one.samples.length]);
+  while (before.length > 2 && before[1][0] < now - 2) before.shift();
+  shown.set(key, before);
+  if (!one.samples.length || !isShown(one.topic)) return;
+  const subscribers = (latest?.graph.links ?? [])
+    .filter((link) => link.topic === one.topic && link.from === one.from && link.state === "ok")
+    .map((link) => link.to);
+  // Several at once are one pulse: the eye could not tell them apart.
+  graph.pulse(one.topic, one.from, [...new Set(subscribers)]);
+}
+
+// How many messages there are for one that is shown.
+function shares() {
+  const result = new Map();
+  for (const [key, all] of shown) {
+    const [first, last] = [all[0], all[all.length - 1]];
+    if (last[2] > first[2]) result.set(key, (last[1] - first[1]) / (last[2] - first[2]));
+  }
+  return result;
+}
+
+let tablesDue = false;
+
+// Not more often than the screen can show it.
+function showTables() {
+  if (tablesDue) return;
+  tablesDue = true;
+  setTimeout(() => {
+    tablesDue = false;
+    showSenders(visibleSenders(), shares());
+    showPlot(history, visibleSenders(), now);
+  }, 250);
+}
+
+const visibleSenders = () => [...senders.values()].filter((one) => isShown(one.topic));
+const visibleLinks = () => [...links.values()].filter(
+  (one) => isShown(one.topic) && (byId("show-viewer").checked || one.to !== latest?.viewer),
+);
+
+function showCounts() {
+  showLinks(visibleLinks());
+  graph.showCounts(visibleLinks(), visibleSenders());
+}
+
+function showFindings() {
+  const items = findings.map((one) => {
+    const item = html("li", { class: `finding ${one.kind}` }, `${one.text}. `);
+    if (latest?.tutorial) item.append(html("a", { href: `tutorial/${one.page}` }, "What the tutorial says of it"));
+    return item;
+  });
+  if (!items.length) items.push(html("li", {}, "Nothing out of the ordinary."));
+  byId("findings").replaceChildren(...items);
+}
+
+function showTopics(topics) {
+  const place = byId("topics");
+  const names = [...new Set([...topics, ...hidden])].filter((one) => !LOG_TOPICS.includes(one)).sort();
+  const had = [...place.querySelectorAll("input")].map((one) => one.value);
+  if (had.length === names.length && had.every((one, index) => one === names[index])) return;
+  place.replaceChildren(...names.map((name) => {
+    const box = html("input", { type: "checkbox", value: name });
+    box.checked = !hidden.has(name);
+    box.addEventListener("change", () => {
+      if (box.checked) hidden.delete(name);
+      else hidden.add(name);
+      choose();
+    });
+    return html("label", {}, box, ` ${name}`);
+  }));
+}
+
+function choose() {
+  connection.tell();
+  showTables();
+  showCounts();
+}
+
+function showStatus() {
+  const words = [];
+  const master = latest?.master;
+  if (state !== "live") words.push("The connection to the viewer is lost. This page tries again by itself; what it shows is from before.");
+  else if (paused) words.push("Paused. ROS goes on.");
+  if (state === "live" && master) {
+    if (master.state === "here") words.push(`Master ${master.uri}: ${latest.graph.nodes.length} nodes, ${latest.graph.topics.length} topics.`);
+    else if (master.state === "gone") words.push(`The master ${master.uri} does not answer. The graph is from before; nodes that are connected go on talking.`);
+    else words.push(`No master at ${master.uri} yet. This page waits for it: start one, for example with make run.`);
+  }
+  setText(byId("status"), words.join(" ") || "Connected to the viewer.");
+  document.body.dataset.state = state !== "live" ? "lost" : master?.state ?? "";
+}
+
+byId("pause").addEventListener("click", () => {
+  paused = !paused;
+  byId("pause").setAttribute("aria-pressed", String(paused));
+  setText(byId("pause"), paused ? "Go on" : "Pause");
+  connection.tell();
+  showStatus();
+});
+for (const id of ["show-log", "show-viewer"]) byId(id).addEventListener("change", choose);
+byId("plot-topic").addEventListener("change", (event) => {
+  event.target.dataset.chosen = "yes";
+  showPlot(history, visibleSenders(), now);
+});
+NARROW.addEventListener("change", () => connection.tell());
+byId("export-svg").addEventListener("click", saveSvg);
+byId("export-png").addEventListener("click", savePng);
+byId("export-messages").addEventListener("click", () => {
+  const rows = [["time", "topic", "publisher", "number", "text"]];
+  for (const [key, samples] of history.samples) {
+    const [topic, from] = key.split("\n");
+    if (isShown(topic)) for (const [time, number, text] of samples) rows.push([time, topic, from, number, text]);
+  }
+  saveCsv(rows, "messages.csv");
+});
+byId("export-counts").addEventListener("click", () => {
+  const rows = [["topic", "publisher", "subscriber", "messages", "sent", "received", "dropped", "missing"]];
+  for (const one of visibleSenders()) rows.push([one.topic, one.from, latest?.viewer, one.count, null, null, null, one.missing?.[0]]);
+  for (const one of visibleLinks()) rows.push([one.topic, one.from, one.to, null, one.sent, one.received, one.dropped, one.missing]);
+  saveCsv(rows, "counts.csv");
+});

@@ -1,0 +1,80 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Who may ask for the page: see allowed_host, and the headers that each answer gets."""
+
+import base64
+import hashlib
+import ipaddress
+import re
+
+PAGE_POLICY = (
+    "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob:; "
+    "connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
+)
+
+HEADERS = {
+    "Content-Security-Policy": PAGE_POLICY,
+    "X-Content-Type-Options": "nosniff",
+    "Referrer-Policy": "no-referrer",
+    "Cross-Origin-Resource-Policy": "same-origin",
+    "Cross-Origin-Opener-Policy": "same-origin",
+    "Cache-Control": "no-cache",
+}
+
+
+def host_name(host):
+    """Return the name in a Host header, without its port."""
+    match = re.fullmatch(r"\[([0-9A-Fa-f:.]+)\](?::\d+)?|([^:\[\]]*)(?::\d+)?", host)
+    return (match[1] or match[2] or "").lower() if match else ""
+
+
+def is_loopback(name):
+    """Say if a name or an address means this machine alone."""
+    try:
+        return name == "localhost" or ipaddress.ip_address(name).is_loopback
+    except ValueError:
+        return False
+
+
+def allowed_host(host, listens_on, names=()):
+    """Say if a request with that Host header may be answered.
+
+    A page of another site can make its own name lead to this machine (DNS rebinding), and then ask
+    as if it were this one; but what it asks for still bears its name. So only these are answered:
+    this machine's loopback; where the server listens on more than that, also any plain address, as
+    nobody can make that lead elsewhere; and the names that the user has allowed.
+    """
+    name = host_name(host)
+    if is_loopback(name) or (name and name in {one.lower() for one in names}):
+        return True
+    if is_loopback(listens_on):
+        return False
+    try:
+        ipaddress.ip_address(name)
+        return True
+    except ValueError:
+        return False
+
+
+def allowed_origin(origin, host):
+    """Say if a WebSocket may be opened: by a page that this server has served at that Host."""
+    return origin is not None and origin.lower() in (
+        "http://" + host.lower(),
+        "https://" + host.lower(),
+    )
+
+
+def policy_of(html):
+    """Return the Content-Security-Policy for a page of the tutorial: Sphinx writes scripts and
+    styles into its pages, and these very ones are allowed, by their hashes."""
+    scripts = re.findall(r"<script(?![^>]*\ssrc=)[^>]*>(.*?)</script>", html, re.DOTALL)
+    styles = re.findall(r'\sstyle="([^"]*)"', html)
+    return (
+        f"default-src 'self'; script-src 'self'{_hashes(scripts)}; "
+        f"style-src 'self' 'unsafe-hashes'{_hashes(styles)}; img-src 'self' data:; "
+        "font-src 'self' data:; base-uri 'none'; frame-ancestors 'none'"
+    )
+
+
+def _hashes(texts):
+    digests = {base64.b64encode(hashlib.sha256(one.encode()).digest()).decode() for one in texts}
+    return "".join(f" 'sha256-{one}'" for one in sorted(digests))

@@ -1,0 +1,86 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What each browser gets: everything when it comes, and then what has changed.
+
+Counts are sent as they stand, never as a difference: a browser that misses a part of it still shows
+the right ones. So nothing is kept for a slow one: what it cannot take now, it never gets.
+"""
+
+import json
+
+LOG_AT_ONCE = 50  # lines in one message
+
+
+def encode(message):
+    """Return a message as JSON. Raises ValueError if a number in it has none."""
+    return json.dumps(message, allow_nan=False, separators=(",", ":"))
+
+
+def visible(graph, options):
+    """Return the graph without what a browser hides.
+
+    options: rosout: whether to show the log's topics and node; viewer: its name, or "" to show it;
+        hidden: a set of topics
+    """
+    hidden_topics = set(options["hidden"])
+    hidden_nodes = {options["viewer"]}
+    if not options["rosout"]:
+        hidden_topics |= {"/rosout", "/rosout_agg"}
+        hidden_nodes.add("/rosout")
+
+    def shown(edge):
+        topic, node = (
+            (edge["to"], edge["from"]) if edge["publishes"] else (edge["from"], edge["to"])
+        )
+        return topic not in hidden_topics and node not in hidden_nodes
+
+    edges = [one for one in graph["edges"] if shown(one)]
+    on_edges = {name for one in edges for name in (one["from"], one["to"])}
+    return {
+        "nodes": [one for one in graph["nodes"] if one["name"] not in hidden_nodes],
+        # A topic on which is nobody but the viewer is hidden with it.
+        "topics": [
+            one
+            for one in graph["topics"]
+            if one["name"] in on_edges and one["name"] not in hidden_topics
+        ],
+        "edges": edges,
+        "links": [
+            one
+            for one in graph["links"]
+            if one["topic"] not in hidden_topics and not hidden_nodes & {one["from"], one["to"]}
+        ],
+    }
+
+
+class Changes:
+    """Keeps of a list of dicts what is to be sent: those that differ from the last time."""
+
+    def __init__(self, *keys):
+        self._keys = keys
+        self._last = {}
+
+    def update(self, rows):
+        """Return (changed rows, keys of those that are no more)."""
+        new = {tuple(row[key] for key in self._keys): row for row in rows}
+        changed = [row for key, row in new.items() if self._last.get(key) != row]
+        gone = [list(key) for key in self._last if key not in new]
+        self._last = new
+        return changed, gone
+
+
+def log_since(lines, number, most=LOG_AT_ONCE):
+    """Return the last lines after that number. lines: (number, line), the numbers counting on"""
+    return [line for n, line in lines if n > number][-most:]
+
+
+def options_of(message, viewer):
+    """Return the options in a browser's message, whatever it may hold: see visible()."""
+    hidden = message.get("hidden")
+    hidden = hidden if isinstance(hidden, list) else []
+    return {
+        "rosout": message.get("rosout") is True,
+        "viewer": "" if message.get("viewer") is True else viewer,
+        "hidden": frozenset(one for one in hidden[:1000] if isinstance(one, str)),
+        "rankdir": "TB" if message.get("rankdir") == "TB" else "LR",
+        "paused": message.get("paused") is True,
+    }

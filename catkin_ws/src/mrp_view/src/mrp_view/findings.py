@@ -1,0 +1,113 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What there is to learn from what is on the screen, and which page of the tutorial explains it."""
+
+import collections
+
+# Kind -> where the tutorial explains it: a page, and a section of it.
+PAGES = {
+    "dead": "pages/faults.html",
+    "mismatch": "pages/message_types.html#both-sides-must-agree",
+    "none": "pages/wrong.html",
+    "dropped": "pages/queues.html#the-subscriber-s-queue",
+    "missing": "pages/queues.html#the-subscriber-s-queue",
+    "latched": "pages/latch.html#latch",
+    "islands": "pages/namespaces.html#private-to-the-node",
+    "forgotten": "pages/faults.html",
+    "gap": "pages/queues.html#the-publisher-s-queue",
+}
+MOST = 30  # findings of a kind
+_LOG = ("/rosout", "/rosout_agg")
+
+
+def findings(graph, counts, rows, viewer):
+    """Return a list of dicts: kind, text, and page, which is that of PAGES.
+
+    graph: as graph.build returns it; counts: as graph.counts does; rows: as Listener.look does
+    """
+    found = []
+    # Of the log, and of the viewer itself, there is nothing to learn.
+    counts = [one for one in counts if one["topic"] not in _LOG and one["to"] != viewer]
+    rows = [one for one in rows if one["topic"] not in _LOG]
+    edges = [one for one in graph["edges"] if viewer not in (one["from"], one["to"])]
+
+    def add(kind, text):
+        if sum(one["kind"] == kind for one in found) < MOST:
+            found.append({"kind": kind, "page": PAGES[kind], "text": text})
+
+    dead = [one["name"] for one in graph["nodes"] if one["state"] == "dead"]
+    if dead:
+        add(
+            "dead",
+            f"{_names(dead)} died without taking themselves off the master's list"
+            if len(dead) > 1
+            else f"{dead[0]} died without taking itself off the master's list",
+        )
+    for link in graph["links"]:
+        if link["state"] == "mismatch":
+            add("mismatch", link["why"])
+    for link in graph["links"]:
+        if link["state"] == "none":
+            add("none", link["why"])
+    for one in counts:
+        where = f"from {one['from']} to {one['to']} on {one['topic']}"
+        if one["dropped"]:
+            add(
+                "dropped",
+                f"{one['to']} has dropped {one['dropped']} of {one['received']} messages: its "
+                f"queue was full ({where})",
+            )
+        elif one["missing"]:
+            add(
+                "missing",
+                f"{one['missing']} of {one['sent']} messages {where} have not come out of "
+                "its queue: dropped, or still under way",
+            )
+    latched = [one["name"] for one in graph["topics"] if one["latched"] and one["name"] not in _LOG]
+    if latched:
+        add(
+            "latched",
+            f"latched: who comes late to {_names(latched)} gets the last message",
+        )
+    for names in _islands(edges):
+        add(
+            "islands",
+            f"{len(names)} islands, as their topics are private: {_names(names)}",
+        )
+    for row in rows:
+        if row["gone"] and row["rate"]:
+            add(
+                "forgotten",
+                f"{row['from']} goes on publishing {row['topic']}, but the master does not know "
+                "it: it has been restarted since",
+            )
+        if row["missing"] and row["missing"][0]:
+            add(
+                "gap",
+                f"{row['missing'][0]} values are missing in what {row['from']} counts on "
+                f"{row['topic']}",
+            )
+    return found
+
+
+def _names(names):
+    return ", ".join(sorted(names))
+
+
+def _islands(edges):
+    """Return the lists of nodes that have topics which nobody else is on, by namespace.
+
+    One alone is nothing to learn from: many a node publishes what nobody hears yet.
+    """
+    on_topic = collections.defaultdict(set)
+    for edge in edges:
+        topic, node = (
+            (edge["to"], edge["from"]) if edge["publishes"] else (edge["from"], edge["to"])
+        )
+        on_topic[topic].add(node)
+    alone = collections.defaultdict(set)
+    for topic, nodes in on_topic.items():
+        (node, *others) = sorted(nodes)
+        # A private name: in the node's own namespace.
+        if not others and topic.startswith(node + "/"):
+            alone[node.rpartition("/")[0]].add(node)
+    return [sorted(nodes) for _, nodes in sorted(alone.items()) if len(nodes) > 1]

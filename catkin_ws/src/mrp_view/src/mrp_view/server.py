@@ -1,0 +1,281 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The web server: the page, the WebSocket over which it gets what happens, and the tutorial."""
+
+import asyncio
+import collections
+import json
+import pathlib
+import secrets
+import subprocess
+import time
+
+import tornado.httpserver
+import tornado.ioloop
+import tornado.iostream
+import tornado.netutil
+import tornado.web
+import tornado.websocket
+
+from mrp_view import access, feed
+from mrp_view.drawing import Structure
+from mrp_view.findings import findings
+
+TICK = 0.1  # seconds between two messages to a browser, at the least
+MOST_BROWSERS = 50
+_PATIENCE = 30  # seconds for which a browser may take nothing
+_LAYOUTS = 32  # that are kept
+
+
+class _Guarded:
+    """What each answer has in common: see access.py."""
+
+    def set_default_headers(self):
+        for name, value in access.HEADERS.items():
+            self.set_header(name, value)
+
+    def prepare(self):
+        view = self.application.settings["view"]
+        if not access.allowed_host(self.request.host, view.address, view.names):
+            self.set_status(403)
+            self.finish(
+                "This address is not one under which the page is served. Open the address that "
+                "was printed, or start view_node.py with --name.\n"
+            )
+
+    def write_error(self, status_code, **kwargs):
+        self.set_header("Content-Type", "text/plain; charset=utf-8")
+        self.finish(f"{status_code}: {self._reason}\n")
+
+
+class Page(_Guarded, tornado.web.StaticFileHandler):
+    pass
+
+
+class Tutorial(_Guarded, tornado.web.StaticFileHandler):
+    def set_extra_headers(self, path):
+        if path.endswith(".html"):
+            html = pathlib.Path(self.absolute_path).read_text(encoding="utf-8")
+            self.set_header("Content-Security-Policy", access.policy_of(html))
+
+
+class NoTutorial(_Guarded, tornado.web.RequestHandler):
+    def get(self, path):
+        self.set_header("Content-Type", "text/plain; charset=utf-8")
+        self.set_status(404)
+        self.finish("The tutorial's pages are not built here. To build them: make docs\n")
+
+
+class Socket(_Guarded, tornado.websocket.WebSocketHandler):
+    """One browser. At most one message to it is under way."""
+
+    def initialize(self):
+        self.options = None
+        self.late = True  # whether it must get everything
+        self.busy_since = None
+        self.graph_sent = None
+
+    def check_origin(self, origin):
+        return access.allowed_origin(origin, self.request.host)
+
+    def prepare(self):
+        super().prepare()
+        if not self._finished and self.request.headers.get("Origin") is None:
+            self.set_status(403)
+            self.finish("Expected the header Origin, which a browser sends.\n")
+
+    def open(self):
+        view = self.application.settings["view"]
+        if len(view.sockets) >= MOST_BROWSERS:
+            self.close(4000, f"{MOST_BROWSERS} browsers are open already")
+            return
+        self.options = feed.options_of({}, view.viewer)
+        view.sockets.add(self)
+
+    def on_message(self, message):
+        try:
+            said = json.loads(message)
+        except ValueError:
+            said = None
+        if not isinstance(said, dict):
+            self.close(4001, "expected a JSON object")
+            return
+        view = self.application.settings["view"]
+        before = self.options
+        self.options = feed.options_of(said, view.viewer)
+        self.graph_sent = None
+        if before["paused"] and not self.options["paused"]:
+            self.late = True
+
+    def on_close(self):
+        self.application.settings["view"].sockets.discard(self)
+
+    def send(self, texts):
+        """Begin to send these messages. The one before must have gone."""
+        self.busy_since = time.monotonic()
+        asyncio.ensure_future(self._write(texts))
+
+    async def _write(self, texts):
+        try:
+            for text in texts:
+                await self.write_message(text)
+        except (tornado.websocket.WebSocketClosedError, tornado.iostream.StreamClosedError):
+            pass
+        finally:
+            self.busy_since = None
+
+
+class View:
+    """Puts together what the watcher and the listener see, and hands it to the browsers.
+
+    address, port: to listen on; port 0: any that is free
+    names: under which the page may be asked for besides
+    page, tutorial: folders; tutorial may be None
+    """
+
+    def __init__(self, viewer, listener, address, port, names, page, tutorial):
+        self.viewer = viewer
+        self.address = address
+        self.names = names
+        self.sockets = set()
+        self._listener = listener
+        self._id = secrets.token_hex(8)
+        self._tutorial = tutorial is not None
+        self._graph = {"nodes": [], "topics": [], "edges": [], "links": []}
+        self._master = {"state": "never", "uri": "", "why": ""}
+        self._counts = []
+        self._found = []
+        self._version = 0
+        self._rows = []
+        self._row_changes = feed.Changes("topic", "from")
+        self._count_changes = feed.Changes("topic", "from", "to")
+        self._log_sent = 0
+        self._layouts = collections.OrderedDict()  # Structure's key -> layout, or an error's text
+        self._being_laid_out = set()
+        self._dot = asyncio.Lock()
+
+        guarded = {"path": str(page), "default_filename": "index.html"}
+        handler = (
+            (r"/tutorial/(.*)", Tutorial, {"path": str(tutorial), "default_filename": "index.html"})
+            if tutorial
+            else (r"/tutorial/(.*)", NoTutorial)
+        )
+        application = tornado.web.Application(
+            [(r"/socket", Socket), handler, (r"/(.*)", Page, guarded)],
+            view=self,
+            log_function=lambda handler: None,
+            websocket_ping_interval=10,
+            websocket_ping_timeout=30,
+            websocket_max_message_size=100_000,
+        )
+        self._server = tornado.httpserver.HTTPServer(application)
+        sockets = tornado.netutil.bind_sockets(port, address)
+        self._server.add_sockets(sockets)
+        self.port = sockets[0].getsockname()[1]
+
+    def start(self):
+        tornado.ioloop.PeriodicCallback(self._tick, TICK * 1000).start()
+
+    def show(self, master, graph, all_counts):
+        """Show what the watcher has seen: in the server's own thread.
+
+        master: a dict for the page; graph, all_counts: of graph.build and graph.counts
+        """
+        self._counts = all_counts
+        if (master, graph) != (self._master, self._graph):
+            self._master, self._graph = master, graph
+            self._version += 1
+
+    def _graph_text(self, socket):
+        """Return the graph as a browser has chosen to see it; or None if it has it already, or if
+        it is not laid out yet."""
+        if socket.graph_sent == self._version:
+            return None
+        shown = feed.visible(self._graph, socket.options)
+        structure = Structure(shown, socket.options["rankdir"])
+        layout = self._layouts.get(structure.key)
+        if layout is None:
+            if structure.key not in self._being_laid_out:
+                self._being_laid_out.add(structure.key)
+                asyncio.ensure_future(self._lay_out(structure))
+            return None
+        self._layouts.move_to_end(structure.key)
+        socket.graph_sent = self._version
+        return feed.encode(
+            {
+                "t": "graph",
+                "viewer": self.viewer,
+                "tutorial": self._tutorial,
+                "master": self._master,
+                "graph": shown,
+                "all_topics": [one["name"] for one in self._graph["topics"]],
+                "layout": layout,
+            }
+        )
+
+    async def _lay_out(self, structure):
+        # One dot at a time: of a graph that changes faster, only what it is in the end is needed.
+        async with self._dot:
+            try:
+                loop = asyncio.get_event_loop()
+                layout = await loop.run_in_executor(None, structure.layout)
+            except FileNotFoundError:
+                layout = {
+                    "error": "dot is not installed, which draws the graph: apt install graphviz"
+                }
+            except (OSError, subprocess.SubprocessError) as error:
+                layout = {"error": f"dot could not lay out the graph: {error}"}
+        self._being_laid_out.discard(structure.key)
+        self._layouts[structure.key] = layout
+        while len(self._layouts) > _LAYOUTS:
+            self._layouts.popitem(last=False)
+
+    def _tick(self):
+        now = time.time()
+        self._rows = self._listener.look(now)
+        rows, gone = self._row_changes.update(self._rows)
+        links, links_gone = self._count_changes.update(self._counts)
+        lines = list(self._listener.lines)
+        log = feed.log_since(lines, self._log_sent)
+        self._log_sent = lines[-1][0] if lines else 0
+        found = findings(self._graph, self._counts, self._rows, self.viewer)
+        changes = {
+            "rows": rows,
+            "gone": gone,
+            "links": links,
+            "links_gone": links_gone,
+            "findings": None if found == self._found else found,
+            "log": log,
+        }
+        self._found = found
+        changed = everything = None
+        for socket in list(self.sockets):
+            if socket.options["paused"]:
+                continue
+            if socket.busy_since is not None:
+                # It gets everything when it is free again; nothing is kept for it.
+                socket.late = True
+                if time.monotonic() - socket.busy_since > _PATIENCE:
+                    socket.close(4002, "took nothing for too long")
+                continue
+            graph = self._graph_text(socket)
+            if socket.late:
+                everything = everything or self._text(now, self._everything(lines))
+                text = everything
+            else:
+                changed = changed or self._text(now, changes)
+                text = changed
+            socket.late = False
+            socket.send([graph, text] if graph else [text])
+
+    def _text(self, now, content):
+        head = {"t": "tick", "id": self._id, "now": now, "log_count": self._log_sent}
+        return feed.encode({**head, **content})
+
+    def _everything(self, lines):
+        return {
+            "all": True,
+            "rows": self._rows,
+            "links": self._counts,
+            "findings": self._found,
+            "log": feed.log_since(lines, 0, 200),
+        }

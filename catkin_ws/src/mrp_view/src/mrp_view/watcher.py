@@ -1,0 +1,164 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Looks at the master and at each node, over and over, in threads of its own."""
+
+import concurrent.futures
+import socket
+import threading
+import time
+
+from mrp_view import reports, rpc
+from mrp_view.graph import ALIVE, DEAD, SILENT, NodeReport, Observation
+
+LOOK = 0.5  # seconds from one look at the master to the next
+ASK = 1.0  # seconds from one question to a node to the next
+TIMEOUT = 1.0  # seconds that a node, or the master, may take to answer
+_STATISTICS = 25  # questions a second for counts, of all nodes together
+_WORKERS = 16
+
+
+class Watcher:
+    """Keeps an Observation up to date.
+
+    master_uri: where the master should be
+    on_look: called after each look, in the watcher's thread, with the watcher
+
+    lock: to be held while `seen` is read
+    proxy: the master's, for on_look
+    master: "here", "gone", or "never" as long as there has been none
+    """
+
+    def __init__(self, master_uri, viewer, on_look):
+        self.lock = threading.Lock()
+        self.seen = Observation(viewer=viewer)
+        self.master_uri = master_uri
+        self.master = "never"
+        self.why = ""
+        self._on_look = on_look
+        self.proxy = rpc.Proxy(master_uri, TIMEOUT)
+        self._proxies = {}  # node -> rpc.Proxy
+        self._asked = {}  # node -> when it was asked last, and when for its counts
+        self._being_asked = set()
+        self._end = threading.Event()
+        self._pool = concurrent.futures.ThreadPoolExecutor(_WORKERS)
+        self._thread = threading.Thread(target=self._run, daemon=True)
+
+    def start(self):
+        self._thread.start()
+
+    def stop(self):
+        self._end.set()
+        self._thread.join()
+        self._pool.shutdown()
+
+    def _run(self):
+        while not self._end.is_set():
+            begin = time.monotonic()
+            self._look_at_master()
+            self._ask_nodes()
+            with self.lock:
+                self.seen.grow_older()
+            self._on_look(self)
+            self._end.wait(max(0.05, begin + LOOK - time.monotonic()))
+
+    def _look_at_master(self):
+        """Take over what the master says; what it said last stays as long as it says nothing."""
+        try:
+            publishers, subscribers, services = self.proxy.call("getSystemState")
+            types = dict(self.proxy.call("getTopicTypes"))
+            uris = {}
+            nodes = {
+                name for part in (publishers, subscribers, services) for _, n in part for name in n
+            }
+            for node in nodes - set(self._proxies):
+                uris[node] = self.proxy.call("lookupNode", node)
+        except rpc.ERRORS as error:
+            self.master = "never" if self.master == "never" else "gone"
+            self.why = str(error)
+            return
+        with self.lock:
+            self.master = "here"
+            self.why = ""
+            self.seen.publishers = {topic: sorted(names) for topic, names in publishers}
+            self.seen.subscribers = {topic: sorted(names) for topic, names in subscribers}
+            self.seen.services = sorted({name for _, names in services for name in names})
+            self.seen.types = types
+            for node, uri in uris.items():
+                self._move(node, uri)
+            for node in set(self.seen.reports) - nodes:
+                del self.seen.reports[node]
+                self._proxies.pop(node, None)
+                self._asked.pop(node, None)
+
+    def _move(self, node, uri):
+        self._proxies[node] = rpc.Proxy(uri, TIMEOUT)
+        self.seen.reports[node] = NodeReport(uri=uri)
+
+    def _ask_nodes(self):
+        now = time.monotonic()
+        counts_every = max(ASK, len(self._proxies) / _STATISTICS)
+        for node, proxy in list(self._proxies.items()):
+            asked, counted = self._asked.get(node, (0, 0))
+            if (
+                node == self.seen.viewer
+                or node in self._being_asked
+                or now - asked < ASK - LOOK / 2
+            ):
+                continue
+            with_counts = now - counted >= counts_every - LOOK / 2
+            self._asked[node] = (now, now if with_counts else counted)
+            self._being_asked.add(node)
+            self._pool.submit(self._ask, node, proxy, with_counts)
+
+    def _ask(self, node, proxy, with_counts):
+        try:
+            state, why, ends = self._answer(node, proxy, with_counts)
+            with self.lock:
+                report = self.seen.reports.get(node)
+                if report is not None and self._proxies.get(node) is proxy:
+                    report.state, report.why = state, why
+                    if ends is not None:
+                        if with_counts:
+                            report.sent_before = {
+                                (one.topic, one.peer): one.messages or 0 for one in report.outbound
+                            }
+                        report.outbound, report.inbound = ends
+        finally:
+            self._being_asked.discard(node)
+
+    def _answer(self, node, proxy, with_counts):
+        """Return (state, why, ends or None)."""
+        try:
+            info = proxy.call("getBusInfo")
+        except rpc.ERRORS as error:
+            return self._failed(node, proxy, error)
+        if not with_counts:
+            # Who is connected is always new, the counts are those of before.
+            with self.lock:
+                before = self.seen.reports.get(node, NodeReport())
+                known = {(one.topic, one.peer): one for one in before.outbound + before.inbound}
+            return (
+                ALIVE,
+                "",
+                tuple(
+                    [known.get((one.topic, one.peer), one) for one in side]
+                    for side in reports.ends(info, [])
+                ),
+            )
+        try:
+            stats = proxy.call("getBusStats")
+        except rpc.ERRORS:
+            stats = []
+        return ALIVE, "", reports.ends(info, stats)
+
+    def _failed(self, node, proxy, error):
+        if isinstance(error, OSError) and not isinstance(error, socket.timeout):
+            # It may have come back at another address.
+            try:
+                uri = rpc.Proxy(self.master_uri, TIMEOUT).call("lookupNode", node)
+                if uri != proxy.uri:
+                    with self.lock:
+                        self._move(node, uri)
+            except rpc.ERRORS:
+                pass
+            return DEAD, f"nobody answers at {proxy.uri}: {error}", ([], [])
+        return SILENT, f"{proxy.uri} does not answer: {error}", None

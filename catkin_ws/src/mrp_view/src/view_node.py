@@ -1,0 +1,140 @@
+#!/usr/bin/env python
+# SPDX-License-Identifier: BSD-3-Clause
+"""Shows the graph and the messages of a running system in a browser, live.
+
+It listens to all topics, asks the master and the nodes what they know, and publishes nothing. It
+needs no master to start: it waits for one.
+"""
+
+import argparse
+import os
+import pathlib
+import signal
+import sys
+
+import rosgraph
+import roslib.packages
+import rospy
+import tornado.ioloop
+from mrp_view.graph import build, counts
+from mrp_view.listener import Listener
+from mrp_view.rpc import ERRORS
+from mrp_view.server import View
+from mrp_view.watcher import Watcher
+
+
+# Options, not parameters: there may be no master yet to ask for parameters.
+def options(arguments):
+    parser = argparse.ArgumentParser(
+        prog="view_node.py", description=__doc__.split("\n")[0], allow_abbrev=False
+    )
+    parser.add_argument("--address", default="127.0.0.1", help="to listen on; 0.0.0.0: on all")
+    parser.add_argument("--port", type=int, default=8765, help="0: any that is free")
+    parser.add_argument(
+        "--name", action="append", default=[], help="of this host, under which it may be asked for"
+    )
+    parser.add_argument(
+        "--settle",
+        type=float,
+        default=2.0,
+        help="seconds for which nobody must have come to a topic before the viewer listens to it",
+    )
+    parser.add_argument("--graph-only", action="store_true", help="listen to no topic")
+    parser.add_argument("--tutorial", default="", help="folder of the tutorial's pages")
+    return parser.parse_args(arguments)
+
+
+class ViewNode:
+    def __init__(self, chosen):
+        self.name = own_name()
+        self.loop = tornado.ioloop.IOLoop.current()
+        self.listener = Listener(chosen.settle)
+        self.graph_only = chosen.graph_only
+        page = pathlib.Path(roslib.packages.get_pkg_dir("mrp_view")) / "page"
+        tutorial = pathlib.Path(chosen.tutorial) if chosen.tutorial else None
+        self.view = View(
+            self.name,
+            self.listener,
+            chosen.address,
+            chosen.port,
+            chosen.name,
+            page,
+            tutorial if tutorial and tutorial.is_dir() else None,
+        )
+        self.watcher = Watcher(rosgraph.get_master_uri(), self.name, self.on_look)
+        self.is_node = False
+        self.ends = False
+        self.fault = None
+
+    def run(self):
+        """Serve the page until Ctrl-C; return the exit code."""
+        for number in (signal.SIGINT, signal.SIGTERM):
+            signal.signal(number, self.on_signal)
+        self.view.start()
+        self.watcher.start()
+        host = self.view.address if self.view.address != "0.0.0.0" else "127.0.0.1"
+        print(f"Open http://{host}:{self.view.port}/ (Ctrl-C ends it)", flush=True)
+        self.loop.start()
+        self.ends = True
+        self.watcher.stop()
+        rospy.signal_shutdown("the viewer ends")
+        if self.fault:
+            print(f"error: {self.fault}", file=sys.stderr)
+            return 1
+        return 0
+
+    def on_signal(self, *_):
+        self.loop.add_callback_from_signal(self.loop.stop)
+
+    def on_shutdown(self):
+        """Is called by rospy, which ends the node when another one takes its name."""
+        if not self.ends:
+            self.fault = (
+                f"another node has taken the name {self.name}: "
+                "start one of the two with another one, by __name:=..."
+            )
+            self.loop.add_callback(self.loop.stop)
+
+    def on_look(self, watcher):
+        """Is called after each look at the graph, in the watcher's thread."""
+        if watcher.master == "here" and not self.is_node:
+            # Nothing of it may go to /rosout: it would be shown, and so on.
+            rospy.init_node(self.name.rsplit("/", 1)[-1], disable_signals=True, disable_rosout=True)
+            rospy.on_shutdown(self.on_shutdown)
+            self.is_node = True
+        if watcher.master == "here" and not self.graph_only:
+            try:
+                self.listener.register_again(watcher.seen, watcher.proxy)
+                self.listener.follow(watcher.seen)
+            except ERRORS:
+                pass  # gone again: the next look sees it
+        master = {"state": watcher.master, "uri": watcher.master_uri, "why": watcher.why}
+        with watcher.lock:
+            self.listener.observe(watcher.seen)
+            seen_graph, seen_counts = build(watcher.seen), counts(watcher.seen)
+        self.loop.add_callback(self.view.show, master, seen_graph, seen_counts)
+
+
+def own_name():
+    """Return the node's name, as rospy resolves it once there is a master."""
+    mappings = rosgraph.names.load_mappings(sys.argv)
+    namespace = mappings.get("__ns", os.environ.get("ROS_NAMESPACE", "/"))
+    return rosgraph.names.ns_join(
+        rosgraph.names.make_global_ns(namespace), mappings.get("__name", "mrp_view")
+    )
+
+
+def main():
+    chosen = options(rospy.myargv()[1:])
+    try:
+        node = ViewNode(chosen)
+    except OSError as error:
+        sys.exit(
+            f"error: cannot listen on {chosen.address} port {chosen.port}: {error.strerror}. "
+            "Another viewer may be running; --port chooses another port"
+        )
+    sys.exit(node.run())
+
+
+if __name__ == "__main__":
+    main()
