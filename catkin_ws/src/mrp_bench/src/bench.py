@@ -1,0 +1,58 @@
+#!/usr/bin/env python
+# SPDX-License-Identifier: BSD-3-Clause
+"""Measures how fast this machine publishes and subscribes: `make bench` calls it.
+
+It brings a master of its own, on a free port of this machine alone.
+"""
+
+import argparse
+import pathlib
+import shutil
+import signal
+import sys
+import time
+
+from mrp_bench import launches, plans, report
+from mrp_bench.master import Master
+from mrp_bench.programs import ProgramError
+from mrp_bench.rounds import PlanError, Results, run
+
+
+def arguments():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("folder", type=pathlib.Path, help="where the results go")
+    parser.add_argument("--quick", action="store_true", help="less of everything, in a minute")
+    parser.add_argument("--resume", action="store_true", help="go on where the last run ended")
+    return parser.parse_args()
+
+
+def say(line, begin=time.monotonic()):  # noqa: B008  (this program's begin)
+    print(f"{time.monotonic() - begin:5.0f} s  {line}", flush=True)
+
+
+def main():
+    # Also where SIGINT is ignored, as in what a shell runs in the background: the programs that
+    # stand still must not be left behind.
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, signal.default_int_handler)
+    args = arguments()
+    if not args.resume:
+        shutil.rmtree(args.folder, ignore_errors=True)
+    plan = plans.QUICK if args.quick else plans.FULL
+    rounds = plans.QUICK_ROUNDS if args.quick else plans.FULL_ROUNDS
+    results = Results(args.folder)
+    try:
+        results.begin(plan, rounds, args.resume)
+        with Master(args.folder / "programs.log"):
+            run(plan, rounds, results, say)
+            robots = plans.QUICK_ROBOTS if args.quick else plans.FULL_ROBOTS
+            launches.run(robots, 1, results, say)
+        report.write(results, say)
+    except (ProgramError, PlanError) as error:
+        sys.exit(f"error: {error}")
+    except KeyboardInterrupt:
+        sys.exit("ended before all was measured: RESUME=1 goes on")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,228 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The measured programs: started, told what to send, and asked for what has arrived.
+
+How they talk is said in include/mrp_bench/program.h.
+"""
+
+import array
+import collections
+import os
+import pathlib
+import queue
+import re
+import signal
+import subprocess
+import threading
+
+import roslib.packages
+
+PACKAGE = "mrp_bench"
+
+# Seconds in which a program must have answered.
+DEADLINE = 120
+
+# What is sent: messages of that many bytes, so many per second (0: as fast as it goes), and how
+# many.
+Slice = collections.namedtuple("Slice", "size rate count")
+
+# sent: the stamps, in ns. received: of each receiver, stamps and times of arrival in turns.
+# sender_cpu: seconds of processor time. receiver_cpu: that of all receivers together, or None if
+# they are in the sender's process. sender_switches: how often one of its threads waited for
+# another, or for the kernel.
+Measurement = collections.namedtuple(
+    "Measurement", "sent received sender_cpu receiver_cpu sender_switches"
+)
+
+
+class ProgramError(Exception):
+    """A measured program did not do what it should."""
+
+
+class Program:
+    """A running program; `name` and `log`, a file, are for error messages."""
+
+    def __init__(self, command, log, namespace):
+        self.name = " ".join(command)
+        self._log = log
+        executable, *arguments = command
+        found = roslib.packages.find_node(PACKAGE, executable)
+        if not found:
+            raise ProgramError(
+                f"expected the program {executable} of {PACKAGE}, found none: run make build, and "
+                "source catkin_ws/devel/setup.bash"
+            )
+        with open(log, "ab") as file:
+            self._popen = subprocess.Popen(
+                [found[0], *arguments],
+                stdin=subprocess.PIPE,
+                stdout=subprocess.PIPE,
+                stderr=file,
+                env={**os.environ, "ROS_NAMESPACE": namespace},
+                # A group of its own: so what it has started stops and ends with it.
+                start_new_session=True,
+            )
+        self._answers = queue.Queue()
+        self._reader = threading.Thread(target=self._read, daemon=True)
+        self._reader.start()
+
+    def _read(self):
+        with self._popen.stdout as stream:
+            for line in stream:
+                word, count = line.split()
+                numbers = array.array("q")
+                numbers.frombytes(stream.read(8 * int(count)))
+                self._answers.put((word.decode(), numbers))
+        self._answers.put((None, None))
+
+    def tell(self, order):
+        try:
+            self._popen.stdin.write(order.encode() + b"\n")
+            self._popen.stdin.flush()
+        except BrokenPipeError:
+            pass  # it has ended: answer() says so
+
+    def answer(self, word):
+        """Wait for the next answer, which must begin with that word; return its numbers.
+
+        Raises ProgramError if the program ended, or did not answer within DEADLINE.
+        """
+        try:
+            found, numbers = self._answers.get(timeout=DEADLINE)
+        except queue.Empty:
+            found = f"nothing for {DEADLINE} s"
+        if found != word:
+            raise ProgramError(
+                f"expected of '{self.name}' the answer '{word}', found "
+                f"{found or 'its end'}: see {self._log}"
+            )
+        return numbers
+
+    def signal(self, number):
+        try:
+            os.killpg(self._popen.pid, number)
+        except ProcessLookupError:
+            pass
+
+    def cpu(self):
+        """Return the processor time that it has used so far, with its children, in seconds."""
+        return sum(float(text.split()[0]) / 1e9 for text in self._of_threads("schedstat"))
+
+    def switches(self):
+        """Return how often its threads have waited so far, and those of its children."""
+        return sum(
+            int(re.search(r"^voluntary_ctxt_switches:\s*(\d+)", text, re.MULTILINE).group(1))
+            for text in self._of_threads("status")
+        )
+
+    def _of_threads(self, name):
+        """Return the texts of a file in /proc of all its threads, and those of its children."""
+        texts = []
+        for pid in tree(self._popen.pid):
+            for path in pathlib.Path(f"/proc/{pid}/task").glob(f"*/{name}"):
+                try:
+                    texts.append(path.read_text())
+                except (FileNotFoundError, ProcessLookupError):
+                    pass  # it has just ended
+        return texts
+
+    def ask_to_end(self):
+        try:
+            self._popen.stdin.close()
+        except BrokenPipeError:
+            pass
+        self.signal(signal.SIGCONT)
+        self.signal(signal.SIGINT)
+
+    def end(self):
+        """Wait for the end; kill what does not end by itself."""
+        try:
+            self._popen.wait(10)
+        except subprocess.TimeoutExpired:
+            pass
+        self.signal(signal.SIGKILL)
+        self._popen.wait()
+        self._reader.join()
+
+
+def tree(pid):
+    """Return the process ids of a process and of all its descendants that run."""
+    pids = [pid]
+    for task in pathlib.Path(f"/proc/{pid}/task").glob("*/children"):
+        try:
+            for child in task.read_text().split():
+                pids += tree(int(child))
+        except (FileNotFoundError, ProcessLookupError):
+            pass  # it has just ended
+    return pids
+
+
+class Running:
+    """The programs of a way (see ways.py), which stand still until they are needed.
+
+    They are started by start(), which several of these do at once, and then finished by connect().
+    Use it in a `with`.
+    """
+
+    def __init__(self, way, log):
+        self.way = way
+        self._log = log
+        self._namespace = f"/mrp_bench/{way.name}_{os.getpid()}"
+        self._receivers = []
+        self._sender = None
+
+    def start(self):
+        if self.way.receiver:
+            self._receivers = [
+                Program(self.way.receiver, self._log, self._namespace)
+                for _ in range(self.way.receivers)
+            ]
+        if not self.way.is_raw:
+            self._sender = Program(self.way.sender, self._log, self._namespace)
+
+    def connect(self):
+        if self.way.is_raw:
+            (port,) = self._receivers[0].answer("port")
+            sender = [self.way.sender[0], f"send={port}"]
+            self._sender = Program(sender, self._log, self._namespace)
+        for receiver in self._receivers or [self._sender]:
+            if not self.way.is_raw:
+                receiver.answer("subscribed")
+        self._sender.answer("ready")
+        self._signal(signal.SIGSTOP)
+
+    def measure(self, piece):
+        """Send a Slice, and return what became of it, as a Measurement."""
+        self._signal(signal.SIGCONT)
+        sender_cpu = self._sender.cpu()
+        receiver_cpu = sum(receiver.cpu() for receiver in self._receivers)
+        switches = self._sender.switches()
+        self._sender.tell(f"run {piece.size} {piece.rate} {piece.count}")
+        sent = self._sender.answer("sent")
+        self._sender.tell("end")
+        received = [receiver.answer("received") for receiver in self._receivers or [self._sender]]
+        sender_cpu = self._sender.cpu() - sender_cpu
+        receiver_cpu = sum(receiver.cpu() for receiver in self._receivers) - receiver_cpu
+        switches = self._sender.switches() - switches
+        self._signal(signal.SIGSTOP)
+        return Measurement(
+            sent, received, sender_cpu, receiver_cpu if self._receivers else None, switches
+        )
+
+    def _programs(self):
+        return [*self._receivers, *([self._sender] if self._sender else [])]
+
+    def _signal(self, number):
+        for program in self._programs():
+            program.signal(number)
+
+    def ask_to_end(self):
+        for program in self._programs():
+            program.ask_to_end()
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *exception):
+        self.ask_to_end()
+        for program in self._programs():
+            program.end()

@@ -1,0 +1,138 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Measures many ways in turns, round after round, and keeps every sample.
+
+What else the machine does from one minute to the next so falls upon all ways alike.
+"""
+
+import collections
+import contextlib
+import gzip
+import json
+import pathlib
+import time
+
+from mrp_bench import noise
+from mrp_bench.programs import Running, Slice
+from mrp_bench.ways import WAYS
+
+# What a plan consists of: a way's name, and a Slice.
+Step = collections.namedtuple("Step", "way piece")
+
+# Rounds after which all programs are started anew: no two processes are equally fast.
+_ROUNDS_PER_START = 3
+
+
+class PlanError(Exception):
+    """A run cannot be resumed."""
+
+
+class Results:
+    """A folder with what was measured; each measurement is there as a whole, or not at all."""
+
+    def __init__(self, folder):
+        self.folder = pathlib.Path(folder)
+
+    def begin(self, plan, rounds, resume):
+        """Make the folder ready. Raises PlanError if something else was measured in it before."""
+        path = self.folder / "plan.json"
+        text = json.dumps({"rounds": rounds, "steps": plan})
+        if resume and path.exists() and path.read_text() != text:
+            raise PlanError(
+                f"expected in {path} what is to be measured now, found another plan: begin anew, "
+                "without RESUME=1"
+            )
+        self.folder.mkdir(parents=True, exist_ok=True)
+        path.write_text(text)
+
+    def path(self, number, step):
+        piece = step.piece
+        name = f"{step.way}_{piece.size}_{piece.rate}.json.gz"
+        return self.folder / "samples" / f"round_{number}" / name
+
+    def has(self, number, step):
+        return self.path(number, step).exists()
+
+    def keep(self, number, step, measurement):
+        content = {
+            "way": step.way,
+            **step.piece._asdict(),
+            "round": number,
+            **measurement._asdict(),
+            "sent": list(measurement.sent),
+            "received": [list(pairs) for pairs in measurement.received],
+        }
+        path = self.path(number, step)
+        path.parent.mkdir(parents=True, exist_ok=True)
+        unfinished = path.with_suffix(".unfinished")
+        with gzip.open(unfinished, "wt", compresslevel=1) as file:
+            json.dump(content, file)
+        unfinished.rename(path)
+
+    def keep_noise(self, share):
+        with open(self.folder / "noise.txt", "a") as file:
+            file.write(f"{share:.4f}\n")
+
+    def noise(self):
+        return [float(line) for line in (self.folder / "noise.txt").read_text().split()]
+
+    def measurements(self):
+        """Return all that was measured: dictionaries, see keep()."""
+        found = []
+        for path in sorted((self.folder / "samples").glob("round_*/*.json.gz")):
+            with gzip.open(path, "rt") as file:
+                found.append(json.load(file))
+        return found
+
+
+def run(plan, rounds, results, say):
+    """Measure what is not there yet. say: is called with a line on each thing that is done."""
+    pending = [
+        (number, step) for number in range(rounds) for step in plan if not results.has(number, step)
+    ]
+    begin = time.monotonic()
+    done = 0
+    for first in range(0, rounds, _ROUNDS_PER_START):
+        numbers = range(first, min(first + _ROUNDS_PER_START, rounds))
+        ways = list(dict.fromkeys(step.way for number, step in pending if number in numbers))
+        if not ways:
+            continue
+        say(f"starting the programs of {len(ways)} ways")
+        with contextlib.ExitStack() as stack:
+            running = {name: Running(WAYS[name], results.folder / "programs.log") for name in ways}
+            for one in running.values():
+                stack.enter_context(one)
+            for one in running.values():
+                # At the end all are asked before the first is waited for.
+                stack.callback(one.ask_to_end)
+                one.start()
+            for one in running.values():
+                one.connect()
+            for number in numbers:
+                results.keep_noise(noise.measure())
+                for step in (step for of, step in pending if of == number):
+                    results.keep(number, step, running[step.way].measure(step.piece))
+                    done += 1
+                    seconds = time.monotonic() - begin
+                    left = seconds / done * (len(pending) - done)
+                    say(
+                        f"[{done}/{len(pending)}] round {number + 1} of {rounds}: {step.way}, "
+                        f"{describe(step.piece)}; {left:.0f} s left"
+                    )
+            results.keep_noise(noise.measure())
+
+
+def describe(piece):
+    """Return a Slice in words."""
+    rate = f"at {piece.rate} Hz" if piece.rate else "as fast as it goes"
+    return f"{size_text(piece.size)} {rate}"
+
+
+def size_text(size):
+    for unit, factor in (("MB", 1 << 20), ("kB", 1 << 10)):
+        if size >= factor:
+            return f"{size // factor} {unit}"
+    return f"{size} B"
+
+
+def steps(ways, *pieces):
+    return [Step(way, Slice(*piece)) for piece in pieces for way in ways]

@@ -1,0 +1,89 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The ways in which a message is sent and received: what is compared."""
+
+import typing
+
+
+class Way(typing.NamedTuple):
+    """name: as in the results. text: what tables and plots say.
+
+    sender, receiver: the commands, see programs.py; without a receiver the sender is both
+    receivers: how many
+    """
+
+    name: str
+    text: str
+    sender: typing.Tuple[str, ...]
+    receiver: typing.Optional[typing.Tuple[str, ...]]
+    receivers: int = 1
+
+    @property
+    def is_raw(self):
+        return self.sender[0].startswith("bench_raw")
+
+
+CPP, PY, ROSTOPIC = "bench_node", "bench_node.py", "bench_rostopic.py"
+
+
+def _way(name, text, sender, receiver, publish=(), subscribe=(), receivers=1, queue=0):
+    """Return the Way of two nodes; publish, subscribe: arguments of the one and of the other.
+
+    queue: the size of both queues. It is unlimited, so that nothing is lost: a queue's size changes
+    nothing as long as the queue is empty.
+    """
+    return Way(
+        name,
+        text,
+        (sender, f"publish={receivers}", f"queue={queue}", *publish),
+        (receiver, "subscribe=1", f"queue={queue}", *subscribe),
+        receivers,
+    )
+
+
+def _one_process(name, text, *arguments):
+    return Way(name, text, (CPP, "publish=1", "subscribe=1", "queue=0", *arguments), None)
+
+
+_ALL = [
+    Way("raw_cpp", "raw TCP, C++", ("bench_raw",), ("bench_raw", "receive=1")),
+    Way("raw_py", "raw TCP, Python", ("bench_raw.py",), ("bench_raw.py", "receive=1")),
+    _way("cpp_cpp", "C++ to C++", CPP, CPP),
+    _way("cpp_py", "C++ to Python", CPP, PY),
+    _way("py_cpp", "Python to C++", PY, CPP),
+    _way("py_py", "Python to Python", PY, PY),
+    _way("cpp_direct", "C++: callback in the receiving thread", CPP, CPP, (), ("direct=1",)),
+    _way("cpp_no_delay", "C++: tcpNoDelay", CPP, CPP, (), ("no_delay=1",)),
+    _way("cpp_async", "C++: AsyncSpinner, 2 threads", CPP, CPP, (), ("async=2",)),
+    _one_process("cpp_one_process", "C++: one process"),
+    _one_process("cpp_shared", "C++: one process, shared pointers", "shared=1"),
+    _one_process(
+        "cpp_shared_direct",
+        "C++: one process, shared pointers, callback in the publishing thread",
+        "shared=1",
+        "direct=1",
+    ),
+    _way("cpp_batch", "C++: 100 values in a message", CPP, CPP, ("batch=100",)),
+    _way("py_unqueued", "Python: queue_size=None", PY, PY, ("unqueued=1",)),
+    _way(
+        "py_unqueued_cpp_direct",
+        "Python: queue_size=None, to C++: callback in the receiving thread",
+        PY,
+        CPP,
+        ("unqueued=1",),
+        ("direct=1",),
+    ),
+    _way("py_timer_slack", "Python: timer slack of 1 ns", PY, PY, ("timer_slack=1",)),
+    _way("py_no_delay", "Python: tcp_nodelay", PY, PY, (), ("no_delay=1",)),
+    _way("py_buff_size", "Python: buff_size of 8 MB", PY, PY, (), ("buff_size=8388608",)),
+    _way("py_serialised", "Python: publishes bytes", PY, PY, ("serialised=1",)),
+    _way("py_batch", "Python: 100 values in a message", PY, PY, ("batch=100",)),
+    _way("cpp_to_4", "C++ to 4 subscribers in C++", CPP, CPP, receivers=4),
+    _way("py_to_4", "Python to 4 subscribers in Python", PY, PY, receivers=4),
+    _way("cpp_queue_10", "C++, the tutorial's queues of 10", CPP, CPP, queue=10),
+    _way("py_queue_10", "Python, the tutorial's queues of 10", PY, PY, queue=10),
+    _way("cpp_chatter", "C++ talker and listener", CPP, CPP, ("chatter=1",), ("chatter=1",)),
+    _way("py_chatter", "Python talker and listener", PY, PY, ("chatter=1",), ("chatter=1",)),
+    _way("rostopic_pub", "rostopic pub to C++", ROSTOPIC, CPP),
+    _way("rostopic_echo", "C++ to rostopic echo", CPP, ROSTOPIC, ("only_small=1",)),
+]
+WAYS = {way.name: way for way in _ALL}

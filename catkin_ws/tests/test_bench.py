@@ -1,0 +1,513 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""make bench: its statistics on known data, its report, and every way's messages."""
+
+import csv
+import json
+import os
+import pathlib
+import signal
+import subprocess
+import sys
+import xml.etree.ElementTree as ElementTree
+
+import numpy
+import pytest
+from mrp_bench import launch_report, launches, noise, plans, report, rounds, stats, summary
+from mrp_bench.master import Master
+from mrp_bench.programs import Measurement, ProgramError
+from mrp_bench.ways import WAYS, Way
+from process import Process
+from rospy.impl import tcpros_pubsub
+from waiting import wait_until
+
+WORKSPACE = pathlib.Path(__file__).resolve().parent.parent
+sys.path.insert(0, str(WORKSPACE / "tools"))
+
+import build_times  # noqa: E402
+import record_bench  # noqa: E402
+
+
+def test_percentiles_are_values_that_were_measured():
+    hundred = numpy.random.default_rng(1).permutation(range(1, 101))
+    assert stats.percentiles(hundred) == {"p50": 50, "p90": 90, "p99": 99, "max": 100}
+    assert stats.percentiles([3, 1, 2]) == {"p50": 2, "p90": 3, "p99": 3, "max": 3}
+    assert stats.percentiles([7]) == {"p50": 7, "p90": 7, "p99": 7, "max": 7}
+
+
+def test_percentiles_of_nothing_are_an_error():
+    with pytest.raises(ValueError, match="expected at least one value"):
+        stats.percentiles([])
+
+
+def test_delivery_in_order_and_whole():
+    found = stats.delivery([10, 20, 30], [10, 15, 20, 26, 30, 37])
+    assert (list(found.latencies), found.lost, found.disordered) == ([5, 6, 7], 0, 0)
+
+
+def test_delivery_counts_what_is_lost():
+    found = stats.delivery([10, 20, 30], [10, 15, 30, 37])
+    assert (list(found.latencies), found.lost, found.disordered) == ([5, 7], 1, 0)
+    assert stats.delivery([10, 20], []).lost == 2
+
+
+def test_delivery_counts_what_comes_late_or_twice():
+    assert stats.delivery([10, 20, 30], [10, 40, 30, 41, 20, 42]).disordered == 1
+    twice = stats.delivery([10, 20], [10, 40, 20, 41, 20, 42])
+    assert (twice.lost, twice.disordered) == (0, 1)
+
+
+def test_delivery_of_what_was_not_sent_is_an_error():
+    with pytest.raises(ValueError, match="found 25, which was not"):
+        stats.delivery([10, 20], [10, 11, 25, 26])
+
+
+def exponential(count, median, number):
+    """Return latencies as they are measured: some far above the median."""
+    values = numpy.random.default_rng(number).exponential(size=count)
+    return list(median * (0.8 + 0.2 * values / numpy.log(2)))
+
+
+def test_ratio_of_known_distributions():
+    ours = [exponential(500, 30, number) for number in range(6)]
+    limit = [exponential(500, 12, number + 6) for number in range(6)]
+    found = stats.ratio(ours, limit)
+    assert found.low < 2.5 < found.high
+    assert found.value == pytest.approx(2.5, rel=0.05)
+    assert found.high / found.low < 1.1
+    assert stats.ratio(ours, limit) == found
+
+
+def test_interval_of_ratio_has_the_true_value_as_often_as_it_says():
+    """In 95 of 100, or about; the rounds are six, and each is slower or faster as a whole."""
+    hits = 0
+    for number in range(100):
+        random = numpy.random.default_rng(1000 + number)
+        factors = random.lognormal(sigma=0.2, size=6)
+        medians = numpy.outer([30, 12], factors) * random.lognormal(sigma=0.05, size=(2, 6))
+        ours, limit = (
+            [exponential(60, median, random.integers(1 << 30)) for median in side]
+            for side in medians
+        )
+        found = stats.ratio(ours, limit)
+        hits += found.low <= 2.5 <= found.high
+    assert 88 <= hits
+
+
+def test_interval_of_ratio_is_wide_when_rounds_differ():
+    limit = [exponential(100, 10, number) for number in range(4)]
+    steady = [exponential(100, 20, number + 4) for number in range(4)]
+    unsteady = [exponential(100, 10 * 2**number, number + 8) for number in range(4)]
+    assert not summary.is_noisy(stats.ratio(steady, limit))
+    assert summary.is_noisy(stats.ratio(unsteady, limit))
+
+
+def test_ratio_needs_the_same_rounds():
+    with pytest.raises(ValueError, match="expected the same number of rounds, found 2 and 1"):
+        stats.ratio([[1], [2]], [[1]])
+    with pytest.raises(ValueError, match="at least one value in each round"):
+        stats.ratio([[1], []], [[1], [1]])
+
+
+def test_exponent_of_known_growth():
+    sizes = [1, 2, 5, 10, 20, 50]
+    found = stats.exponent(sizes, [3 * size**1.5 for size in sizes])
+    assert found == pytest.approx((1.5, 1.5, 1.5))
+    random = numpy.random.default_rng(2)
+    noisy = [3 * size * random.lognormal(sigma=0.1) for size in sizes]
+    found = stats.exponent(sizes, noisy)
+    assert found.low < 1 < found.high
+    assert found.value == pytest.approx(1, abs=0.1)
+
+
+def test_exponent_needs_three_sizes():
+    with pytest.raises(ValueError, match="three different sizes"):
+        stats.exponent([1, 1, 2], [1, 1, 2])
+
+
+def test_noise_is_the_time_in_long_gaps():
+    steady = list(range(0, 1_000_000, 100))
+    assert noise.lost_share(steady) == 0
+    interrupted = steady + [moment + 2_000_000 for moment in steady]
+    assert noise.lost_share(interrupted) == pytest.approx(1 / 3, abs=0.001)
+
+
+def test_noise_is_judged_by_most_probes():
+    assert noise.verdict([0.0, 0.01, 0.9]) is None
+    assert "others took 60% of the processors' time" in noise.verdict([0.5, 0.6, 0.9])
+
+
+def measurement(way, number, latency, rate=1000, lost=(), receiver_cpu=0.02):
+    sent = [1_000_000 * (i + 1) for i in range(100)]
+    pairs = [(stamp, stamp + latency) for i, stamp in enumerate(sent) if i not in lost]
+    return {
+        "way": way,
+        "size": 8,
+        "rate": rate,
+        "count": 100,
+        "round": number,
+        "sender_cpu": 0.01,
+        "receiver_cpu": receiver_cpu,
+        "sender_switches": 50,
+        "sent": sent,
+        "received": [[number for pair in pairs for number in pair]],
+    }
+
+
+@pytest.fixture
+def measurements():
+    return [
+        measurement(way, number, latency * 1000, rate, lost, cpu)
+        for number in range(3)
+        for rate in (0, 1000)
+        for way, latency, lost, cpu in (
+            ("raw_cpp", 10, (), 0.02),
+            ("cpp_cpp", 25, (3, 50), 0.02),
+            ("cpp_shared", 5, (), None),
+        )
+    ]
+
+
+def test_summary_of_known_samples(measurements):
+    limit, cpp, shared = summary.summarise(measurements)[-3:]
+    assert [row.way for row in (limit, cpp, shared)] == ["raw_cpp", "cpp_cpp", "cpp_shared"]
+    assert cpp.latency == {"p50": 25, "p90": 25, "p99": 25, "max": 25}
+    assert (cpp.sent, cpp.lost, cpp.disordered) == (300, 6, 0)
+    assert cpp.latency_ratio == {"raw_cpp": (2.5, 2.5, 2.5)}
+    assert limit.latency_ratio == {}
+    # From the first message's stamp to the last one's arrival: 99 ms and the latency.
+    assert limit.throughput == pytest.approx(100 / 0.09901)
+    assert cpp.throughput == pytest.approx(98 / 0.099025)
+    assert (cpp.sender_cpu, cpp.receiver_cpu) == pytest.approx((100, 200))
+    assert shared.receiver_cpu is None
+
+
+FACTS = dict.fromkeys(
+    ("cores", "processor", "memory", "system", "kernel", "roscpp", "python"), "some"
+)
+
+
+def test_table_says_what_was_measured(measurements):
+    text = report.markdown(summary.summarise(measurements), FACTS, [0.01])
+    assert "too noisy" not in text
+    assert (
+        "| C++ to C++ | 25.0 | 25.0 | 25.0 | 25.0 | 2.50 [2.50, 2.50] |  | 6 of 300 | kept "
+        "| 100.00 | 200.00 |\n"
+    ) in text
+    cells = ["C++ to C++", "990", "0.98 [0.98, 0.98]", "", "6 of 300", "kept", "100.00", "200.00"]
+    assert "| " + " | ".join(cells) + " | 0.50 |\n" in text
+
+
+def test_table_has_no_figures_of_a_noisy_machine(measurements):
+    text = report.markdown(summary.summarise(measurements), FACTS, [0.5])
+    assert "**This machine is too noisy: others took 50% of the processors' time" in text
+    cells = ["C++ to C++", *["too noisy"] * 5, "", "6 of 300", "kept", *["too noisy"] * 2]
+    assert "| " + " | ".join(cells) + " |\n" in text
+    assert "25.0" not in text
+
+
+def test_report_is_in_all_files(measurements, tmp_path):
+    results = rounds.Results(tmp_path)
+    results.begin([], 3, resume=False)
+    results.keep_noise(0.01)
+    for one in measurements:
+        step = rounds.steps([one["way"]], (8, one["rate"], 100))[0]
+        fields = (one[name] for name in Measurement._fields)
+        results.keep(one["round"], step, Measurement(*fields))
+    report.write(results, print)
+    content = json.loads((tmp_path / "results.json").read_text())
+    assert content["verdict"] is None
+    assert [row["latency"]["p50"] for row in content["rows"]] == [10, 25, 5] * 2
+    with open(tmp_path / "results.csv", newline="") as file:
+        assert [row["p50_us"] for row in csv.DictReader(file)] == ["10.00", "25.00", "5.00"] * 2
+    assert "| C++ to C++ | 25.0 " in (tmp_path / "table.md").read_text()
+    assert {"C++ to C++", "25.0", "raw TCP, C++", "10.0"} <= svg_texts(tmp_path / "latency.svg")
+    assert {"C++ to C++", "990, 2% lost"} <= svg_texts(tmp_path / "throughput.svg")
+    assert (tmp_path / "latency.png").read_bytes().startswith(b"\x89PNG")
+
+
+def svg_texts(path):
+    return set(ElementTree.parse(path).getroot().itertext())
+
+
+@pytest.mark.parametrize("plan", [plans.QUICK, plans.FULL])
+def test_every_way_is_measured_beside_its_limit(plan):
+    assert {step.way for step in plan} <= set(WAYS)
+    for step in plan:
+        beside = {one.way for one in plan if one.piece[:2] == step.piece[:2]}
+        assert {"raw_cpp", "raw_py"} <= beside, step
+    assert len({(step.way, *step.piece[:2]) for step in plan}) == len(plan), (
+        "something is there twice"
+    )
+
+
+def test_full_plan_has_every_way():
+    assert {step.way for step in plans.FULL} == set(WAYS)
+
+
+@pytest.fixture
+def master(tmp_path, monkeypatch):
+    monkeypatch.setenv("ROS_MASTER_URI", os.environ.get("ROS_MASTER_URI", ""))
+    with Master(tmp_path / "master.log"):
+        yield
+
+
+def test_every_way_delivers_every_message_in_order(master, tmp_path):
+    plan = rounds.steps(WAYS, (8, 200, 10))
+    plan += rounds.steps([way for way in WAYS if "rostopic" not in way], (70000, 0, 3))
+    results = rounds.Results(tmp_path)
+    results.begin(plan, 1, resume=False)
+    rounds.run(plan, 1, results, print)
+    found = results.measurements()
+    assert len(found) == len(plan)
+    for one in found:
+        assert len(one["received"]) == WAYS[one["way"]].receivers
+        for pairs in one["received"]:
+            assert pairs[::2] == one["sent"], one["way"]
+            assert all(arrival > stamp for stamp, arrival in zip(pairs[::2], pairs[1::2]))
+        assert one["sender_cpu"] > 0
+        assert WAYS[one["way"]].receiver is None or one["receiver_cpu"] > 0
+
+
+def test_a_run_goes_on_where_it_ended(tmp_path):
+    plan = rounds.steps(summary.LIMITS, (8, 200, 10), (70000, 0, 3))
+    results = rounds.Results(tmp_path)
+    results.begin(plan, 4, resume=False)
+    with pytest.raises(KeyboardInterrupt):
+        rounds.run(plan, 4, results, interrupt_at("[5/"))
+    kept = {path: path.stat().st_mtime_ns for path in tmp_path.glob("samples/*/*")}
+    assert len(kept) == 5
+
+    results.begin(plan, 4, resume=True)
+    lines = []
+    rounds.run(plan, 4, results, lines.append)
+    assert lines[-1].startswith("[11/11] round 4 of 4: raw_py, 68 kB as fast as it goes")
+    assert {path: path.stat().st_mtime_ns for path in kept} == kept
+    assert len(results.measurements()) == 16
+
+
+def interrupt_at(beginning):
+    """Return a function that raises KeyboardInterrupt when it is called with such a line."""
+
+    def say(line):
+        if line.startswith(beginning):
+            raise KeyboardInterrupt
+
+    return say
+
+
+def test_another_plan_cannot_be_resumed(tmp_path):
+    results = rounds.Results(tmp_path)
+    results.begin(rounds.steps(["raw_cpp"], (8, 0, 1)), 1, resume=False)
+    with pytest.raises(rounds.PlanError, match="found another plan: begin anew"):
+        results.begin(rounds.steps(["raw_cpp"], (8, 0, 2)), 1, resume=True)
+
+
+def test_program_that_ends_is_an_error(tmp_path, monkeypatch):
+    ends = Way("ends", "ends", ("bench_raw", "send=1"), ("bench_raw.py", "receive=1"))
+    monkeypatch.setitem(WAYS, "ends", ends)
+    results = rounds.Results(tmp_path)
+    results.begin([], 1, resume=False)
+
+    class Broken(rounds.Running):
+        def measure(self, piece):
+            self._sender.signal(signal.SIGKILL)
+            return super().measure(piece)
+
+    monkeypatch.setattr(rounds, "Running", Broken)
+    with pytest.raises(ProgramError, match="expected of 'bench_raw send=.*' the answer 'sent'"):
+        rounds.run(rounds.steps(["ends"], (8, 0, 1)), 1, results, print)
+
+
+LAUNCH_FILES = sorted((WORKSPACE / "src" / "mrp_bench" / "launch").glob("*.launch"))
+
+
+@pytest.mark.parametrize("path", LAUNCH_FILES, ids=lambda path: path.stem)
+def test_launch_file_compares_ways_that_exist(path):
+    assert path.read_text().startswith("<!-- ")
+    (node,) = ElementTree.parse(path).iter("node")
+    assert (node.get("type"), node.get("required")) == ("compare.py", "true")
+    size, rate, count, *names = node.get("args").split()
+    assert int(size) >= 8 and int(rate) >= 0 and int(count) > 0
+    assert set(names) <= set(WAYS) and len(names) >= 2
+
+
+def test_launch_file_prints_a_table(master):
+    with Process("roslaunch", "mrp_bench", "direct_queue.launch") as launched:
+        launched.wait_for(lambda: "done" in launched.lines, "roslaunch's end")
+    lines = [line for line in launched.lines if line.startswith("| C++")]
+    texts = [WAYS[name].text for name in ("cpp_cpp", "cpp_direct")]
+    assert [line.split(" | ")[0] for line in lines] == ["| " + text for text in texts]
+    assert all(line.split(" | ")[7:9] == ["0", "kept"] for line in lines), lines
+
+
+@pytest.mark.parametrize("arguments", ["", "8 9 x cpp_cpp", "8 9 5 cpp_cppp", "7 9 5 cpp_cpp"])
+def test_compare_says_what_it_expects(arguments):
+    command = ["rosrun", "mrp_bench", "compare.py", *arguments.split()]
+    done = subprocess.run(command, stderr=subprocess.PIPE, text=True)
+    assert done.returncode == 1
+    assert "Usage: compare.py SIZE RATE COUNT WAY..." in done.stderr
+    assert "The ways are: raw_cpp, raw_py, cpp_cpp, " in done.stderr
+    assert "Traceback" not in done.stderr
+
+
+ROSLAUNCH_SAYS = """\
+process[rosout-1]: started with pid [11]
+\x1b[1mprocess[mrp/publisher_cpp_node-2]: started with pid [12]\x1b[0m
+[ INFO] [1795222168.680630550]: [PUBLISHER CPP NODE] namespace of nh = /mrp/publisher_cpp_node
+[ INFO] [1795222169.182939615]: [SUBSCRIBER CPP NODE] received message with data = 2
+[ INFO] [1795222169.682939615]: [SUBSCRIBER CPP NODE] received message with data = 4
+[mrp/publisher_cpp_node-2] killing on exit[mrp/subscriber_cpp_node-4] killing on exit
+shutting down processing monitor...
+"""
+
+
+def test_events_of_a_launch():
+    found = launches.events(enumerate(ROSLAUNCH_SAYS.splitlines(keepends=True)))
+    assert found == [
+        (0, "started", "rosout"),
+        (1, "started", "mrp/publisher_cpp_node"),
+        (2, "ready", "mrp/publisher_cpp_node"),
+        (3, "received", "SUBSCRIBER CPP NODE"),
+        (5, "stopping", "mrp/publisher_cpp_node"),
+        (5, "stopping", "mrp/subscriber_cpp_node"),
+    ]
+
+
+def start(robots, up):
+    return {
+        "robots": robots,
+        "events": [],
+        "up": up,
+        "stop": 100,
+        "end": 103,
+        "cores": 0.01 * robots**2,
+        "cpp_megabytes": 2,
+        "py_megabytes": 30,
+    }
+
+
+def test_growth_with_the_robots():
+    starts = [start(robots, up * robots) for robots in (1, 2, 4) for up in (1, 2, 9)]
+    figures = launch_report.medians(starts)
+    assert figures[4] == {"up": 8, "down": 3, "cores": pytest.approx(0.16), "cpp": 2, "py": 30}
+    found = launch_report.exponents(figures)
+    assert {name: round(estimate.value, 6) for name, estimate in found.items()} == {
+        "up": 1,
+        "down": 0,
+        "cores": 2,
+        "cpp": 0,
+        "py": 0,
+    }
+    lines = launch_report.markdown(starts, None)
+    assert "| 4 | 8.00 | 3.00 | 0.16 | 2.00 | 30.00 |" in lines
+    assert "| 4 " + "| noisy " * 5 + "|" in launch_report.markdown(starts, "noisy")
+    assert launch_report.exponents(launch_report.medians(starts[:6])) == {}
+
+
+def test_robots_start_and_stop(master, tmp_path):
+    results = rounds.Results(tmp_path)
+    launches.run([2], 1, results, print)
+    (found,) = launches.load(results)
+    names = {
+        f"robot{number}/{kind}_{language}_node"
+        for number in (1, 2)
+        for kind in ("publisher", "subscriber")
+        for language in ("cpp", "py")
+    }
+    for what in ("started", "ready", "stopping"):
+        assert {name for _, of, name in found["events"] if of == what} == names, what
+    assert found["up"] < found["stop"] < found["end"]
+    assert 0 < found["cpp_megabytes"] < found["py_megabytes"]
+    assert found["cores"] > 0
+
+    launches.run([2], 1, results, pytest.fail)
+
+
+def results_of(folder, rounds_measured=6, verdict=None):
+    """Make a folder as `make bench` leaves it."""
+    folder.mkdir()
+    content = {"verdict": verdict, "rows": [{"rounds": rounds_measured}]}
+    (folder / "results.json").write_text(json.dumps(content))
+    (folder / "table.md").write_text(
+        "Some text.\n\n### Title\n\n| a | b |\n| --- | ---: |\n| c |  |\n"
+    )
+    (folder / "results.csv").write_text("way\n")
+    (folder / "latency.svg").write_text("<svg/>")
+    return folder
+
+
+def test_record_for_the_page(tmp_path):
+    record_bench.record(results_of(tmp_path / "bench"), tmp_path / "recorded")
+    assert (tmp_path / "recorded" / "measured.inc").read_text() == (
+        "Some text.\n\n.. rubric:: Title\n\n"
+        ".. list-table::\n   :header-rows: 1\n\n   * - a\n     - b\n   * - c\n     -\n\n"
+        ".. image:: /recorded/bench/latency.svg\n"
+        "   :alt: The latency of 8 bytes for every way: p50, p90 and p99.\n"
+    )
+    names = {path.name for path in (tmp_path / "recorded").iterdir()}
+    assert names == {"measured.inc", "latency.svg", "results.csv"}
+
+
+def test_no_record_of_a_noisy_or_quick_or_missing_run(tmp_path):
+    recorded = tmp_path / "recorded"
+    with pytest.raises(SystemExit, match="found none: run make bench"):
+        record_bench.record(tmp_path, recorded)
+    with pytest.raises(SystemExit, match="error: too noisy"):
+        record_bench.record(results_of(tmp_path / "noisy", verdict="too noisy"), recorded)
+    with pytest.raises(SystemExit, match="expected 6 rounds, found 3: run make bench without"):
+        record_bench.record(results_of(tmp_path / "quick", rounds_measured=3), recorded)
+    assert not recorded.exists()
+
+
+def test_rospy_sleeps_after_each_message_that_it_queues(monkeypatch):
+    """What the page says of time.sleep(0)."""
+
+    class Connection:
+        done = False
+        written = []
+
+        def set_cleanup_callback(self, callback):
+            self.wake_up = callback
+
+        def write_data(self, data):
+            self.written.append(data)
+
+    connection = Connection()
+    queued = tcpros_pubsub.QueuedConnection(connection, 0)
+    sleeps = []
+    monkeypatch.setattr(tcpros_pubsub.time, "sleep", sleeps.append)
+    try:
+        for number in range(3):
+            queued.write_data(number)
+        assert sleeps == [0, 0, 0]
+    finally:
+        monkeypatch.undo()
+        wait_until(lambda: connection.written == [0, 1, 2], "the sending thread has sent all")
+        connection.done = True
+        connection.wake_up(connection)
+        queued._thread.join()
+
+
+def history(*rows):
+    return [dict(zip(("debian", "commit", "what", "value", "low", "high"), row)) for row in rows]
+
+
+def test_build_times_grow_when_intervals_lie_apart_by_more_than_a_tenth():
+    before = history(
+        ("12", "old", "clean build", "5.0", "4.9", "5.1"),
+        ("12", "last", "clean build", "10.0", "9.5", "10.5"),
+        ("13", "other", "clean build", "1.0", "0.9", "1.1"),
+    )
+
+    def found(*numbers, what="clean build"):
+        return build_times.regressions(before, "12", {what: stats.Estimate(*numbers)})
+
+    assert found(12, 11, 13) == [
+        "clean build: expected about 10.00 times as long as to compile one node, found "
+        "12.00 [11.00, 13.00], 20% more than at last"
+    ]
+    assert found(12, 10.4, 14) == [], "within the noise"
+    assert found(10.9, 10.8, 11) == [], "less than a tenth"
+    assert found(5, 4, 6) == [], "faster"
+    assert found(12, 11, 13, what="something new") == []
+    assert build_times.regressions([], "12", {"clean build": stats.Estimate(1, 1, 1)}) == []
