@@ -10,8 +10,9 @@ MAKEFLAGS += --no-print-directory
 # - another workspace, sourced in the user's shell, is none of this one's business;
 # - ROS Noetic proper has a file to source, Debian's ROS has not.
 NOETIC := $(wildcard /opt/ros/noetic/setup.bash)
-IN_WORKSPACE := cd catkin_ws; export PATH=/usr/bin:/bin:/usr/sbin:/sbin:"$$PATH"; \
+IN_ENVIRONMENT := export PATH=/usr/bin:/bin:/usr/sbin:/sbin:"$$PATH"; \
   unset CMAKE_PREFIX_PATH ROS_PACKAGE_PATH PYTHONPATH; $(if $(NOETIC),source $(NOETIC);)
+IN_WORKSPACE := cd catkin_ws; $(IN_ENVIRONMENT)
 
 # ROS 1 has no authentication: unless the user says otherwise, listen on this machine only.
 LOCAL := if [ -z "$$ROS_IP$$ROS_HOSTNAME" ]; then export ROS_HOSTNAME=localhost; fi;
@@ -22,11 +23,13 @@ ALONE := unset ROS_IP ROS_NAMESPACE ROS_MASTER_URI; export ROS_HOSTNAME=localhos
 
 CATKIN_MAKE := catkin_make -DPYTHON_EXECUTABLE=/usr/bin/python3 -DCMAKE_BUILD_TYPE=RelWithDebInfo
 INSTALL := catkin_ws/tools/install_packages.sh
-PACKAGES := $(addprefix catkin_ws/apt/,build.txt runtime.txt tools.txt test.txt docs.txt)
+CHECKER := $(addprefix catkin_ws/apt/,build.txt runtime.txt tools.txt check.txt)
+PACKAGES := $(CHECKER) $(addprefix catkin_ws/apt/,view.txt test.txt docs.txt)
 BUILT := catkin_ws/devel/.built
 RESULTS := $(CURDIR)/catkin_ws/build/test_results
 SITE := $(CURDIR)/catkin_ws/build/docs
 SCREENSHOTS := $(CURDIR)/catkin_ws/build/screenshots
+BENCH := $(CURDIR)/catkin_ws/build/bench
 
 .PHONY: help
 help:  ## print the targets
@@ -50,10 +53,12 @@ run: build  ## run the four nodes; end them with Ctrl-C
 
 .PHONY: test
 test: build  ## build, run every test, and print one summary
+	@$(INSTALL) catkin_ws/apt/bench.txt
 	@rm -rf $(RESULTS)
 	@$(IN_WORKSPACE) $(ALONE) $(CATKIN_MAKE) run_tests -j1
 	@$(IN_WORKSPACE) $(ALONE) source devel/setup.bash; status=0; \
-	/usr/bin/python3 -m pytest -n 3 --junit-xml=$(RESULTS)/workspace.xml tests || status=1; \
+	/usr/bin/python3 -m pytest -n 3 --junit-xml=$(RESULTS)/workspace.xml tests \
+	  --ignore=tests/test_check_sets.py $(addprefix --deselect=,$(DEFECTS)) || status=1; \
 	catkin_test_results $(RESULTS) > /dev/null || status=1; \
 	tools/test_summary.py $(RESULTS) || status=1; \
 	exit $$status
@@ -63,6 +68,52 @@ labs:  ## list the labs: each is a launch file that shows one claim
 	@for file in catkin_ws/src/mrp_labs/launch/*.launch; do \
 	  printf '  %-52s %s\n' "roslaunch mrp_labs $$(basename $$file)" \
 	    "$$(sed -n '1s/<!-- \(.*\) -->/\1/p' $$file)"; done
+
+# It builds the package in a folder of its own, so nothing of this workspace need be built before.
+.PHONY: check
+check:  ## check the package at PKG against the tutorial's contract, or against SPEC
+	@test -n "$(PKG)" || { echo "error: expected make check PKG=PATH, the folder of a package" >&2; exit 2; }
+	@$(INSTALL) $(CHECKER)
+	@$(IN_ENVIRONMENT) PYTHONPATH=catkin_ws/src/mrp_check/src exec /usr/bin/python3 \
+	  catkin_ws/src/mrp_check/scripts/check "$(PKG)" $(if $(SPEC),--spec "$(SPEC)")
+
+# More than 150 whole packages are built and run, and dozens of nodes at once: so it is no part of
+# `make test`.
+DEFECTS := tests/test_check_run.py::test_each_defect_is_found_at_its_place
+.PHONY: test-check
+test-check: deps  ## check the packages that judge the checker
+	@$(IN_WORKSPACE) $(ALONE) \
+	/usr/bin/python3 -m pytest -n 3 --junit-xml=$(RESULTS)/check.xml tests/test_check_sets.py $(DEFECTS)
+
+# HINT=1 shows the hint; RESET=1 begins the exercise anew. Exit code 1 only says: not yet.
+.PHONY: exercise
+exercise:  ## show the next exercise, or check it; HINT=1 gives a hint
+	@$(INSTALL) $(CHECKER)
+	@$(IN_ENVIRONMENT) PYTHONPATH=catkin_ws/src/mrp_check/src /usr/bin/python3 -m mrp_check.exercise \
+	  $(if $(HINT),--hint) $(if $(RESET),--reset) catkin_ws/exercises || [ $$? = 1 ]
+
+# What else runs on this machine shows in the figures: end it before.
+.PHONY: bench
+bench: build  ## measure how fast nodes are; QUICK=1: in a minute; RESUME=1: go on with the last run
+	@$(INSTALL) catkin_ws/apt/bench.txt
+	@$(IN_WORKSPACE) $(ALONE) source devel/setup.bash; \
+	exec rosrun mrp_bench bench.py $(if $(QUICK),--quick) $(if $(RESUME),--resume) $(BENCH)
+
+.PHONY: bench-record
+bench-record:  ## put what `make bench` measured into the pages
+	@/usr/bin/python3 catkin_ws/tools/record_bench.py $(BENCH)
+
+.PHONY: build-times
+build-times: deps  ## fail if the workspace takes longer to build than before; RECORD=1: keep the times
+	@$(INSTALL) catkin_ws/apt/bench.txt
+	@$(IN_WORKSPACE) /usr/bin/python3 tools/build_times.py $(if $(RECORD),record,check)
+
+# The pages that it links to are built once.
+.PHONY: view
+view: build  ## watch the graph and the messages in a browser; end it with Ctrl-C
+	@[ -e $(SITE)/index.html ] || $(MAKE) docs > /dev/null
+	@$(IN_WORKSPACE) $(LOCAL) source devel/setup.bash; \
+	exec rosrun mrp_view view_node.py --tutorial $(SITE) $(VIEW_OPTIONS)
 
 .PHONY: lint
 lint:  ## check the style of all sources
@@ -86,10 +137,11 @@ docs-record: deps  ## do what the pages say, and record what they show of it
 	@$(IN_WORKSPACE) /usr/bin/python3 tools/run_page.py record
 
 .PHONY: test-browser
-test-browser: docs  ## open every page in a real browser
+test-browser: build docs  ## open every page in Chromium and in Firefox
 	@$(INSTALL) catkin_ws/apt/test.txt catkin_ws/apt/browser.txt
 	@rm -rf $(SCREENSHOTS)
-	@$(IN_WORKSPACE) /usr/bin/python3 -m pytest --junit-xml=$(RESULTS)/browser.xml browser_tests
+	@$(IN_WORKSPACE) $(ALONE) source devel/setup.bash; \
+	/usr/bin/python3 -m pytest --junit-xml=$(RESULTS)/browser.xml browser_tests
 	@echo "Look at the pages: $(SCREENSHOTS)"
 
 .PHONY: doctor
@@ -131,6 +183,10 @@ docker-build: need-docker  ## build the image mrp, which runs the four nodes any
 docker-build-ssh: docker-build  ## build the image for docker/several_hosts/remote.yaml
 	$(IMAGE_OF) --target ssh --tag mrp-ssh:$(DEBIAN) -
 
+.PHONY: docker-build-view
+docker-build-view: docker-build
+	$(IMAGE_OF) --target view --tag mrp-view:$(DEBIAN) -
+
 # Without a network: ROS 1 has no authentication, and the nodes talk to one another alone.
 .PHONY: docker-run
 docker-run: docker-build  ## run the four nodes in a container; end them with Ctrl-C
@@ -140,9 +196,13 @@ docker-run: docker-build  ## run the four nodes in a container; end them with Ct
 docker-up: docker-build  ## run one container per node; end them with Ctrl-C
 	@$(COMPOSE_MRP) up
 
+.PHONY: docker-view
+docker-view: docker-build-view  ## as docker-up, with the live page at http://127.0.0.1:8765/
+	@$(COMPOSE_MRP) --profile view up
+
 .PHONY: docker-down
-docker-down: need-docker  ## take away what docker-up leaves
-	@$(COMPOSE_MRP) down
+docker-down: need-docker  ## take away what docker-up or docker-view leaves
+	@$(COMPOSE_MRP) --profile view down
 
 .PHONY: docker-test
 docker-test: docker-suite docker-containers  ## run every test in a container, and test the containers
@@ -155,6 +215,19 @@ docker-suite: need-docker
 	@rm -rf $(DOCKER_RESULTS)/suite; mkdir -p $(DOCKER_RESULTS)/suite
 	docker run --rm --init --network none --hostname localhost --user "$$(id -u):$$(id -g)" \
 	  --volume $(DOCKER_RESULTS)/suite:/results mrp-test:$(DEBIAN)
+
+# What the checker needs is in the image of the tests. The package is read alone; nothing that it does
+# reaches this machine, which the engine's own limits see to, too.
+.PHONY: docker-check
+docker-check: need-docker  ## check the package at PKG in a container without a network
+	@test -e "$(PKG)/package.xml" || { \
+	  echo "error: expected PKG=PATH, the folder of a package; '$(PKG)' has no package.xml" >&2; exit 2; }
+	$(IMAGE_OF) --target test --tag mrp-test:$(DEBIAN) -
+	@docker run --rm --init --network none --hostname localhost --cap-drop ALL \
+	  --security-opt no-new-privileges --memory 4g --pids-limit 1000 \
+	  --user "$$(id -u):$$(id -g)" --volume "$(abspath $(PKG)):/package:ro" \
+	  --env PYTHONPATH=catkin_ws/src/mrp_check/src mrp-test:$(DEBIAN) \
+	  /usr/bin/python3 catkin_ws/src/mrp_check/scripts/check /package
 
 .PHONY: docker-containers
 docker-containers: docker-build-ssh

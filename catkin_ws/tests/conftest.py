@@ -6,3 +6,4 @@ import sys
 
 WORKSPACE = pathlib.Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(WORKSPACE / "src" / "mrp" / "test"))
+sys.path.insert(0, str(WORKSPACE / "src" / "mrp_check" / "src"))

@@ -9,7 +9,8 @@ import pytest
 
 WORKSPACE = pathlib.Path(__file__).resolve().parent.parent
 LISTS = {path.stem: path for path in (WORKSPACE / "apt").glob("*.txt")}
-BUILD, RUN, TEST = ("build",), ("runtime", "tools"), ("build", "runtime", "tools", "test")
+BUILD, RUN = ("build",), ("runtime", "tools", "check", "view", "bench")
+TEST = (*BUILD, *RUN, "test")
 
 
 def entries(stage):

@@ -8,6 +8,7 @@ import sys
 import urllib.parse
 
 import pytest
+from mrp_view import findings
 
 WORKSPACE = pathlib.Path(__file__).resolve().parent.parent
 
@@ -63,6 +64,12 @@ def broken_links(folder):
 
 def test_every_link_within_the_site_leads_somewhere(site):
     assert broken_links(site) == []
+
+
+def test_every_link_of_the_viewer_leads_somewhere(site):
+    for link in findings.PAGES.values():
+        page, _, fragment = link.partition("#")
+        assert not fragment or fragment in Page(site / page).ids, link
 
 
 def test_no_page_has_an_id_twice(site):

@@ -5,6 +5,7 @@ import os
 import re
 import signal
 
+import check_sets
 import contract
 from console import ROSLAUNCH_LINE
 from front_door import ROOT, environment, make
@@ -72,3 +73,11 @@ def test_layout_names_folders_that_exist():
     folders = [line.split()[0] for line in layout.splitlines()]
     assert folders
     assert [folder for folder in folders if not (ROOT / folder).is_dir()] == []
+
+
+def test_sizes_of_the_checkers_sets():
+    sizes = (
+        f"checks {len(check_sets.PATCHES)} packages with one injected defect each, and "
+        f"{len(check_sets.STYLES)} correct packages"
+    )
+    assert sizes in " ".join(README.split())

@@ -25,7 +25,7 @@ import rosgraph
 WORKSPACE = pathlib.Path(__file__).resolve().parents[1]
 DOC = WORKSPACE / "src" / "mrp" / "doc"
 RECORDED = DOC / "recorded"
-SECONDS = 200  # that a command may take: one builds the whole repository
+SECONDS = 900  # that a command may take: one builds the whole repository
 
 _PROMPT = re.compile(r"<reader (\d+)> $")
 _ESCAPES = re.compile(r"\x1b\[[0-9;?]*[a-zA-Z]|\x1b\][^\x07]*\x07|\x07")
@@ -225,7 +225,7 @@ def record():
                 what = step.get("path") or "; ".join(step["commands"]) or "Ctrl-C"
                 print(f"[{number}/{len(to_do)}] {step['page']}: {what}", flush=True)
                 reader.do(step)
-    for path in RECORDED.iterdir():
+    for path in (*RECORDED.glob("*.txt"), *RECORDED.glob("*.json")):
         path.unlink()
     for name, output in reader.outputs.items():
         (RECORDED / f"{name}.txt").write_text(output + "\n")

@@ -6,9 +6,10 @@
 # left out.
 set -euo pipefail
 
-folder=$(cd "$(dirname "$0")/.." && pwd)/build/rosdep
+workspace=$(cd "$(dirname "$0")/.." && pwd)
+folder=$workspace/build/rosdep
 mkdir -p "$folder/sources"
-echo "yaml file:///usr/share/python3-rosdep2/debian.yaml debian" > "$folder/sources/debian.list"
+printf 'yaml file://%s debian\n' /usr/share/python3-rosdep2/debian.yaml "$workspace/apt/rosdep.yaml" > "$folder/sources/debian.list"
 printf '%s\n' '%YAML 1.1' '---' 'distributions: {}' 'type: index' 'version: 4' > "$folder/index.yaml"
 
 export ROS_HOME=$folder

@@ -18,6 +18,7 @@ extensions = [
     "terminal",
     "proof",
     "picture",
+    "exercises",
 ]
 
 html_theme = "sphinx_rtd_theme"

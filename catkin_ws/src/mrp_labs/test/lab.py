@@ -4,6 +4,7 @@
 import collections
 import os
 import re
+import socket
 import sys
 import xmlrpc.client
 
@@ -44,6 +45,21 @@ def pid_of(node, master_uri=None):
         return pid
     except (rosgraph.MasterException, OSError):
         return None
+
+
+def free_port():
+    """Return a port on which nothing listens, for a master."""
+    with socket.socket() as probe:
+        probe.bind(("localhost", 0))
+        return probe.getsockname()[1]
+
+
+def master(port):
+    """Return a running roscore at a port, as a Process."""
+    core = Process("roscore", "-p", str(port))
+    uri = f"http://localhost:{port}"
+    core.wait_for(lambda: rosgraph.is_master_online(uri), "a master that answers")
+    return core
 
 
 class Lab(Process):

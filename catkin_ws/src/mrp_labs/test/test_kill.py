@@ -7,12 +7,11 @@ import itertools
 import os
 import re
 import signal
-import socket
 import unittest
 
 import rosgraph
 import rostest
-from lab import PACKAGE, Lab, Process, pid_of
+from lab import PACKAGE, Lab, free_port, master, pid_of
 from waiting import wait_until
 
 PUBLISHERS = ("/kill/publisher_cpp", "/kill/publisher_py")
@@ -46,12 +45,6 @@ def breaks(lab, subscriber, publisher):
 
 def pids(nodes, master_uri=None):
     return {node: pid_of(node, master_uri) for node in nodes}
-
-
-def free_port():
-    with socket.socket() as probe:
-        probe.bind(("localhost", 0))
-        return str(probe.getsockname()[1])
 
 
 def kill(lab, pid):
@@ -105,8 +98,8 @@ class TestKill(unittest.TestCase):
             labs = []
             for victim in PUBLISHERS:
                 port = free_port()
-                lab = stack.enter_context(Lab("kill_required.launch", "-p", port))
-                labs.append((lab, "http://localhost:" + port, victim))
+                lab = stack.enter_context(Lab("kill_required.launch", "-p", str(port)))
+                labs.append((lab, f"http://localhost:{port}", victim))
             for lab, uri, victim in labs:
                 wait_for_more(lab, PAIRS)
                 pid = pids(NODES, uri)
@@ -120,22 +113,16 @@ class TestKill(unittest.TestCase):
 
     def test_master(self):
         port = free_port()
-        uri = "http://localhost:" + port
-
-        def roscore():
-            process = Process("roscore", "-p", port)
-            process.wait_for(lambda: rosgraph.is_master_online(uri), "the master answers")
-            return process
-
-        with roscore() as master, Lab(
+        uri = f"http://localhost:{port}"
+        with master(port) as first, Lab(
             "kill_master.launch", extra_env={"ROS_MASTER_URI": uri}
         ) as lab:
             wait_for_more(lab, PAIRS + WITNESS_PAIRS)
             pid = pids(NODES + WITNESSES, uri)
-            self.assertEqual(master.stop(), 0, str(master))
+            self.assertEqual(first.stop(), 0, str(first))
             self.assertFalse(rosgraph.is_master_online(uri))
             wait_for_more(lab, PAIRS + WITNESS_PAIRS)
-            with roscore():
+            with master(port):
                 wait_for_more(lab, PAIRS + WITNESS_PAIRS)
                 for pair in PAIRS + WITNESS_PAIRS:
                     self.assertEqual(breaks(lab, *pair), 0, pair)

@@ -86,7 +86,7 @@ class TestSubscriberQueue(unittest.TestCase):
         )
         self.assertEqual(lab.received(node), [])
         # The other one is as good as any.
-        values = lab.wait_until_received("/subscriber_queue_zero/subscriber_cpp", 10)
+        values = lab.wait_for_count("/subscriber_queue_zero/subscriber_cpp", 10)
         numbers = list(map(int, values))
         self.assertEqual(numbers, list(range(numbers[0], numbers[-1] + 1)))
 

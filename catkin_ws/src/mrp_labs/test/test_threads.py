@@ -40,9 +40,7 @@ class TestThreads(unittest.TestCase):
         with Lab("threads.launch") as lab:
             for subscriber in ("py", "spin", *POOLS):
                 for publisher in PUBLISHERS:
-                    lab.wait_until_received(
-                        "/threads/subscriber_" + subscriber, ENOUGH, publisher=publisher
-                    )
+                    lab.wait_for_count("/threads/subscriber_" + subscriber, ENOUGH, publisher)
             main = {one: pid_of("/threads/subscriber_" + one) for one in ("py", "spin", *POOLS)}
 
         # rospy: a thread for each connection, and none of them the main one.

@@ -50,7 +50,7 @@ class TestTime(unittest.TestCase):
         with lab.Lab("time_no_clock.launch") as running:
             for subscriber in SUBSCRIBERS:
                 for publisher in CPP + PY:
-                    running.wait_until_received(subscriber, 8, publisher=publisher)
+                    running.wait_for_count(subscriber, 8, publisher)
             for publisher in ROS:
                 # Alive, but all that it has said is on which topic it would publish.
                 self.assertIsNotNone(lab.pid_of(publisher), publisher)

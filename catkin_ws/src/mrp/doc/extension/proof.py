@@ -50,7 +50,7 @@ def test_cases(path):
 def all_tests():
     """Return proof -> the test's file, of everything that a proof may be."""
     files = {}
-    for package in ("mrp", "mrp_labs"):
+    for package in ("mrp", "mrp_labs", "mrp_view"):
         for rostest in (WORKSPACE / "src" / package / "test").glob("*.test"):
             for path in rostest.parent.glob(f"test_{rostest.stem}.*"):
                 files[path] = f"{package}/{rostest.stem}"
