@@ -243,12 +243,12 @@ def findings_of(folder, contract, scratch):
 
 def slices(defects, count):
     """Return the defects in groups: as many nodes at once as a busy machine can start."""
-    items = [item for item in defects.items()]
+    items = list(defects.items())
     return [dict(items[start::count]) for start in range(count)]
 
 
-GROUPS = [(part, {}) for part in slices(PUBLISHERS, 4)] + [
-    ({}, part) for part in slices(SUBSCRIBERS, 2)
+GROUPS = [(part, {}) for part in slices(PUBLISHERS, 7)] + [
+    ({}, part) for part in slices(SUBSCRIBERS, 3)
 ]
 
 
@@ -331,10 +331,17 @@ rospy.spin()
 """
 
 
-@pytest.mark.parametrize("wraps", [True, False])
-def test_counters_of_all_kinds_are_found(tmp_path, wraps):
+# Their wrap is not a `% 2**32` in the line that counts: there is none to take away.
+ALWAYS_WRAP = ("c_number", "property", "factor")
+COUNTER_GROUPS = [(True, list(part)) for part in slices(COUNTERS, 3)] + [
+    (False, list(part))
+    for part in slices({n: c for n, c in COUNTERS.items() if n not in ALWAYS_WRAP}, 2)
+]
+
+
+@pytest.mark.parametrize(("wraps", "names"), COUNTER_GROUPS, ids=range(len(COUNTER_GROUPS)))
+def test_counters_of_all_kinds_are_found(tmp_path, wraps, names):
     """With the wrap nothing is found, not even a note; without it, the end of each."""
-    names = [n for n in COUNTERS if wraps or n not in ("c_number", "property", "factor")]
     folder = make_package(tmp_path / "lab_pkg", {name: ("", "") for name in names}, {})
     for name in names:
         start, publish, count = COUNTERS[name]
