@@ -7,7 +7,7 @@ from mrp_check import check, spec
 from mrp_check.package import Package
 from mrp_check.stages import cmake, uses
 from mrp_check.stages.catkin import Catkin
-from mrp_check.stages.static import facts, python_facts, python_rules
+from mrp_check.stages.static import facts, python_facts, python_read, python_rules
 
 MANIFEST = """<?xml version="1.0"?>
 <package format="3">
@@ -65,14 +65,14 @@ def model_of(package):
 def python_findings(folder, source):
     """Return the findings of the Python rules about a source, that of a file src/odd.py."""
     package = make(folder, src__odd_DOT_py=source)
-    read, problem = python_rules.read(package, "src/odd.py")
+    read, problem = python_read.read(package, "src/odd.py")
     return [problem] if problem else list(python_rules.findings(package, read))
 
 
 def python_facts_of(folder, source):
     """Return the Facts of a package whose node publisher_py_node is the source."""
     package = make(folder, src__odd_DOT_py=source)
-    read, problem = python_rules.read(package, "src/odd.py")
+    read, problem = python_read.read(package, "src/odd.py")
     assert problem is None
     found = facts.Facts(places=python_facts.places(read))
     found.sources["publisher_py_node"] = ["src/odd.py"]

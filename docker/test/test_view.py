@@ -12,8 +12,8 @@ from process import Process
 
 ADDRESS = "http://127.0.0.1:8765/"
 
-# A browser's side of the page's WebSocket, which runs in the page's own container: that has a client.
-# It prints the states of all nodes, and the publishers, once it has counted messages of both.
+# A browser's side of the page's WebSocket, which runs in the page's own container: that has a
+# client. It prints the states of all nodes, and the publishers, once both have been heard.
 BROWSER = """
 import asyncio, json
 from tornado.httpclient import HTTPRequest

@@ -11,7 +11,7 @@ from mrp_check import confine
 from mrp_check.finding import CannotCheck
 from mrp_check.stages import uses
 from mrp_check.stages.static import facts as facts_
-from mrp_check.stages.static import node_rules, python_facts, python_rules, roles
+from mrp_check.stages.static import node_rules, python_facts, python_read, python_rules, roles
 
 _CPP_FACTS = pathlib.Path(__file__).resolve().with_name("cpp_facts.py")
 
@@ -29,7 +29,7 @@ def findings(package, spec, workspace):
     facts = workspace.facts = facts_.Facts()
     sources = {}
     for file in _python_files(package, model, workspace.launch):
-        source, problem = python_rules.read(package, file)
+        source, problem = python_read.read(package, file)
         if source is None:
             facts.unread.add(file)
             if problem and _is_code(package, file):
