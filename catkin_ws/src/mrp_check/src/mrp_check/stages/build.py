@@ -6,7 +6,7 @@ from __future__ import annotations
 import os
 
 from mrp_check.finding import Finding
-from mrp_check.stages import compiler
+from mrp_check.stages import compiler, configuring, linker
 
 
 def findings(package, spec, workspace):
@@ -18,7 +18,7 @@ def findings(package, spec, workspace):
         yield _not_configured(package, catkin, copy)
     elif not built.ok:
         found = [compiler.finding(package, p) for p in compiler.problems(built.output, copy)]
-        found += compiler.link_findings(package, built.output, catkin.model)
+        found += linker.findings(package, built.output, catkin.model)
         yield from found or [_unknown(package, built, "compile")]
     workspace.built = built is not None and built.ok
     workspace.executables = _executables(workspace, package)
@@ -27,7 +27,7 @@ def findings(package, spec, workspace):
 def _not_configured(package, catkin, copy):
     step = catkin.configured
     finding = (
-        None if step.why_ended else compiler.cmake_finding(package, step.output, copy, catkin.model)
+        None if step.why_ended else configuring.finding(package, step.output, copy, catkin.model)
     )
     return finding or _unknown(package, step, "configure")
 

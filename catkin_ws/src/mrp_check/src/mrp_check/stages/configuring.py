@@ -1,0 +1,152 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Why CMake stops, as a finding: its first error, the line, and plain words."""
+
+from __future__ import annotations
+
+import difflib
+import re
+
+from mrp_check.finding import Finding
+from mrp_check.stages.cmake import relative
+
+_CMAKE_ERROR = re.compile(
+    r"^CMake Error(?: \(dev\))? (?:at|in) (?P<file>[^:\n]+?):(?P<line>\d+)"
+    r"(?: \((?P<command>\w+)\))?:",
+    re.MULTILINE,
+)
+_CMAKE_ERROR_NO_LINE = re.compile(r"^CMake Error(?::| in| at| (?=\())", re.MULTILINE)
+_STACK = re.compile(r"^  (?P<file>[^:\s]+):(?P<line>\d+) \((?P<command>\w+)\)", re.MULTILINE)
+
+
+def finding(package, output, copy, model):
+    """Return the Finding about why CMake failed, or None if its output does not say it."""
+    match = _CMAKE_ERROR.search(output)
+    if not match:
+        return None
+    rest = output[match.end() :]
+    following = re.search(r"^CMake Error|^-- Configuring incomplete", rest, re.MULTILINE)
+    block = rest[: following.start()] if following else rest[:4000]
+    file, line = _relative_any(match.group("file"), copy), int(match.group("line"))
+    command = match.group("command") or ""
+    if file is None:
+        for caller in _STACK.finditer(block):
+            own = _relative_any(caller.group("file"), copy)
+            if own:
+                file, line, command = own, int(caller.group("line")), caller.group("command")
+                break
+    text = " ".join(block.split("Call Stack")[0].split())
+    if file is None or file not in package.files:
+        file, line = "CMakeLists.txt", 1
+    said, fix = _in_words(package, text, command, model)
+    # An unknown command stands where it is called: what defines it is missing further up.
+    if (
+        "Unknown CMake command" in text
+        and model.catkin
+        and re.search(r'"(add_message_files|generate_messages|add_service_files)"', text)
+    ):
+        file, line = model.catkin.file, model.catkin.line
+    line = max(1, min(line, len(package.lines(file))))
+    return Finding(
+        "configure",
+        f"CMake stops at line {line} of {file}: {said}",
+        file,
+        line,
+        expected="a CMakeLists.txt that CMake can follow",
+        seen=f"{package.lines(file)[line - 1].strip()}  (CMake: {text[:300]})",
+        fix=fix,
+    )
+
+
+def _relative_any(path, copy):
+    """Return a path that CMake prints (absolute, or relative to src) as the package's."""
+    if path.startswith("/"):
+        return relative(path, copy)
+    return relative(str(copy.parent / path), copy)
+
+
+_COMMANDS = (
+    "cmake_minimum_required project find_package catkin_package include_directories add_executable"
+    " add_dependencies target_link_libraries install catkin_install_python add_compile_options set"
+    " add_message_files generate_messages catkin_python_setup add_library foreach endforeach"
+    " if endif"
+    " target_include_directories file function endfunction macro endmacro set_target_properties"
+).split()
+
+
+def _in_words(package, text, command, model):
+    """Return (what it means, what to do)."""
+    match = re.search(r'Unknown CMake command "(\w+)"', text)
+    if match:
+        name = match.group(1)
+        if name in ("add_message_files", "generate_messages", "add_service_files"):
+            return (
+                f"{name}() is not known, as find_package(catkin ...) does not name"
+                " message_generation, which brings it.",
+                "Add message_generation to COMPONENTS.",
+            )
+        if name.startswith("catkin_") and model.catkin is None:
+            return (
+                f"{name}() is not known, as find_package(catkin REQUIRED ...) is missing above it.",
+                "Add find_package(catkin REQUIRED COMPONENTS ...).",
+            )
+        near = difflib.get_close_matches(name.lower(), _COMMANDS, 1, 0.6)
+        hint = f" Perhaps {near[0]} is meant." if near else ""
+        return f"there is no command {name}().{hint}", f"Write {near[0]}." if near else "Mend it."
+    match = (
+        re.search(r'Could not find a package configuration file provided by "(\w+)"', text)
+        or re.search(r"catkin_package\(\).*?on the catkin package '(\w+)'", text)
+        or re.search(r"Could NOT find (\w+)", text)
+    )
+    if match and command == "find_package":
+        name = match.group(1)
+        near = difflib.get_close_matches(
+            name, ["roscpp", "rospy", "std_msgs", "catkin", "message_generation", "roslib"], 1, 0.6
+        )
+        hint = f" Perhaps {near[0]} is meant." if near else ""
+        return (
+            f"there is no package {name} on this machine.{hint}",
+            f"Write {near[0]} for {name}." if near else f"Install {name}, or take it out.",
+        )
+    match = re.search(r"catkin_package\(\) .*?'(\w+)'", text)
+    if command == "catkin_package" and match:
+        return f"{text}", "Let package.xml, find_package() and catkin_package() name the same."
+    match = re.search(r"Cannot find source file: (\S+)", text)
+    if match:
+        near = difflib.get_close_matches(match.group(1), package.of_kind("cpp"), 1, 0.6)
+        hint = f" Perhaps {near[0]} is meant." if near else ""
+        return f"there is no source {match.group(1)}.{hint}", "Name a file that is there."
+    match = re.search(
+        r'Cannot specify (?:link libraries|include directories|\w+ \w+) for target "(\S+)"', text
+    ) or re.search(
+        r"add_dependencies Cannot add target-level dependencies to"
+        r' non-existent target "(\S+?)"',
+        text,
+    )
+    if match:
+        name = match.group(1)
+        near = difflib.get_close_matches(name, list(model.targets), 1, 0.5)
+        hint = f" There is {near[0]}." if near else ""
+        return (
+            f"there is no target {name} at this point.{hint} add_executable() has to come before.",
+            f"Write {near[0]} for {name}." if near else f"Add add_executable({name} ...) above it.",
+        )
+    match = re.search(r"because another target with the same name already exists", text)
+    if match:
+        return "a target of this name has been made already, further up.", "Give it its own name."
+    match = re.search(r"non-existing file '([^']+)'", text)
+    if match:
+        name = match.group(1).rsplit("/", 2)
+        shown = "/".join(name[1:])
+        near = difflib.get_close_matches(shown, package.of_kind("python"), 1, 0.6)
+        hint = f" Perhaps {near[0]} is meant." if near else ""
+        return f"there is no script {shown}.{hint}", "Name a file that is there."
+    if "Function missing ending" in text:
+        return "the call that begins there has no closing parenthesis.", "Close it with a )."
+    if "end of file" in text or "not closed" in text:
+        return (
+            "a bracket or a quotation mark that is opened there is never closed.",
+            "Close what was opened.",
+        )
+    if "Parse error" in text:
+        return "a bracket or a quotation mark is missing, or too much.", "Mend the call there."
+    return text[:300], "Compare the line with the one on the page."
