@@ -12,9 +12,10 @@ import xml.etree.ElementTree as ElementTree
 
 import numpy
 import pytest
+import yaml
 from mrp_bench import launch_report, launches, noise, plans, report, rounds, stats, summary
 from mrp_bench.master import Master
-from mrp_bench.programs import Measurement, ProgramError
+from mrp_bench.programs import Measurement, ProgramError, Running
 from mrp_bench.ways import WAYS, Way
 from process import Process
 from rospy.impl import tcpros_pubsub
@@ -316,6 +317,19 @@ def test_program_that_ends_is_an_error(tmp_path, monkeypatch):
     monkeypatch.setattr(rounds, "Running", Broken)
     with pytest.raises(ProgramError, match="expected of 'bench_raw send=.*' the answer 'sent'"):
         rounds.run(rounds.steps(["ends"], (8, 0, 1)), 1, results, print)
+
+
+def test_nodelets_are_loaded_by_one_manager(master, tmp_path):
+    with Running(WAYS["cpp_nodelet"], tmp_path / "log") as running:
+        running.start()
+        running.connect()
+        running.signal(signal.SIGCONT)
+        services = subprocess.check_output(["rosservice", "list"], text=True).split()
+        (manager,) = {name[: -len("/list")] for name in services if name.endswith("/list")}
+        listed = subprocess.check_output(["rosservice", "call", manager + "/list"], text=True)
+        nodes = subprocess.check_output(["rosnode", "list"], text=True).split()
+    assert yaml.safe_load(listed) == {"nodelets": [manager + "_Receiver", manager + "_Sender"]}
+    assert nodes == [manager, "/rosout"]
 
 
 LAUNCH_FILES = sorted((WORKSPACE / "src" / "mrp_bench" / "launch").glob("*.launch"))

@@ -13,6 +13,7 @@ FASTER_SMALL = [
     "cpp_one_process",
     "cpp_shared",
     "cpp_shared_direct",
+    "cpp_nodelet",
     "py_unqueued",
     "py_unqueued_cpp_direct",
     "py_timer_slack",
@@ -26,6 +27,7 @@ FASTER_LARGE = [
     "cpp_one_process",
     "cpp_shared",
     "cpp_shared_direct",
+    "cpp_nodelet",
     "py_unqueued",
     "py_no_delay",
     "py_buff_size",
@@ -41,6 +43,7 @@ BURST_FAST = [
     "cpp_one_process",
     "cpp_shared",
     "cpp_shared_direct",
+    "cpp_nodelet",
     "cpp_to_4",
     "cpp_queue_10",
     "py_unqueued",
@@ -61,11 +64,12 @@ QUICK = [
     *steps(PAIRS + FASTER_SMALL + CHATTER, (8, 1000, 120)),
     *steps(["raw_cpp", "raw_py", *ROSTOPIC], (8, 100, 15)),
     *steps(PAIRS, (64 * kB, 500, 40), (4 * MB, 20, 5)),
-    *steps(["cpp_shared", "py_buff_size"], (4 * MB, 20, 5)),
+    *steps(["cpp_shared", "cpp_nodelet", "py_buff_size"], (4 * MB, 20, 5)),
     *steps(["raw_cpp", "cpp_batch"], (8, 0, 50000)),
     *steps(
-        ["raw_py", "cpp_cpp", "cpp_py", "py_unqueued", "cpp_queue_10", "py_batch"], (8, 0, 20000)
+        ["raw_py", "cpp_cpp", "cpp_py", "cpp_shared", "cpp_nodelet", "py_unqueued"], (8, 0, 20000)
     ),
+    *steps(["cpp_queue_10", "py_batch"], (8, 0, 20000)),
     *steps(["py_cpp", "py_py", "py_timer_slack", "py_queue_10"], (8, 0, 2000)),
 ]
 
@@ -76,6 +80,7 @@ FULL = [
     *steps(PAIRS + ROSTOPIC, (8, 100, 50)),
     *steps(PAIRS, (8, 10, 10), (8, 10000, 3000)),
     *steps(PAIRS, (kB, 1000, 300), (64 * kB, 500, 150), (4 * MB, 20, 12)),
+    *steps(["cpp_shared", "cpp_nodelet"], (4 * MB, 20, 12)),
     *steps(PAIRS + FASTER_LARGE, LARGE),
     *steps(["raw_cpp", "raw_py", "cpp_batch"], (8, 0, 200000)),
     *steps(BURST_FAST, (8, 0, 50000)),

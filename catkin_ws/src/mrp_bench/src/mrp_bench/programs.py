@@ -188,11 +188,11 @@ class Running:
             if not self.way.is_raw:
                 receiver.answer("subscribed")
         self._sender.answer("ready")
-        self._signal(signal.SIGSTOP)
+        self.signal(signal.SIGSTOP)
 
     def measure(self, piece):
         """Send a Slice, and return what became of it, as a Measurement."""
-        self._signal(signal.SIGCONT)
+        self.signal(signal.SIGCONT)
         sender_cpu = self._sender.cpu()
         receiver_cpu = sum(receiver.cpu() for receiver in self._receivers)
         switches = self._sender.switches()
@@ -203,7 +203,7 @@ class Running:
         sender_cpu = self._sender.cpu() - sender_cpu
         receiver_cpu = sum(receiver.cpu() for receiver in self._receivers) - receiver_cpu
         switches = self._sender.switches() - switches
-        self._signal(signal.SIGSTOP)
+        self.signal(signal.SIGSTOP)
         return Measurement(
             sent, received, sender_cpu, receiver_cpu if self._receivers else None, switches
         )
@@ -211,7 +211,7 @@ class Running:
     def _programs(self):
         return [*self._receivers, *([self._sender] if self._sender else [])]
 
-    def _signal(self, number):
+    def signal(self, number):
         for program in self._programs():
             program.signal(number)
 

@@ -62,6 +62,12 @@ _ALL = [
         "shared=1",
         "direct=1",
     ),
+    Way(
+        "cpp_nodelet",
+        "C++: nodelets in one manager",
+        ("bench_nodelets", "publish=1", "subscribe=1", "queue=0", "shared=1"),
+        None,
+    ),
     _way("cpp_batch", "C++: 100 values in a message", CPP, CPP, ("batch=100",)),
     _way("py_unqueued", "Python: queue_size=None", PY, PY, ("unqueued=1",)),
     _way(
