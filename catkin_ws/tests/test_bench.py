@@ -8,12 +8,22 @@ import pathlib
 import signal
 import subprocess
 import sys
+import uuid
 import xml.etree.ElementTree as ElementTree
 
 import numpy
 import pytest
 import yaml
-from mrp_bench import launch_report, launches, noise, plans, report, rounds, stats, summary
+from mrp_bench import (
+    launch_report,
+    launches,
+    noise,
+    plans,
+    report,
+    rounds,
+    stats,
+    summary,
+)
 from mrp_bench.master import Master
 from mrp_bench.programs import Measurement, ProgramError, Running
 from mrp_bench.ways import WAYS, Way
@@ -182,9 +192,10 @@ def test_summary_of_known_samples(measurements):
     assert shared.receiver_cpu is None
 
 
-FACTS = dict.fromkeys(
-    ("cores", "processor", "memory", "system", "kernel", "roscpp", "python"), "some"
-)
+FACTS = {
+    "cores": "2",
+    **dict.fromkeys(("processor", "memory", "system", "kernel", "roscpp", "python"), "some"),
+}
 
 
 def test_table_says_what_was_measured(measurements):
@@ -311,7 +322,7 @@ def test_program_that_ends_is_an_error(tmp_path, monkeypatch):
 
     class Broken(rounds.Running):
         def measure(self, piece):
-            self._sender.signal(signal.SIGKILL)
+            self.senders[0].signal(signal.SIGKILL)
             return super().measure(piece)
 
     monkeypatch.setattr(rounds, "Running", Broken)
@@ -435,6 +446,57 @@ def test_robots_start_and_stop(master, tmp_path):
     assert found["cores"] > 0
 
     launches.run([2], 1, results, pytest.fail)
+
+
+def started_with(variable):
+    """Return the ids of the processes that were started with that environment variable."""
+    found = []
+    for path in pathlib.Path("/proc").glob("[0-9]*/environ"):
+        try:
+            if variable.encode() in path.read_bytes().split(b"\0"):
+                found.append(int(path.parent.name))
+        except (FileNotFoundError, ProcessLookupError, PermissionError):
+            pass  # it has just ended, or is another user's
+    return found
+
+
+@pytest.fixture
+def mark(monkeypatch):
+    """An environment variable that no process has but those that are started from now on.
+
+    What is left of them at the end is killed.
+    """
+    variable = f"MRP_TEST_MARK={uuid.uuid4()}"
+    monkeypatch.setenv(*variable.split("="))
+    yield variable
+    for pid in started_with(variable):
+        os.kill(pid, signal.SIGKILL)
+
+
+BENCH_THAT_WAITS = """
+import pathlib, signal, sys
+from mrp_bench.master import Master
+from mrp_bench.programs import Running
+from mrp_bench.ways import WAYS
+
+log = pathlib.Path(sys.argv[1])
+with Master(log), Running(WAYS["rostopic_pub"], log) as running:
+    running.start()
+    running.connect()
+    print("connected", flush=True)
+    signal.pause()
+"""
+
+
+def test_nothing_outlives_a_bench_that_is_killed(mark, tmp_path):
+    """A master with a child of its own, and programs that stand still, one of them with a child."""
+    with Process(sys.executable, "-c", BENCH_THAT_WAITS, str(tmp_path / "log")) as bench:
+        bench.wait_for(lambda: "connected" in bench.lines, "the programs are connected")
+        commands = [pathlib.Path(f"/proc/{pid}/cmdline").read_text() for pid in started_with(mark)]
+        for name in ("rosmaster", "bench_node", "bench_rostopic.py", "rostopic\0pub"):
+            assert any(name in command for command in commands), (name, commands)
+        os.kill(bench.pid, signal.SIGKILL)
+        wait_until(lambda: not started_with(mark), "all have ended")
 
 
 def results_of(folder, rounds_measured=6, verdict=None):

@@ -4,6 +4,7 @@
 
 publish=N     publishes as soon as N subscribers are there
 subscribe=1   subscribes
+only_small=1  has the topic of 8 bytes alone
 queue=10      both queues; 0: unlimited
 timer_slack=N what rospy's time.sleep(0) after each message may take longer; nanoseconds
 unqueued=1    publishes with queue_size=None: in the thread that calls publish
@@ -46,14 +47,18 @@ class NodeSender:
         self.batch_size = options.get("batch")
         self.chatter = options.get("chatter")
         queue = None if options.get("unqueued") else options.get("queue", 10)
+        self.batch = []
         self.small = rospy.Publisher("small", UInt64, queue_size=queue)
+        self.publishers = [self.small]
+        if options.get("only_small"):
+            return
         self.large = rospy.Publisher("large", Stamped, queue_size=queue)
         self.batches = rospy.Publisher("batches", Batch, queue_size=queue)
         self.texts = rospy.Publisher("chatter", String, queue_size=queue)
-        self.batch = []
+        self.publishers += [self.large, self.batches, self.texts]
 
     def wait_for_subscribers(self, count):
-        for publisher in (self.small, self.large, self.batches, self.texts):
+        for publisher in self.publishers:
             while publisher.get_num_connections() < count and not rospy.is_shutdown():
                 time.sleep(0.01)
 
@@ -92,8 +97,10 @@ class NodeReceiver:
             "tcp_nodelay": bool(options.get("no_delay")),
             "buff_size": options.get("buff_size", 65536),
         }
-        self.subscribers = [
-            rospy.Subscriber("small", UInt64, self.small_callback, **settings),
+        self.small = rospy.Subscriber("small", UInt64, self.small_callback, **settings)
+        if options.get("only_small"):
+            return
+        self.others = [
             rospy.Subscriber("large", Stamped, self.large_callback, **settings),
             rospy.Subscriber("batches", Batch, self.batch_callback, **settings),
             rospy.Subscriber("chatter", String, self.text_callback, **settings),

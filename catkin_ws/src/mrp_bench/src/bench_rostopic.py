@@ -11,6 +11,7 @@ import time
 import xmlrpc.client
 
 import rosgraph
+from mrp_bench.processes import with_parent
 from mrp_bench.program import Answers, Samples, obey, options
 
 TOPIC = "small"
@@ -22,7 +23,7 @@ class RostopicSender:
     def __init__(self):
         # Its own rate is 10 Hz; this one is as good as none.
         command = ["rostopic", "pub", "--rate", "1000000", TOPIC, "std_msgs/UInt64"]
-        self.rostopic = subprocess.Popen(command, stdin=subprocess.PIPE)
+        self.rostopic = subprocess.Popen(with_parent(command), stdin=subprocess.PIPE)
 
     def resize(self, size):
         pass
@@ -57,7 +58,7 @@ def wait_for_connection():
 def receive(answers):
     samples = Samples(answers)
     command = ["rostopic", "echo", TOPIC]
-    rostopic = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
+    rostopic = subprocess.Popen(with_parent(command), stdout=subprocess.PIPE, text=True)
     answers.write("subscribed")
     for line in rostopic.stdout:
         arrival = time.monotonic_ns()

@@ -10,7 +10,8 @@ import subprocess
 import threading
 import time
 
-from mrp_bench.programs import ProgramError, tree
+from mrp_bench.processes import megabytes, tree
+from mrp_bench.programs import ProgramError
 
 # Seconds in which all nodes must be up: on two cores, those of 50 robots take less than a minute.
 _DEADLINE = 300
@@ -82,7 +83,7 @@ def measure(robots, folder):
         pids = [pid for pid in tree(process.pid) if pid != process.pid]
         memory = {"cpp": [], "py": []}
         for pid in pids:
-            memory["py" if _is_python(pid) else "cpp"].append(_megabytes(pid))
+            memory["py" if _is_python(pid) else "cpp"].append(megabytes(pid))
         cpu, moment = _cpu(pids), time.monotonic()
         time.sleep(_WINDOW)
         cores = (_cpu(pids) - cpu) / (time.monotonic() - moment)
@@ -131,12 +132,6 @@ def _wait_until_up(process, lines, robots):
 
 def _is_python(pid):
     return "python" in pathlib.Path(f"/proc/{pid}/exe").resolve().name
-
-
-def _megabytes(pid):
-    """Return the memory of a process; what several share is divided among them (proc(5): Pss)."""
-    text = pathlib.Path(f"/proc/{pid}/smaps_rollup").read_text()
-    return int(re.search(r"^Pss:\s*(\d+)", text, re.MULTILINE).group(1)) / 1024
 
 
 def _cpu(pids):

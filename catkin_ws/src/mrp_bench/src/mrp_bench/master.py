@@ -9,6 +9,8 @@ import time
 
 import rosgraph
 
+from mrp_bench.processes import with_parent
+
 
 class Master:
     """roscore on a free port, of which all programs know that are started within this `with`.
@@ -23,7 +25,10 @@ class Master:
         os.environ["ROS_MASTER_URI"] = f"http://localhost:{port}"
         with open(log, "ab") as file:
             self._roscore = subprocess.Popen(
-                ["roscore", "-p", str(port)], stdout=file, stderr=file, start_new_session=True
+                with_parent(["roscore", "-p", str(port)], signal.SIGINT),
+                stdout=file,
+                stderr=file,
+                start_new_session=True,
             )
         while self._roscore.poll() is None and not rosgraph.is_master_online():
             time.sleep(0.02)

@@ -4,6 +4,7 @@
 import array
 import os
 import sys
+import threading
 import time
 
 
@@ -27,19 +28,24 @@ class Answers:
 
 
 class Samples:
-    """What a receiver has: pairs of the stamp of a message, and the time at which it arrived."""
+    """What a receiver has: pairs of the stamp of a message, and the time at which it arrived.
+
+    It has a lock, as rospy calls back in a thread of each connection.
+    """
 
     def __init__(self, answers):
         self._answers = answers
         self._samples = []
+        self._lock = threading.Lock()
 
     def add(self, stamp, arrival):
-        if stamp:
-            self._samples.append(stamp)
-            self._samples.append(arrival)
-        else:
-            self._answers.write("received", self._samples)
-            self._samples.clear()
+        with self._lock:
+            if stamp:
+                self._samples.append(stamp)
+                self._samples.append(arrival)
+            else:
+                self._answers.write("received", self._samples)
+                self._samples.clear()
 
 
 def obey(sender, answers):

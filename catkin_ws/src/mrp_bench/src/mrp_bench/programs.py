@@ -16,6 +16,8 @@ import threading
 
 import roslib.packages
 
+from mrp_bench.processes import megabytes, tree, with_parent
+
 PACKAGE = "mrp_bench"
 
 # Seconds in which a program must have answered.
@@ -25,10 +27,10 @@ DEADLINE = 120
 # many.
 Slice = collections.namedtuple("Slice", "size rate count")
 
-# sent: the stamps, in ns. received: of each receiver, stamps and times of arrival in turns.
-# sender_cpu: seconds of processor time. receiver_cpu: that of all receivers together, or None if
-# they are in the sender's process. sender_switches: how often one of its threads waited for
-# another, or for the kernel.
+# sent: the stamps of all senders, in ns. received: of each receiver, stamps and times of arrival in
+# turns. sender_cpu: seconds of processor time of all senders together. receiver_cpu: that of all
+# receivers, or None if they are in the sender's process. sender_switches: how often one of the
+# senders' threads waited for another, or for the kernel.
 Measurement = collections.namedtuple(
     "Measurement", "sent received sender_cpu receiver_cpu sender_switches"
 )
@@ -53,7 +55,7 @@ class Program:
             )
         with open(log, "ab") as file:
             self._popen = subprocess.Popen(
-                [found[0], *arguments],
+                with_parent([found[0], *arguments]),
                 stdin=subprocess.PIPE,
                 stdout=subprocess.PIPE,
                 stderr=file,
@@ -114,6 +116,10 @@ class Program:
             for text in self._of_threads("status")
         )
 
+    def megabytes(self):
+        """Return the memory that it and its children use, see processes.megabytes()."""
+        return sum(megabytes(pid) for pid in tree(self._popen.pid))
+
     def _of_threads(self, name):
         """Return the texts of a file in /proc of all its threads, and those of its children."""
         texts = []
@@ -144,18 +150,6 @@ class Program:
         self._reader.join()
 
 
-def tree(pid):
-    """Return the process ids of a process and of all its descendants that run."""
-    pids = [pid]
-    for task in pathlib.Path(f"/proc/{pid}/task").glob("*/children"):
-        try:
-            for child in task.read_text().split():
-                pids += tree(int(child))
-        except (FileNotFoundError, ProcessLookupError):
-            pass  # it has just ended
-    return pids
-
-
 class Running:
     """The programs of a way (see ways.py), which stand still until they are needed.
 
@@ -165,51 +159,55 @@ class Running:
 
     def __init__(self, way, log):
         self.way = way
+        self.receivers = []
+        self.senders = []
         self._log = log
         self._namespace = f"/mrp_bench/{way.name}_{os.getpid()}"
-        self._receivers = []
-        self._sender = None
 
     def start(self):
         if self.way.receiver:
-            self._receivers = [
-                Program(self.way.receiver, self._log, self._namespace)
-                for _ in range(self.way.receivers)
-            ]
+            self.receivers = self._start(self.way.receiver, self.way.receivers)
         if not self.way.is_raw:
-            self._sender = Program(self.way.sender, self._log, self._namespace)
+            self.senders = self._start(self.way.sender, self.way.senders)
+
+    def _start(self, command, count):
+        return [Program(command, self._log, self._namespace) for _ in range(count)]
 
     def connect(self):
         if self.way.is_raw:
-            (port,) = self._receivers[0].answer("port")
-            sender = [self.way.sender[0], f"send={port}"]
-            self._sender = Program(sender, self._log, self._namespace)
-        for receiver in self._receivers or [self._sender]:
+            (port,) = self.receivers[0].answer("port")
+            self.senders = self._start([self.way.sender[0], f"send={port}"], 1)
+        for receiver in self.receivers or self.senders:
             if not self.way.is_raw:
                 receiver.answer("subscribed")
-        self._sender.answer("ready")
+        for sender in self.senders:
+            sender.answer("ready")
         self.signal(signal.SIGSTOP)
 
     def measure(self, piece):
-        """Send a Slice, and return what became of it, as a Measurement."""
+        """Let each sender send a Slice, and return what became of it, as a Measurement."""
         self.signal(signal.SIGCONT)
-        sender_cpu = self._sender.cpu()
-        receiver_cpu = sum(receiver.cpu() for receiver in self._receivers)
-        switches = self._sender.switches()
-        self._sender.tell(f"run {piece.size} {piece.rate} {piece.count}")
-        sent = self._sender.answer("sent")
-        self._sender.tell("end")
-        received = [receiver.answer("received") for receiver in self._receivers or [self._sender]]
-        sender_cpu = self._sender.cpu() - sender_cpu
-        receiver_cpu = sum(receiver.cpu() for receiver in self._receivers) - receiver_cpu
-        switches = self._sender.switches() - switches
+        sender_cpu, receiver_cpu = _cpu(self.senders), _cpu(self.receivers)
+        switches = sum(sender.switches() for sender in self.senders)
+        for sender in self.senders:
+            sender.tell(f"run {piece.size} {piece.rate} {piece.count}")
+        sent = [stamp for sender in self.senders for stamp in sender.answer("sent")]
+        for sender in self.senders:
+            sender.tell("end")
+        received = [
+            [number for _ in self.senders for number in receiver.answer("received")]
+            for receiver in self.receivers or self.senders
+        ]
+        sender_cpu = _cpu(self.senders) - sender_cpu
+        receiver_cpu = _cpu(self.receivers) - receiver_cpu
+        switches = sum(sender.switches() for sender in self.senders) - switches
         self.signal(signal.SIGSTOP)
         return Measurement(
-            sent, received, sender_cpu, receiver_cpu if self._receivers else None, switches
+            sent, received, sender_cpu, receiver_cpu if self.receivers else None, switches
         )
 
     def _programs(self):
-        return [*self._receivers, *([self._sender] if self._sender else [])]
+        return [*self.receivers, *self.senders]
 
     def signal(self, number):
         for program in self._programs():
@@ -226,3 +224,7 @@ class Running:
         self.ask_to_end()
         for program in self._programs():
             program.end()
+
+
+def _cpu(programs):
+    return sum(program.cpu() for program in programs)

@@ -58,8 +58,6 @@ class Results:
             **step.piece._asdict(),
             "round": number,
             **measurement._asdict(),
-            "sent": list(measurement.sent),
-            "received": [list(pairs) for pairs in measurement.received],
         }
         path = self.path(number, step)
         path.parent.mkdir(parents=True, exist_ok=True)

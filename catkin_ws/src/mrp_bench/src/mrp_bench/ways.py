@@ -8,7 +8,7 @@ class Way(typing.NamedTuple):
     """name: as in the results. text: what tables and plots say.
 
     sender, receiver: the commands, see programs.py; without a receiver the sender is both
-    receivers: how many
+    receivers, senders: how many; each sender sends to all receivers
     """
 
     name: str
@@ -16,6 +16,7 @@ class Way(typing.NamedTuple):
     sender: typing.Tuple[str, ...]
     receiver: typing.Optional[typing.Tuple[str, ...]]
     receivers: int = 1
+    senders: int = 1
 
     @property
     def is_raw(self):
