@@ -15,17 +15,20 @@ import numpy
 import pytest
 import yaml
 from mrp_bench import (
+    fan_report,
+    fans,
     launch_report,
     launches,
     noise,
     plans,
+    plots,
     report,
     rounds,
     stats,
     summary,
 )
 from mrp_bench.master import Master
-from mrp_bench.programs import Measurement, ProgramError, Running
+from mrp_bench.programs import Measurement, ProgramError, Running, Slice
 from mrp_bench.ways import WAYS, Way
 from process import Process
 from rospy.impl import tcpros_pubsub
@@ -448,6 +451,102 @@ def test_robots_start_and_stop(master, tmp_path):
     launches.run([2], 1, results, pytest.fail)
 
 
+def fan(publishers, subscribers, language="cpp", up=None, seconds=1, lost=()):
+    """Return what is measured of a fan in which each link adds the same to all but the memory.
+
+    seconds: from when the first message is sent until the last one arrives
+    lost: the numbers of messages that no subscriber gets
+    """
+    nodes = max(publishers, subscribers)
+    latency = nodes * 10_000
+    sent = numpy.linspace(1, 1 + seconds * 10**9 - latency, 100 * publishers).astype(int).tolist()
+    pairs = [(stamp, stamp + latency) for i, stamp in enumerate(sent) if i not in lost]
+    return {
+        "language": language,
+        "publishers": publishers,
+        "subscribers": subscribers,
+        "up": nodes if up is None else up,
+        "publisher_megabytes": 2,
+        "subscriber_megabytes": 3,
+        "sender_cpu": 0.2 * nodes,
+        "receiver_cpu": 0.1 * nodes,
+        "sender_switches": 0,
+        "sent": sent,
+        "received": [[number for pair in pairs for number in pair]] * subscribers,
+    }
+
+
+def test_figures_of_a_fan():
+    assert fan_report.figures(fan(1, 2, seconds=2, lost=[3, 50])) == {
+        "up": 2,
+        "cores": pytest.approx(0.3),
+        "publisher_megabytes": 2,
+        "subscriber_megabytes": 3,
+        "p50": 20,
+        "p99": 20,
+        "per_second": pytest.approx(98),
+        "sent": 200,
+        "lost": 4,
+    }
+
+
+def test_two_publishers_may_send_at_the_same_time():
+    one = {**fan(1, 1), "sent": [1, 1, 2], "received": [[1, 11, 2, 12, 1, 13]]}
+    assert fan_report.figures(one)["lost"] == 0
+    one["received"] = [[1, 11, 2, 12]]
+    assert fan_report.figures(one)["lost"] == 1
+
+
+def test_growth_of_fans():
+    fans = [fan(count, 1) for count in (1, 2, 4, 8)] + [fan(1, count, up=3) for count in (2, 4, 8)]
+    found = fan_report.series(fans)
+    assert {key: list(of) for key, of in found.items()} == {
+        ("cpp", "publishers"): [1, 2, 4, 8],
+        ("cpp", "subscribers"): [1, 2, 4, 8],
+    }
+    growth = fan_report.exponents(found["cpp", "publishers"])
+    assert {name: round(estimate.value, 6) for name, estimate in growth.items()} == {
+        "up": 1,
+        "cores": 1,
+        "publisher_megabytes": 0,
+        "subscriber_megabytes": 0,
+        "p50": 1,
+        "p99": 1,
+        "per_second": 1,
+    }
+    lines = fan_report.markdown(fans, 2, None)
+    assert "### C++: publishers to one subscriber" in lines
+    assert "| 8 | 8.00 | 2.40 | 2.00 | 3.00 | 80 | 80 | 800 | 0 |" in lines
+    assert "| 8 | 3.00 | 2.40 | 2.00 | 3.00 | 80 | 80 | 800 | 0 |" in lines
+    assert "8 publishers fill the 2 cores." in lines
+    assert "8 subscribers do not fill the 4 cores." in fan_report.markdown(fans, 4, None)
+    assert fan_report.exponents({1: {}, 2: {}}) == {}
+
+
+def test_table_of_fans_has_no_figures_of_a_noisy_machine():
+    fans = [fan(count, 1, lost=[3]) for count in (1, 2, 4)]
+    text = "\n".join(fan_report.markdown(fans, 1, "noisy"))
+    assert "| 4 " + "| noisy " * 7 + "| 1 of 400 |" in text
+    assert "| exponent " + "| noisy " * 7 + "|  |" in text
+    assert "fill" not in text
+    assert fan_report.markdown([], 1, None) == []
+
+
+@pytest.mark.parametrize("verdict", [None, "too noisy"])
+def test_plot_of_fans(tmp_path, verdict):
+    measured = [
+        fan(*sides, language)
+        for language in ("cpp", "py")
+        for count in (1, 2, 4)
+        for sides in {(count, 1), (1, count)}
+    ]
+    plots.draw([], [], measured, 2, verdict, tmp_path)
+    texts = svg_texts(tmp_path / "fans.svg")
+    assert {"Cores in use, of 2", "Python: subscribers of one publisher", "4"} <= texts
+    assert ("too noisy a machine" in texts) == (verdict is not None)
+    assert (tmp_path / "fans.png").read_bytes().startswith(b"\x89PNG")
+
+
 def started_with(variable):
     """Return the ids of the processes that were started with that environment variable."""
     found = []
@@ -471,6 +570,28 @@ def mark(monkeypatch):
     yield variable
     for pid in started_with(variable):
         os.kill(pid, signal.SIGKILL)
+
+
+def test_fans_deliver_every_message_and_leave_nothing_behind(master, mark, tmp_path, monkeypatch):
+    monkeypatch.setattr(fans, "PIECE", Slice(size=8, rate=100, count=5))
+    results = rounds.Results(tmp_path)
+    fans.run([1, 2], results, print)
+    found = fans.load(results)
+    assert sorted((one["language"], one["publishers"], one["subscribers"]) for one in found) == [
+        (language, *sides) for language in ("cpp", "py") for sides in ((1, 1), (1, 2), (2, 1))
+    ]
+    for one in found:
+        assert len(one["sent"]) == 5 * one["publishers"]
+        assert len(one["received"]) == one["subscribers"]
+        for received in one["received"]:
+            assert sorted(received[::2]) == sorted(one["sent"])
+            assert all(arrival > stamp for stamp, arrival in zip(received[::2], received[1::2]))
+        assert fan_report.figures(one)["lost"] == 0
+        assert one["up"] > 0 and one["sender_cpu"] > 0 and one["receiver_cpu"] > 0
+        assert one["publisher_megabytes"] > 1 and one["subscriber_megabytes"] > 1
+    assert started_with(mark) == []
+
+    fans.run([1, 2], results, pytest.fail)
 
 
 BENCH_THAT_WAITS = """

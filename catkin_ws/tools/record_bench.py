@@ -23,6 +23,7 @@ _PLOTS = {
     "throughput": "How many messages of 8 bytes arrive in a second, for every way.",
     "start_and_stop": "When each of the four nodes is started, ready, and told to end.",
     "scale": "Start, stop, processor time and memory against the number of robots.",
+    "fans": "Start, processor time, memory and latency against the publishers or subscribers.",
 }
 
 

@@ -12,7 +12,7 @@ import signal
 import sys
 import time
 
-from mrp_bench import launches, plans, report
+from mrp_bench import fans, launches, plans, report
 from mrp_bench.master import Master
 from mrp_bench.programs import ProgramError
 from mrp_bench.rounds import PlanError, Results, run
@@ -47,6 +47,7 @@ def main():
             run(plan, rounds, results, say)
             robots = plans.QUICK_ROBOTS if args.quick else plans.FULL_ROBOTS
             launches.run(robots, 1, results, say)
+            fans.run(plans.QUICK_FANS if args.quick else plans.FULL_FANS, results, say)
         report.write(results, say)
     except (ProgramError, PlanError) as error:
         sys.exit(f"error: {error}")

@@ -8,7 +8,7 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import matplotlib.ticker
 
-from mrp_bench import launch_report
+from mrp_bench import fan_report, launch_report
 from mrp_bench.rounds import size_text
 from mrp_bench.ways import WAYS
 
@@ -38,9 +38,10 @@ plt.rcParams.update(
 )
 
 
-def draw(rows, starts, verdict, folder):
-    """Draw what the rows give, and the starts (launches.py).
+def draw(rows, starts, fans, cores, verdict, folder):
+    """Draw what the rows give, the starts (launches.py), and the fans (fans.py).
 
+    cores: of this machine
     verdict: why they are not to be trusted, or None; it is written across
     """
     small = [row for row in rows if row.size == 8 and row.rate == 1000]
@@ -64,6 +65,10 @@ def draw(rows, starts, verdict, folder):
         figure, axes = plt.subplots(figsize=(9, 5), constrained_layout=True)
         launch_report.scale(starts, axes)
         _save(figure, "scale", verdict, folder)
+    if len({one["publishers"] for one in fans}) > 2:
+        figure = plt.figure(figsize=(9, 7), constrained_layout=True)
+        fan_report.draw(fans, cores, figure)
+        _save(figure, "fans", verdict, folder)
 
 
 def _save(figure, name, verdict, folder):
