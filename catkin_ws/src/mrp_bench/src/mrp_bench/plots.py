@@ -8,7 +8,7 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import matplotlib.ticker
 
-from mrp_bench import launch_report
+from mrp_bench import launch_report, start_report
 from mrp_bench.rounds import size_text
 from mrp_bench.ways import WAYS
 
@@ -38,8 +38,8 @@ plt.rcParams.update(
 )
 
 
-def draw(rows, starts, verdict, folder):
-    """Draw what the rows give, and the starts (launches.py).
+def draw(rows, starts, robots, verdict, folder):
+    """Draw what the rows give, the starts (starts.py), and the robots (launches.py).
 
     verdict: why they are not to be trusted, or None; it is written across
     """
@@ -56,13 +56,14 @@ def draw(rows, starts, verdict, folder):
     burst = [row for row in rows if row.size == 8 and row.rate == 0]
     if burst:
         _save(_throughputs(burst), "throughput", verdict, folder)
-    if starts:
-        figure, axes = plt.subplots(figsize=(9, 4), constrained_layout=True)
-        launch_report.timeline(starts[0], axes)
+    ours = [one for one in starts if one["variant"] == "mrp" and not one["cold"]]
+    if ours:
+        figure = plt.figure(figsize=(9, 4))
+        start_report.timeline(ours, figure)
         _save(figure, "start_and_stop", verdict, folder)
-    if len({one["robots"] for one in starts}) > 2:
+    if len({one["robots"] for one in robots}) > 2:
         figure, axes = plt.subplots(figsize=(9, 5), constrained_layout=True)
-        launch_report.scale(starts, axes)
+        launch_report.scale(robots, axes)
         _save(figure, "scale", verdict, folder)
 
 
