@@ -32,7 +32,12 @@ def fault(rows, image, driver, megabytes):
 def _ask(*arguments):
     """Return what docker says, or None."""
     try:
-        done = subprocess.run(["docker", *arguments], stdout=subprocess.PIPE, text=True)
+        done = subprocess.run(
+            ["docker", *arguments],
+            stdout=subprocess.PIPE,
+            stderr=subprocess.DEVNULL,
+            text=True,
+        )
     except FileNotFoundError:
         return None
     return done.stdout.strip() if done.returncode == 0 else None

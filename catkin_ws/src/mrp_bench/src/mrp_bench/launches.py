@@ -77,9 +77,9 @@ def run(robots, rounds, results, say):
     folder.mkdir(exist_ok=True)
     for number in range(rounds):
         for count in robots:
-            say(f"start and stop of {count} robots, round {number + 1} of {rounds}")
             path = folder / f"{count}_robots_{number}.json"
-            results.once(path, lambda: measure(count, folder))
+            line = f"start and stop of {count} robots, round {number + 1} of {rounds}"
+            results.once(path, lambda: measure(count, folder), say, line)
 
 
 def load(results):

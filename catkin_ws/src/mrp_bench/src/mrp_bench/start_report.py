@@ -28,14 +28,14 @@ def _nodes_ended(start):
 
 # A row's text, and how it follows from a start; None: that did not happen, or cannot be seen.
 _ROWS = [
-    ("roslaunch's first line, s", lambda one: min(_all(one, "first line"))),
+    ("roslaunch's first line", lambda one: min(_all(one, "first line"))),
     ("the master answers", lambda one: min(_all(one, "master"), default=None)),
     ("the first node is started", lambda one: min(_all(one, "started"))),
     ("all four are started", lambda one: max(_all(one, "started"))),
     ("all four are ready", lambda one: max(_all(one, "ready"))),
     ("first message at the C++ subscriber", lambda one: _received(one, _CPP)),
     ("first message at the Python subscriber", lambda one: _received(one, _PY)),
-    ("Ctrl-C to the end of all four, s", _nodes_ended),
+    ("Ctrl-C to the end of all four", _nodes_ended),
     ("Ctrl-C to the prompt", lambda one: one["end"] - one["stop"]),
     ("read from the disk, MB", lambda one: None if one["in_container"] else one["read"]),
 ]
@@ -61,7 +61,10 @@ def markdown(starts, missing, noisy):
         f"{name}, {'cold' if is_cold else 'warm'}": of for (name, is_cold), of in columns.items()
     }
     lines = [
-        "### Start and stop of the four nodes: seconds from the call, and from Ctrl-C",
+        "### Start and stop of the four nodes",
+        "",
+        "In seconds from the call, and from Ctrl-C: the medians of the rounds, and in brackets "
+        "their confidence intervals of 95 %.",
         "",
         "| until | " + " | ".join(titles) + " |",
         "| --- " + "| ---: " * len(titles) + "|",
@@ -79,7 +82,7 @@ def markdown(starts, missing, noisy):
 def _cell(values):
     values = list(values)
     if None in values:
-        return "never seen"
+        return "not seen"
     estimate = stats.median(values)
     if len(values) == 1:
         return f"{estimate.value:.2f}"
@@ -89,7 +92,7 @@ def _cell(values):
 def _exits(starts):
     """Return how nodes ended otherwise than with 0, and in how many of the starts."""
     if not any(one["exits"] for one in starts):
-        return "never seen"
+        return "not seen"
     counts = collections.Counter(
         (name.rsplit("/", 1)[-1], code)
         for one in starts
@@ -113,7 +116,9 @@ def timeline(starts, figure):
     """Draw the most usual of these starts: when each process starts, runs, and ends."""
     start = sorted(starts, key=lambda one: max(_all(one, "received")))[len(starts) // 2]
     bars = _bars(start)
-    left, right = figure.subplots(1, 2, sharey=True, gridspec_kw={"width_ratios": [3, 2]})
+    # A second is as wide in both.
+    widths = [start["stop"], start["end"] - start["stop"] + 0.2]
+    left, right = figure.subplots(1, 2, sharey=True, gridspec_kw={"width_ratios": widths})
     for y, spans in enumerate(bars.values()):
         for axes, zero in ((left, 0), (right, start["stop"])):
             for (what, color), begin, end in zip(_COLORS.items(), spans, spans[1:]):
@@ -123,13 +128,13 @@ def timeline(starts, figure):
         for who in (_CPP, _PY):
             if name.endswith(who.lower().replace(" ", "_")) and _received(start, who):
                 label = "has its first message" if who == _PY else None
-                left.plot(_received(start, who), y, "k^", markersize=9, label=label)
+                left.plot(_received(start, who), y, "k^", markersize=9, clip_on=False, label=label)
     left.set_yticks(range(len(bars)))
     left.set_yticklabels([name.rsplit("/", 1)[-1] for name in bars])
     left.invert_yaxis()
     left.set_xlim(0, start["stop"])
     left.set_xlabel("seconds since roslaunch was called")
-    right.set_xlim(-0.2, 1.02 * (start["end"] - start["stop"]))
+    right.set_xlim(-0.2, start["end"] - start["stop"])
     right.axvline(0, color="#000000", linewidth=1)
     right.set_xlabel("seconds since Ctrl-C")
     left.set_title("Start and stop of the four nodes", loc="left")

@@ -103,9 +103,9 @@ def run(variants, rounds, results, say, missing=None):
             # An image's files are the engine's. After a cold start they are warm.
             for is_cold in (False,) if variant.in_container else (True, False):
                 heat = "cold" if is_cold else "warm"
-                say(f"start and stop: {variant.name}, {heat}, round {number + 1} of {rounds}")
-                name = f"{variant.name}_{heat}_{number}.json"
-                results.once(folder / name, lambda: measure(variant, is_cold))
+                path = folder / f"{variant.name}_{heat}_{number}.json"
+                line = f"start and stop: {variant.name}, {heat}, round {number + 1} of {rounds}"
+                results.once(path, lambda: measure(variant, is_cold), say, line)
 
 
 def load(results):
