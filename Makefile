@@ -30,6 +30,7 @@ RESULTS := $(CURDIR)/catkin_ws/build/test_results
 SITE := $(CURDIR)/catkin_ws/build/docs
 SCREENSHOTS := $(CURDIR)/catkin_ws/build/screenshots
 BENCH := $(CURDIR)/catkin_ws/build/bench
+ORIGINAL := $(CURDIR)/catkin_ws/build/original
 
 .PHONY: help
 help:  ## print the targets
@@ -96,17 +97,20 @@ exercise:  ## show the next exercise, or check it; HINT=1 gives a hint
 .PHONY: bench
 bench: build  ## measure how fast nodes are; QUICK=1: in a minute; RESUME=1: go on with the last run
 	@$(INSTALL) catkin_ws/apt/bench.txt
+	@$(if $(QUICK),,$(IN_WORKSPACE) tools/build_original.py $(ORIGINAL) > /dev/null)
 	@$(IN_WORKSPACE) $(ALONE) source devel/setup.bash; \
-	exec rosrun mrp_bench bench.py $(if $(QUICK),--quick) $(if $(RESUME),--resume) $(BENCH)
+	exec rosrun mrp_bench bench.py $(if $(QUICK),--quick,--beside $(ORIGINAL)) \
+	  $(if $(RESUME),--resume) $(BENCH)
 
 .PHONY: bench-record
 bench-record:  ## put what `make bench` measured into the pages
 	@/usr/bin/python3 catkin_ws/tools/record_bench.py $(BENCH)
 
-.PHONY: build-times
-build-times: deps  ## fail if the workspace takes longer to build than before; RECORD=1: keep the times
+# Of the tests it takes the time of the last `make test`, and says so if there was none.
+.PHONY: own-times
+own-times: deps  ## fail if building and testing take longer than before; RECORD=1: keep the times
 	@$(INSTALL) catkin_ws/apt/bench.txt
-	@$(IN_WORKSPACE) /usr/bin/python3 tools/build_times.py $(if $(RECORD),record,check)
+	@$(IN_WORKSPACE) /usr/bin/python3 tools/own_times.py $(if $(RECORD),record,check)
 
 # The pages that it links to are built once.
 .PHONY: view
@@ -178,6 +182,10 @@ need-docker:
 .PHONY: docker-build
 docker-build: need-docker  ## build the image mrp, which runs the four nodes anywhere
 	$(IMAGE_OF) --target runtime --tag $(IMAGE) -
+
+.PHONY: docker-size
+docker-size: docker-build  ## fail if the image mrp is larger than before; RECORD=1: keep its size
+	@/usr/bin/python3 catkin_ws/tools/image_size.py $(if $(RECORD),record,check) $(IMAGE)
 
 .PHONY: docker-build-ssh
 docker-build-ssh: docker-build  ## build the image for docker/several_hosts/remote.yaml

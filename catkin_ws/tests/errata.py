@@ -8,6 +8,9 @@ ERRATA = pathlib.Path(__file__).parent / "errata"
 ORIGINAL = ERRATA / "original"
 PACKAGE = "my_robotics_pkg"
 
+# The mends without which its nodes do not start.
+STARTS = ("e01_global", "e03_parenthesis", "e12_interpreter")
+
 
 def mend(package, *names):
     """Apply patches of errata/mends to a copy of the original."""

@@ -37,7 +37,6 @@ from waiting import wait_until
 WORKSPACE = pathlib.Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(WORKSPACE / "tools"))
 
-import build_times  # noqa: E402
 import record_bench  # noqa: E402
 
 
@@ -378,29 +377,6 @@ def test_compare_says_what_it_expects(arguments):
     assert "Traceback" not in done.stderr
 
 
-ROSLAUNCH_SAYS = """\
-process[rosout-1]: started with pid [11]
-\x1b[1mprocess[mrp/publisher_cpp_node-2]: started with pid [12]\x1b[0m
-[ INFO] [1795222168.680630550]: [PUBLISHER CPP NODE] namespace of nh = /mrp/publisher_cpp_node
-[ INFO] [1795222169.182939615]: [SUBSCRIBER CPP NODE] received message with data = 2
-[ INFO] [1795222169.682939615]: [SUBSCRIBER CPP NODE] received message with data = 4
-[mrp/publisher_cpp_node-2] killing on exit[mrp/subscriber_cpp_node-4] killing on exit
-shutting down processing monitor...
-"""
-
-
-def test_events_of_a_launch():
-    found = launches.events(enumerate(ROSLAUNCH_SAYS.splitlines(keepends=True)))
-    assert found == [
-        (0, "started", "rosout"),
-        (1, "started", "mrp/publisher_cpp_node"),
-        (2, "ready", "mrp/publisher_cpp_node"),
-        (3, "received", "SUBSCRIBER CPP NODE"),
-        (5, "stopping", "mrp/publisher_cpp_node"),
-        (5, "stopping", "mrp/subscriber_cpp_node"),
-    ]
-
-
 def start(robots, up):
     return {
         "robots": robots,
@@ -540,7 +516,7 @@ def test_plot_of_fans(tmp_path, verdict):
         for count in (1, 2, 4)
         for sides in {(count, 1), (1, count)}
     ]
-    plots.draw([], [], measured, 2, verdict, tmp_path)
+    plots.draw([], [], [], measured, 2, verdict, tmp_path)
     texts = svg_texts(tmp_path / "fans.svg")
     assert {"Cores in use, of 2", "Python: subscribers of one publisher", "4"} <= texts
     assert ("too noisy a machine" in texts) == (verdict is not None)
@@ -683,28 +659,3 @@ def test_rospy_sleeps_after_each_message_that_it_queues(monkeypatch):
         connection.done = True
         connection.wake_up(connection)
         queued._thread.join()
-
-
-def history(*rows):
-    return [dict(zip(("debian", "commit", "what", "value", "low", "high"), row)) for row in rows]
-
-
-def test_build_times_grow_when_intervals_lie_apart_by_more_than_a_tenth():
-    before = history(
-        ("12", "old", "clean build", "5.0", "4.9", "5.1"),
-        ("12", "last", "clean build", "10.0", "9.5", "10.5"),
-        ("13", "other", "clean build", "1.0", "0.9", "1.1"),
-    )
-
-    def found(*numbers, what="clean build"):
-        return build_times.regressions(before, "12", {what: stats.Estimate(*numbers)})
-
-    assert found(12, 11, 13) == [
-        "clean build: expected about 10.00 times as long as to compile one node, found "
-        "12.00 [11.00, 13.00], 20% more than at last"
-    ]
-    assert found(12, 10.4, 14) == [], "within the noise"
-    assert found(10.9, 10.8, 11) == [], "less than a tenth"
-    assert found(5, 4, 6) == [], "faster"
-    assert found(12, 11, 13, what="something new") == []
-    assert build_times.regressions([], "12", {"clean build": stats.Estimate(1, 1, 1)}) == []

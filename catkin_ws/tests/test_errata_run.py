@@ -9,7 +9,7 @@ import contract
 import pytest
 import rosgraph
 import scratch
-from errata import ORIGINAL, PACKAGE, line_of, mend, replace
+from errata import ORIGINAL, PACKAGE, STARTS, line_of, mend, replace
 from graph import Graph
 from process import LIVE, Process
 from waiting import wait_until
@@ -27,7 +27,7 @@ def built(tmp_path_factory):
     folder = tmp_path_factory.mktemp("original")
     package = shutil.copytree(ORIGINAL, folder / "src" / PACKAGE)
     scratch.catkin_make(folder, "install")
-    mend(package, "e01_global", "e03_parenthesis", "e12_interpreter")
+    mend(package, *STARTS)
     return folder
 
 

@@ -30,14 +30,16 @@ def _way(language, publishers, subscribers):
     )
 
 
-def measure(language, publishers, subscribers, log):
+def measure(language, publishers, subscribers, results):
     """Start that many nodes, let them talk, and end them; return what happened.
 
     up: seconds from the start of the first process until all are connected. publisher_megabytes,
     subscriber_megabytes: of one node. The rest is as in programs.Measurement.
     """
+    results.keep_noise(noise.measure())
+    way, log = _way(language, publishers, subscribers), results.folder / "programs.log"
     begin = time.monotonic()
-    with Running(_way(language, publishers, subscribers), log) as running:
+    with Running(way, log) as running:
         running.start()
         running.connect()
         up = time.monotonic() - begin
@@ -65,14 +67,10 @@ def run(counts, results, say):
     for language, (text, _) in LANGUAGES.items():
         for publishers, subscribers in sides:
             path = folder / f"{language}_{publishers}_to_{subscribers}.json"
-            if path.exists():
-                continue
-            say(f"{text}, publishers to subscribers: {publishers} to {subscribers}")
-            results.keep_noise(noise.measure())
-            found = measure(language, publishers, subscribers, results.folder / "programs.log")
-            unfinished = path.with_suffix(".unfinished")
-            unfinished.write_text(json.dumps(found))
-            unfinished.rename(path)
+            line = f"{text}, publishers to subscribers: {publishers} to {subscribers}"
+            results.once(
+                path, lambda: measure(language, publishers, subscribers, results), say, line
+            )
 
 
 def load(results):

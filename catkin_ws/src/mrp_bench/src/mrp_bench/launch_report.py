@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The report on starts and stops (launches.py): a table, and two plots."""
+"""The report on many robots (launches.py): a table, and a plot."""
 
 import collections
 import statistics
@@ -46,7 +46,7 @@ def markdown(launches, noisy):
     if not figures:
         return []
     lines = [
-        "### Start and stop: robots of four nodes each",
+        "### Many robots of four nodes each",
         "",
         "| robots | " + " | ".join(text for _, text, _ in _FIGURES) + " |",
         "| ---: " * (1 + len(_FIGURES)) + "|",
@@ -59,33 +59,6 @@ def markdown(launches, noisy):
         cells = [noisy or "{:.2f} [{:.2f}, {:.2f}]".format(*found[name]) for name, _, _ in _FIGURES]
         lines.append("| exponent | " + " | ".join(cells) + " |")
     return [*lines, ""]
-
-
-def timeline(launch, axes):
-    """Draw when each node was started, ready, and told to stop."""
-    moments = {}
-    for moment, what, name in launch["events"]:
-        moments.setdefault(name, {})[what] = moment
-    nodes = [name for name, of in moments.items() if "ready" in of]
-    received = [(name, of["received"]) for name, of in moments.items() if "received" in of]
-    for y, name in enumerate(nodes):
-        of = moments[name]
-        end = of.get("stopping", launch["end"])
-        axes.barh(y, of["started"], color="#dddddd")
-        axes.barh(y, of["ready"] - of["started"], left=of["started"], color="#e69f00")
-        axes.barh(y, end - of["ready"], left=of["ready"], color="#0072b2")
-        axes.barh(y, launch["end"] - end, left=end, color="#d55e00")
-    for moment in (moment for _, moment in received):
-        axes.axvline(moment, color="#000000", linewidth=1)
-    axes.set_yticks(range(len(nodes)))
-    axes.set_yticklabels(nodes)
-    axes.invert_yaxis()
-    axes.set_xlabel(
-        "seconds since roslaunch was called\n"
-        "grey: roslaunch; orange: the node starts; blue: it runs; red: it is told to end\n"
-        "black lines: the first message at each subscriber"
-    )
-    axes.set_title("Start and stop of the four nodes", loc="left")
 
 
 def scale(launches, axes):

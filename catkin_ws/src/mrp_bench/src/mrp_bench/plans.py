@@ -61,6 +61,7 @@ SMALL, LARGE = (8, 1000, 500), (MB, 50, 25)
 QUICK_ROUNDS = 3
 QUICK_ROBOTS = [1]
 QUICK_FANS = [1]
+QUICK_STARTS = 1
 QUICK = [
     *steps(PAIRS + FASTER_SMALL + CHATTER, (8, 1000, 120)),
     *steps(["raw_cpp", "raw_py", *ROSTOPIC], (8, 100, 15)),
@@ -77,6 +78,7 @@ QUICK = [
 FULL_ROUNDS = 6
 FULL_ROBOTS = [1, 2, 5, 10, 20, 50]
 FULL_FANS = [1, 3, 10, 30, 100]  # two minutes, most of which are the starts of Python nodes
+FULL_STARTS = 6
 FULL = [
     *steps(PAIRS + FASTER_SMALL + CHATTER, SMALL),
     *steps(PAIRS + ROSTOPIC, (8, 100, 50)),

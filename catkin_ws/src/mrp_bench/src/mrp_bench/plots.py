@@ -8,7 +8,7 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import matplotlib.ticker
 
-from mrp_bench import fan_report, launch_report
+from mrp_bench import fan_report, launch_report, start_report
 from mrp_bench.rounds import size_text
 from mrp_bench.ways import WAYS
 
@@ -38,8 +38,8 @@ plt.rcParams.update(
 )
 
 
-def draw(rows, starts, fans, cores, verdict, folder):
-    """Draw what the rows give, the starts (launches.py), and the fans (fans.py).
+def draw(rows, starts, robots, fans, cores, verdict, folder):
+    """Draw what the rows give, starts (starts.py), robots (launches.py), and fans (fans.py).
 
     cores: of this machine
     verdict: why they are not to be trusted, or None; it is written across
@@ -57,13 +57,14 @@ def draw(rows, starts, fans, cores, verdict, folder):
     burst = [row for row in rows if row.size == 8 and row.rate == 0]
     if burst:
         _save(_throughputs(burst), "throughput", verdict, folder)
-    if starts:
-        figure, axes = plt.subplots(figsize=(9, 4), constrained_layout=True)
-        launch_report.timeline(starts[0], axes)
+    ours = [one for one in starts if one["variant"] == "mrp" and not one["cold"]]
+    if ours:
+        figure = plt.figure(figsize=(9, 4))
+        start_report.timeline(ours, figure)
         _save(figure, "start_and_stop", verdict, folder)
-    if len({one["robots"] for one in starts}) > 2:
+    if len({one["robots"] for one in robots}) > 2:
         figure, axes = plt.subplots(figsize=(9, 5), constrained_layout=True)
-        launch_report.scale(starts, axes)
+        launch_report.scale(robots, axes)
         _save(figure, "scale", verdict, folder)
     if len({one["publishers"] for one in fans}) > 2:
         figure = plt.figure(figsize=(9, 7), constrained_layout=True)

@@ -4,7 +4,18 @@
 import csv
 import json
 
-from mrp_bench import fan_report, fans, launch_report, launches, machine, noise, plots, summary
+from mrp_bench import (
+    fan_report,
+    fans,
+    launch_report,
+    launches,
+    machine,
+    noise,
+    plots,
+    start_report,
+    starts,
+    summary,
+)
 from mrp_bench.rounds import size_text
 from mrp_bench.stats import PERCENTILES
 from mrp_bench.ways import WAYS
@@ -18,21 +29,31 @@ def write(results, say):
     probes = results.noise()
     facts = machine.describe()
     verdict = noise.verdict(probes)
-    starts = launches.load(results)
+    started, missing = starts.load(results)
+    robots = launches.load(results)
     spread = fans.load(results)
     content = {
         "machine": facts,
         "noise": probes,
         "verdict": verdict,
         "rows": [row._asdict() for row in rows],
-        "starts": starts,
+        "starts": started,
+        "robots": robots,
         "fans": fan_report.rows(spread),
     }
     (results.folder / "results.json").write_text(json.dumps(content, indent=1) + "\n")
     _write_csv(results.folder / "results.csv", rows)
-    text = markdown(rows, facts, probes, starts, spread)
+    noisy, cores = NOISY if verdict else None, int(facts["cores"])
+    text = markdown(rows, facts, probes) + "\n".join(
+        [
+            "",
+            *start_report.markdown(started, missing, noisy),
+            *launch_report.markdown(robots, noisy),
+            *fan_report.markdown(spread, cores, noisy),
+        ]
+    )
     (results.folder / "table.md").write_text(text)
-    plots.draw(rows, starts, spread, int(facts["cores"]), verdict, results.folder)
+    plots.draw(rows, started, robots, spread, cores, verdict, results.folder)
     print(text)
     say(f"tables, plots and all samples are in {results.folder}")
 
@@ -71,8 +92,8 @@ def _write_csv(path, rows):
             )
 
 
-def markdown(rows, facts, probes, starts=(), spread=()):
-    """Return the report's text. On a machine that is too noisy, it says so instead of figures."""
+def markdown(rows, facts, probes):
+    """Return the text on messages. On too noisy a machine, it says so instead of figures."""
     verdict = noise.verdict(probes)
     lines = [
         f"Measured on {facts['cores']} cores of {facts['processor']}, {facts['memory']}, "
@@ -98,9 +119,6 @@ def markdown(rows, facts, probes, starts=(), spread=()):
     for size, rate in sorted({(row.size, row.rate) for row in rows}, key=_title_order):
         of_slice = [row for row in rows if (row.size, row.rate) == (size, rate)]
         lines += _latency_table(of_slice, verdict) if rate else _burst_table(of_slice, verdict)
-    noisy = NOISY if verdict else None
-    lines += launch_report.markdown(starts, noisy)
-    lines += fan_report.markdown(spread, int(facts["cores"]), noisy)
     return "\n".join(lines)
 
 

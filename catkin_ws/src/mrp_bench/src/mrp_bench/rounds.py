@@ -66,6 +66,15 @@ class Results:
             json.dump(content, file)
         unfinished.rename(path)
 
+    def once(self, path, measure, say, line):
+        """Say the line, and keep what measure() returns in the file `path`, unless it is there."""
+        if not path.exists():
+            say(line)
+            found = json.dumps(measure(), indent=1)
+            unfinished = path.with_suffix(".unfinished")
+            unfinished.write_text(found)
+            unfinished.rename(path)
+
     def keep_noise(self, share):
         with open(self.folder / "noise.txt", "a") as file:
             file.write(f"{share:.4f}\n")

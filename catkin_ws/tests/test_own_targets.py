@@ -1,0 +1,92 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""make own-times and make docker-size: when they say that something has grown."""
+
+import pathlib
+import sys
+
+from mrp_bench import stats
+
+WORKSPACE = pathlib.Path(__file__).resolve().parent.parent
+sys.path.insert(0, str(WORKSPACE / "tools"))
+
+import history  # noqa: E402
+import image_size  # noqa: E402
+import own_times  # noqa: E402
+
+
+def rows(*values):
+    names = ("commit", "debian", "what", "value", "low", "high", "seconds")
+    return [dict(zip(names, row)) for row in values]
+
+
+def test_times_grow_when_intervals_lie_apart_by_more_than_a_tenth():
+    before = rows(
+        ("old", "12", "clean build", "5.0", "4.9", "5.1", "1"),
+        ("last", "12", "clean build", "10.0", "9.5", "10.5", "1"),
+        ("other", "13", "clean build", "1.0", "0.9", "1.1", "1"),
+    )
+
+    def found(*numbers, what="clean build"):
+        figure = own_times.Figure(1, stats.Estimate(*numbers))
+        return own_times.regressions(before, "12", {what: figure})
+
+    assert found(12, 11, 13) == [
+        "clean build: expected about 10.00 times as long as to compile one node, found "
+        "12.00 [11.00, 13.00], 20% more than at last"
+    ]
+    assert found(12, 10.4, 14) == [], "within the noise"
+    assert found(10.9, 10.8, 11) == [], "less than a tenth"
+    assert found(5, 4, 6) == [], "faster"
+    assert found(12, 11, 13, what="something new") == []
+
+
+def test_tests_take_longer_when_ratio_and_seconds_have_grown():
+    before = rows(("last", "12", "tests", "100", "95", "105", "300"))
+
+    def found(seconds, value):
+        figure = own_times.Figure(seconds, stats.Estimate(value, value - 5, value + 5))
+        return len(own_times.regressions(before, "12", {"tests": figure}))
+
+    assert found(400, 150) == 1
+    assert found(290, 150) == 0, "a faster machine, that waits as long"
+    assert found(400, 100) == 0, "a slower machine"
+    assert found(360, 120) == 0, "less than a quarter"
+
+
+def test_seconds_of_the_last_make_test(tmp_path):
+    assert own_times.test_seconds(tmp_path) is None
+    suites = {
+        "workspace.xml": '<testsuites><testsuite time="10.5"/></testsuites>',
+        "mrp_labs/rosunit-some.xml": '<testsuite time="2"/>',
+        "mrp_labs/rostest-some.xml": '<testsuite time="2"/>',
+        "browser.xml": '<testsuite time="100"/>',
+        "bookworm/containers.xml": '<testsuite time="100"/>',
+    }
+    for name, text in suites.items():
+        (tmp_path / name).parent.mkdir(exist_ok=True)
+        (tmp_path / name).write_text(text)
+    assert own_times.test_seconds(tmp_path) == 12.5
+
+
+def test_image_grows_by_more_than_a_twentieth():
+    before = [
+        {"commit": commit, "image": "mrp:bookworm", "driver": driver, "megabytes": size}
+        for commit, driver, size in (("a", "overlay2", "100.0"), ("b", "overlay2", "200.0"))
+    ]
+    assert image_size.fault(before, "mrp:bookworm", "overlay2", 209) is None
+    assert image_size.fault(before, "mrp:bookworm", "overlay2", 211) == (
+        "mrp:bookworm: expected about 200.0 MB, as at b, found 211.0 MB"
+    )
+    assert image_size.fault(before, "mrp:bookworm", "overlayfs", 211) is None
+    assert image_size.fault(before, "mrp:trixie", "overlay2", 211) is None
+
+
+def test_history_is_read_as_it_was_written(tmp_path):
+    path = tmp_path / "history.csv"
+    assert history.read(path) == []
+    history.append(path, [{"what": "a", "value": "1"}, {"what": "b", "value": "2"}])
+    history.append(path, [{"what": "a", "value": "3"}])
+    found = history.read(path)
+    assert [row["value"] for row in found] == ["1", "2", "3"]
+    assert history.last(found, what="a")["value"] == "3"
+    assert history.last(found, what="c") is None

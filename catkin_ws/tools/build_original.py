@@ -1,0 +1,31 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Builds what the original page prints, mended only so far that its nodes start.
+
+Usage: build_original.py FOLDER
+Makes that folder anew, as a workspace; `make bench` measures it beside ours.
+"""
+
+import pathlib
+import shutil
+import sys
+
+TESTS = pathlib.Path(__file__).resolve().parents[1] / "tests"
+sys.path.insert(0, str(TESTS))
+
+import errata  # noqa: E402
+import scratch  # noqa: E402
+
+
+def build(folder):
+    """Build it. Raises AssertionError with what catkin_make printed if that failed."""
+    shutil.rmtree(folder, ignore_errors=True)
+    package = shutil.copytree(errata.ORIGINAL, folder / "src" / errata.PACKAGE)
+    errata.mend(package, *errata.STARTS)
+    scratch.catkin_make(folder, "-DCMAKE_BUILD_TYPE=RelWithDebInfo")
+
+
+if __name__ == "__main__":
+    if len(sys.argv) != 2:
+        sys.exit(__doc__)
+    build(pathlib.Path(sys.argv[1]).resolve())

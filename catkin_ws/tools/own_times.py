@@ -1,0 +1,149 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""How long the workspace takes to build and to test, against what it took before.
+
+Usage: own_times.py check|record
+
+Another machine is faster or slower: so each time is a ratio to that of compiling one node,
+measured in turns with it. `record` appends the ratios to own_times.csv. `check` compares them
+with the last ones there that are of the same Debian, and fails if one has grown by more than the
+noise, and by more than a tenth.
+
+The time of the tests is that of the last `make test`. Half of it is waiting, which is as long on
+any machine: so on a faster one the ratio grows, and on a slower one the seconds do. Only where both
+have grown, by a quarter, it is the tests that take longer.
+"""
+
+import pathlib
+import subprocess
+import sys
+import tempfile
+import time
+import typing
+import xml.etree.ElementTree as ElementTree
+
+import history
+
+WORKSPACE = pathlib.Path(__file__).resolve().parents[1]
+HISTORY = WORKSPACE / "own_times.csv"
+RESULTS = WORKSPACE / "build" / "test_results"
+sys.path.insert(0, str(WORKSPACE / "src" / "mrp_bench" / "src"))
+
+from mrp_bench import stats  # noqa: E402
+
+TESTS = "tests"
+
+# Growth up to that is none: a new file is not a regression. The tests are measured once only.
+_TOLERATED, _TOLERATED_TESTS = 1.1, 1.25
+
+_ROUNDS = 4
+_NODE = WORKSPACE / "src" / "mrp" / "src" / "publisher_cpp_node.cpp"
+
+
+class Figure(typing.NamedTuple):
+    """seconds: the median. ratio: to the time of compiling one node."""
+
+    seconds: float
+    ratio: stats.Estimate
+
+
+def regressions(rows, debian, found):
+    """Return a line on each figure that is larger than the last one in the history.
+
+    rows: of own_times.csv, in its order
+    found: what took that long -> Figure
+    """
+    lines = []
+    for what, (seconds, now) in found.items():
+        before = history.last(rows, debian=debian, what=what)
+        if not before:
+            continue
+        value, high = float(before["value"]), float(before["high"])
+        tolerated = _TOLERATED_TESTS if what == TESTS else _TOLERATED
+        if now.low <= high or now.value <= tolerated * value:
+            continue
+        if what == TESTS and seconds <= tolerated * float(before["seconds"]):
+            continue
+        lines.append(
+            f"{what}: expected about {value:.2f} times as long as to compile one node, found "
+            f"{now.value:.2f} [{now.low:.2f}, {now.high:.2f}], {now.value / value - 1:.0%} "
+            f"more than at {before['commit']}"
+        )
+    return lines
+
+
+def test_seconds(results):
+    """Return how long the suites of the last `make test` took, or None if there was none."""
+    if not (results / "workspace.xml").exists():
+        return None
+    # The folder has other tests' results, too.
+    files = [results / "workspace.xml", *results.glob("mrp*/rosunit-*.xml")]
+    suites = [suite for file in files for suite in ElementTree.parse(file).iter("testsuite")]
+    return sum(float(suite.get("time")) for suite in suites)
+
+
+def measure():
+    """Return what took time -> Figure."""
+    times = {"node": [], "clean build": [], "build after one change": [], "build of nothing": []}
+    with tempfile.TemporaryDirectory() as folder:
+        folder = pathlib.Path(folder)
+        (folder / "src").mkdir()
+        for package in (WORKSPACE / "src").glob("*/package.xml"):
+            (folder / "src" / package.parent.name).symlink_to(package.parent)
+        changed = folder / "changed.cpp"
+        for number in range(_ROUNDS):
+            print(f"round {number + 1} of {_ROUNDS}", flush=True)
+            changed.write_text(_NODE.read_text())
+            times["node"].append([_seconds(["g++", "-c", "-O2", "-g", "-o", "/dev/null", changed])])
+            subprocess.run(["rm", "-rf", folder / "build", folder / "devel"], check=True)
+            times["clean build"].append([_catkin_make(folder)])
+            # The program is made anew as if its source had changed: the source itself is shared.
+            for path in (folder / "build" / "mrp").rglob("publisher_cpp_node.cpp.o"):
+                path.unlink()
+            times["build after one change"].append([_catkin_make(folder)])
+            times["build of nothing"].append([_catkin_make(folder)])
+    reference = times.pop("node")
+    seconds = test_seconds(RESULTS)
+    if seconds is None:
+        print("tests: not measured: run make test before")
+    else:
+        times[TESTS] = [[seconds]] * _ROUNDS
+    return {
+        what: Figure(stats.median_of_rounds(rounds), stats.ratio(rounds, reference))
+        for what, rounds in times.items()
+    }
+
+
+def _catkin_make(folder):
+    options = ["-DPYTHON_EXECUTABLE=/usr/bin/python3", "-DCMAKE_BUILD_TYPE=RelWithDebInfo"]
+    return _seconds(["catkin_make", "-C", folder, *options])
+
+
+def _seconds(command):
+    """Run a command; return how long it took."""
+    begin = time.monotonic()
+    done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    if done.returncode != 0:
+        sys.exit(f"error: {' '.join(map(str, command))} failed:\n{done.stdout}")
+    return time.monotonic() - begin
+
+
+def main():
+    if sys.argv[1:] not in (["check"], ["record"]):
+        sys.exit(__doc__)
+    debian = pathlib.Path("/etc/debian_version").read_text().split(".")[0]
+    found = measure()
+    for what, (seconds, ratio) in found.items():
+        print(f"{what}: {ratio.value:.2f} [{ratio.low:.2f}, {ratio.high:.2f}], {seconds:.1f} s")
+    if sys.argv[1] == "check":
+        sys.exit("\n".join(regressions(history.read(HISTORY), debian, found)) or 0)
+    rows = []
+    for what, (seconds, ratio) in found.items():
+        figures = {name: f"{number:.3f}" for name, number in ratio._asdict().items()}
+        at = {"commit": history.commit(), "debian": debian, "what": what}
+        rows.append({**at, **figures, "seconds": f"{seconds:.1f}"})
+    history.append(HISTORY, rows)
+
+
+if __name__ == "__main__":
+    main()
