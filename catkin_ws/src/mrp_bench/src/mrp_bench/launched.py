@@ -9,7 +9,7 @@ import subprocess
 import threading
 import time
 
-from mrp_bench.processes import tree
+from mrp_bench.processes import tree, with_parent
 from mrp_bench.programs import ProgramError
 
 # Seconds in which all nodes must be up, or have ended: on two cores, those of 50 robots take less
@@ -93,7 +93,7 @@ class Launched:
         ours, terminal = os.openpty()
         self._begin = time.monotonic()
         self._process = subprocess.Popen(
-            command,
+            with_parent(command, signal.SIGINT),
             env=env,
             stdin=subprocess.DEVNULL,
             stdout=terminal,
