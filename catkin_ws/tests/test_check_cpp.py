@@ -49,6 +49,8 @@ TIMER = "timer_ = nh_.createTimer(ros::Duration(0.5), &PublisherCppNode::timerCa
 ADVERTISE = 'publisher_ = nh_.advertise<std_msgs::UInt32>("great_topic", 10);'
 SUBSCRIBE = "subscriber_ = nh_.subscribe"
 
+COUNT = "counter_ += 2;"
+
 # The node, what is replaced, and the finding: its id, the text of its line, and a word of it.
 BROKEN = {
     "no_init": (PUBLISHER, [(INIT, "")], "node-start", "main(", r"ros::init"),
@@ -81,6 +83,20 @@ BROKEN = {
         "lifetime",
         "advertise",
         "PublisherCppNode",
+    ),
+    "local_of_callback": (
+        PUBLISHER,
+        [
+            ("    " + ADVERTISE + "\n", ""),
+            ("  ros::Publisher publisher_;\n", ""),
+            (
+                "    publisher_.publish",
+                "    ros::Publisher " + ADVERTISE + "\n    publisher_.publish",
+            ),
+        ],
+        "lifetime",
+        "advertise",
+        "timerCallback",
     ),
     "discarded": (
         SUBSCRIBER,
@@ -117,6 +133,27 @@ BROKEN = {
         "wrap",
         "float",
         "never wraps",
+    ),
+    "starts_anew": (
+        PUBLISHER,
+        [(COUNT, COUNT + " if (counter_ > 100) { counter_ = 2; }")],
+        "wrap",
+        "counter_ = 2",
+        "again at 2 when it comes to 100",
+    ),
+    "conditional": (
+        PUBLISHER,
+        [(COUNT, "counter_ = counter_ >= 1000 ? 0 : counter_ + 2;")],
+        "wrap",
+        "counter_ >= 1000",
+        "again at 0 when it comes to 1000",
+    ),
+    "modulo": (
+        PUBLISHER,
+        [(COUNT, "counter_ = (counter_ + 2) % 256;")],
+        "wrap",
+        "% 256",
+        "when it comes to 256",
     ),
     "short_queue": (SUBSCRIBER, [('"great_topic", 10', '"great_topic", 1')], "queue", "1,", "one"),
 }
@@ -163,6 +200,11 @@ CORRECT = {
             ("#include <cstdint>", "#include <cstdint>\n#include <memory>"),
         ],
     ),
+    "own_wrap": (
+        PUBLISHER,
+        [(COUNT, "if (counter_ >= 4294967294u) { counter_ = 0; } else { counter_ += 2; }")],
+    ),
+    "modulus": (PUBLISHER, [(COUNT, "counter_ = (counter_ + 2ul) % 4294967296ul;")]),
     "long_counter": (PUBLISHER, [("uint32_t counter_", "uint64_t counter_")]),
 }
 

@@ -248,9 +248,15 @@ def test_unbalanced_brace_is_found_by_the_indentation():
             "no matching function for call to ‘ros::NodeHandle::subscribe(const char [2])’",
             "arguments of subscribe() do not fit",
         ),
+        (
+            "binding reference of type ‘ros::ParameterAdapter<std_msgs::UInt32_<std::allocator<void>"
+            " >&>::Parameter’ {aka ‘std_msgs::UInt32_<std::allocator<void> >&’} to"
+            " ‘const std_msgs::UInt32_<std::allocator<void> >’ discards qualifiers",
+            "a std_msgs::UInt32& that is not const",
+        ),
         ("something that nobody has seen before", "something that nobody has seen before"),
     ],
-    ids=range(7),
+    ids=range(8),
 )
 def test_compilers_errors_in_plain_words(error, says, tmp_path):
     package = check_rules.make(tmp_path / "src" / "some_pkg", src__a_DOT_cpp=CPP)

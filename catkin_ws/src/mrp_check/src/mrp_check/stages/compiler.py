@@ -329,7 +329,23 @@ def _no_message(package, problem, lines, match):
     )
 
 
+def _not_const(package, problem, lines, match):
+    message = _short(match.group(1))
+    parameter = re.compile(rf"(?<!const )\b{re.escape(message)}\s*&")
+    found = [number for number, text in enumerate(lines, 1) if parameter.search(text)]
+    return (
+        f"a callback takes a {message}& that is not const, and no subscriber can give it one.",
+        f"Write const {message}&, or const {message}::ConstPtr&.",
+        found[0] if found else None,
+        *([(f"{message}&", f"const {message}&")] if found else []),
+    )
+
+
 _WORDS = (
+    (
+        r"reference of type 'ros::ParameterAdapter<([\w:]+(?:_<[^>]*> ?>)?)\s*&>.* discards",
+        _not_const,
+    ),
     (r"expected ';'(?: before '?([^']+?)'?(?: token)?)?$", _semicolon),
     (r"expected ',' or ';'(?: before '?([^']+?)'?(?: token)?)?", _semicolon),
     (r"missing terminating", _string),

@@ -37,6 +37,7 @@ class Started:
     remaps: list
     env: list
     arguments: str
+    prefix: str
     file: str | None
     line: int | None = None
 
@@ -103,7 +104,16 @@ def load(package, workspace, file, *arguments):
         node = Started(
             **{
                 key: entry[key]
-                for key in ("package", "type", "name", "namespace", "output", "env", "arguments")
+                for key in (
+                    "package",
+                    "type",
+                    "name",
+                    "namespace",
+                    "output",
+                    "env",
+                    "arguments",
+                    "prefix",
+                )
             },
             remaps=[tuple(pair) for pair in entry["remaps"]],
             file=path,

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import re
+import signal
 
 from mrp_check.finding import Finding
 from mrp_check.stages.observing import observed
@@ -55,7 +56,7 @@ def _exit_findings(name, direct, spec, package, places):
     if code != shutdown.exit_code:
         if "lock_error" in "\n".join(lines):
             # A publisher at file scope does no harm; a timer does.
-            globals_ = places.facts_of(name, "global")
+            globals_ = places.facts_of(name, "global", "owner")
             globals_.sort(key=lambda p: "ros::Timer" not in (p.text, *p.values.get("holds", ())))
             what, place = "a ROS object", places.of(name, "timer", "handle")
             if globals_:
@@ -129,6 +130,8 @@ def _leaves(name, package, places, code):
     """Return the place at which a node says its exit code, or may break."""
     ends = rf"\b(return|exit|_exit|SystemExit)\b\s*\(?\s*{code}\b|EXIT_FAILURE"
     breaks = r"\bstd::thread\b|\bboost::thread\b|\babort\s*\("
+    if code == -signal.SIGINT:
+        breaks = r"\bNoSigintHandler\b|\bSIG_DFL\b"
     files = places.sources(name)
     return (
         _first_line(package, files, ends)

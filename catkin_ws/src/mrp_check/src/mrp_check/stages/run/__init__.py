@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+import re
+
 from mrp_check.finding import ERROR, Finding
 from mrp_check.stages.observing import observed
 from mrp_check.stages.places import Places
@@ -26,9 +28,38 @@ def findings(package, spec, workspace):
             *_launch_place(package, spec, seen),
             expected="nodes that can be started",
         )
+    yield from _launch_findings(package, spec, seen)
     for node in spec.nodes.values():
         yield from _node_findings(Node(node, package, spec, seen, places))
     yield from moved_findings(spec, seen)
+
+
+def _launch_findings(package, spec, seen):
+    """Yield a Finding if roslaunch gives up, and ends what it has started."""
+    if not seen.own_launch or not seen.launch or seen.launch["ending"] != "itself":
+        return
+    texts = [text for _, _, text in seen.launch["lines"] if text.strip()]
+    for index, text in enumerate(texts):
+        if not text.startswith("RLException: "):
+            continue
+        said = " ".join(texts[index : index + 2]).partition(": ")[2]
+        named = re.search(r"__name:=(\w+)", said)
+        why = said.partition(" __name:=")[0]
+        started = seen.started.get(named.group(1)) if named else None
+        place = _launch_place(package, spec, seen)
+        if started and started.file:
+            place = started.file, started.line
+        prefix = f' launch-prefix="{started.prefix}"' if started and started.prefix else ""
+        yield Finding(
+            "starts",
+            f"roslaunch gives up, and ends all nodes: {why}",
+            *place,
+            expected="a command that can be run for each node",
+            seen=why,
+            fix=f"Take{prefix} away: it starts the node by another program." if prefix else "",
+            node=named.group(1) if named else None,
+        )
+        return
 
 
 def _launch_place(package, spec, seen):

@@ -8,7 +8,7 @@ import os
 import pathlib
 
 from mrp_check import confine
-from mrp_check.finding import CannotCheck
+from mrp_check.finding import WARNING, CannotCheck
 from mrp_check.stages import uses
 from mrp_check.stages.static import facts as facts_
 from mrp_check.stages.static import node_rules, python_facts, python_read, python_rules, roles
@@ -27,13 +27,13 @@ def findings(package, spec, workspace):
         for unit in _units(package, workspace, model)
     ]
     facts = workspace.facts = facts_.Facts()
-    sources = {}
+    sources, problems = {}, []
     for file in _python_files(package, model, workspace.launch):
         source, problem = python_read.read(package, file)
         if source is None:
             facts.unread.add(file)
             if problem and _is_code(package, file):
-                yield problem
+                problems.append(problem)
             continue
         sources[file] = source
         facts.places += python_facts.places(source)
@@ -49,8 +49,15 @@ def findings(package, spec, workspace):
         if node.file
     }
     facts.sources = roles.sources(package, spec, model, workspace.launch, sources)
-    for file in _relevant(package, model, workspace.launch, facts, sources):
-        yield from python_rules.findings(package, sources[file])
+    relevant = _relevant(package, model, workspace.launch, facts, sources)
+    for problem in problems:
+        if problem.file not in relevant:
+            problem.severity = WARNING
+            problem.message += " Nothing uses the file."
+        yield problem
+    for file in relevant:
+        if file in sources:
+            yield from python_rules.findings(package, sources[file])
     yield from node_rules.findings(package, spec, model, workspace.launch, facts)
 
 
@@ -89,7 +96,7 @@ def _relevant(package, model, launch, facts, sources):
     of_nodes = {file for files in facts.sources.values() for file in files}
     chosen = [
         file
-        for file in sources
+        for file in [*sources, *facts.unread]
         if file in scripts
         or file in begins
         or file in of_nodes

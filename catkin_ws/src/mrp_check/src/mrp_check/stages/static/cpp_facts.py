@@ -264,6 +264,8 @@ class _Unit:
             self.look_at_operator(cursor)
         elif cursor.kind == kinds.MACRO_INSTANTIATION:
             self.look_at_macro(cursor)
+        elif cursor.kind in (kinds.IF_STMT, kinds.CONDITIONAL_OPERATOR):
+            self.look_at_reset(cursor)
         elif self.is_loop(cursor):
             self.add(cursor, "loop")
         elif cursor.kind == kinds.RETURN_STMT:
@@ -460,7 +462,7 @@ class _Unit:
                     function is not None
                     and function.spelling != "main"
                     and not is_static
-                    and variable.canonical.hash not in self.uses
+                    and not self.is_handed_on(variable)
                     and not self.waits(function)
                 ):
                     self.add(
@@ -471,6 +473,17 @@ class _Unit:
                         function=function.spelling,
                     )
             break
+
+    def is_handed_on(self, variable):
+        """Return whether a variable is used otherwise than to publish, and so perhaps kept."""
+        key, kinds = variable.canonical.hash, self.kinds
+        published = sum(
+            cursor.kind == kinds.CALL_EXPR
+            and cursor.spelling == "publish"
+            and (self.base(cursor) or variable).referenced == variable
+            for cursor in self.cursors
+        )
+        return self.uses.get(key, 0) > published
 
     def waits(self, function):
         """Return whether a function itself spins or loops, and so keeps its variables."""
@@ -515,10 +528,12 @@ class _Unit:
                 offset=variable.extent.start.offset,
                 function=function.spelling if function is not None else None,
             )
-        elif is_global and variable.type.get_canonical().kind.name == "RECORD":
+        elif is_global and self.handles_in(variable.type.get_declaration()):
             inside = self.handles_in(variable.type.get_declaration())
-            if inside:
-                self.add(variable, "global", text, name=variable.spelling, holds=inside)
+            self.add(variable, "global", text, name=variable.spelling, holds=inside)
+        elif is_global and self.owned_handles(variable):
+            holds = self.owned_handles(variable)
+            self.add(variable, "owner", text, name=variable.spelling, holds=holds)
         elif text.startswith("std::") is False and variable.kind == kinds.VAR_DECL:
             inside = self.handles_in(variable.type.get_canonical().get_declaration())
             if inside and function is not None:
@@ -531,6 +546,17 @@ class _Unit:
                     offset=variable.extent.start.offset,
                     function=function.spelling,
                 )
+
+    def owned_handles(self, variable):
+        """Return the types of ROS handles in what a smart pointer, or the like, owns."""
+        kind = variable.type.get_canonical()
+        owned = [
+            kind.get_template_argument_type(n) for n in range(kind.get_num_template_arguments())
+        ]
+        if not owned or owned[0].kind.name == "INVALID":
+            return []
+        text = owned[0].get_canonical().spelling
+        return [text] if text in _HANDLES else self.handles_in(owned[0].get_declaration())
 
     def handles_in(self, declaration, depth=0):
         """Return the types of ROS handles among a class's own members."""
@@ -556,6 +582,8 @@ class _Unit:
         operator = self.operator(cursor, children)
         if cursor.kind == self.kinds.COMPOUND_ASSIGNMENT_OPERATOR:
             step = self.value(children[1])
+            if operator == "%=" and target is not None:
+                self.add_reset(cursor, target, step, 0)
             if operator in ("+=", "-=") and target is not None:
                 sign = 1 if operator == "+=" else -1
                 self.add_counter(
@@ -584,6 +612,36 @@ class _Unit:
                     and self.operator(c, list(c.get_children())) == "+"
                 ]
                 self.add_counter(cursor, target, steps[0] if steps else None)
+                for c in children[1].walk_preorder():
+                    if c.kind == self.kinds.BINARY_OPERATOR:
+                        inside = list(c.get_children())
+                        if self.operator(c, inside) == "%":
+                            self.add_reset(cursor, target, self.value(inside[1]), 0)
+
+    def look_at_reset(self, cursor):
+        """Look for `if (counter > LIMIT) counter = VALUE`, and the same with `? :`."""
+        condition, then, *_ = cursor.get_children()
+        condition = self.peel(condition)
+        sides = list(condition.get_children())
+        if condition.kind != self.kinds.BINARY_OPERATOR or len(sides) != 2:
+            return
+        counter, limit = self.peel(sides[0]).referenced, self.value(sides[1])
+        if counter is None or self.operator(condition, sides) not in (">", ">=", "=="):
+            return
+        if cursor.kind == self.kinds.CONDITIONAL_OPERATOR:
+            self.add_reset(cursor, counter, limit, self.value(then))
+            return
+        for one in then.walk_preorder():
+            if one.kind == self.kinds.BINARY_OPERATOR:
+                left, right = one.get_children()
+                if self.operator(one, [left, right]) == "=" and (
+                    self.peel(left).referenced == counter
+                ):
+                    self.add_reset(one, counter, limit, self.value(right))
+
+    def add_reset(self, cursor, counter, limit, value):
+        if isinstance(limit, int) and isinstance(value, int):
+            self.add(cursor, "reset", counter.spelling, limit=limit, value=value)
 
     def add_counter(self, cursor, target, step):
         size = target.type.get_size()

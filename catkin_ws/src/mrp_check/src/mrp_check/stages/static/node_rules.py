@@ -419,11 +419,12 @@ class _Node:
         return around[0] if around else None
 
     def wrap(self):
-        """The counter's type in C++, against the largest value."""
+        """The counter's type in C++, and where it begins anew, against the largest value."""
         values = self.node.publishes.values if self.node.publishes else None
         if self.is_python or values is None or not values.modulus:
             return
         used = {name for p in self.places("data") for name in p.values.get("names", ())}
+        yield from self._resets(used, values)
         said = set()
         for place in self.places("step"):
             kind, bits = place.values.get("type", ""), place.values.get("bits", 0)
@@ -459,6 +460,20 @@ class _Node:
                     severity=WARNING,
                     expected="uint32_t",
                     fix=f"Make {place.text} a uint32_t.",
+                )
+
+    def _resets(self, used, values):
+        for place in self.places("reset"):
+            limit, value = place.values["limit"], place.values["value"]
+            # Within the last two steps of the range whoever begins anew does no harm.
+            if place.text in used and limit < values.modulus - 2 * abs(values.step):
+                yield self.finding(
+                    "wrap",
+                    f"The counter {place.text} begins again at {value} when it comes to {limit};"
+                    f" the message could hold up to {values.modulus - 1}.",
+                    place,
+                    expected=f"the next value up to {values.modulus - 1}",
+                    fix="Take the limit away: a uint32_t begins again at 0 by itself.",
                 )
 
     def _declared(self, place):
