@@ -249,9 +249,9 @@ def test_unbalanced_brace_is_found_by_the_indentation():
             "arguments of subscribe() do not fit",
         ),
         (
-            "binding reference of type ‘ros::ParameterAdapter<std_msgs::UInt32_<std::allocator<void>"
-            " >&>::Parameter’ {aka ‘std_msgs::UInt32_<std::allocator<void> >&’} to"
-            " ‘const std_msgs::UInt32_<std::allocator<void> >’ discards qualifiers",
+            "binding reference of type ‘ros::ParameterAdapter<std_msgs::UInt32_<std::allocator<"
+            "void> >&>::Parameter’ {aka ‘std_msgs::UInt32_<std::allocator<void> >&’} to ‘const"
+            " std_msgs::UInt32_<std::allocator<void> >’ discards qualifiers",
             "a std_msgs::UInt32& that is not const",
         ),
         ("something that nobody has seen before", "something that nobody has seen before"),

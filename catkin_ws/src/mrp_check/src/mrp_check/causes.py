@@ -91,7 +91,9 @@ def told_once(findings, facts=None):
 
 def _causes(cause, finding, facts, earlier):
     """Return whether a finding follows from a cause."""
-    if cause.severity != ERROR or cause.consequence_of and cause.id not in _PACKAGE_WIDE:
+    # What cannot be built cannot run, whatever keeps it from being built.
+    passed_on = _PACKAGE_WIDE | {"compile", "link"}
+    if cause.severity != ERROR or cause.consequence_of and cause.id not in passed_on:
         return False
     if cause.stage in _LATER and finding.stage not in _LATER:
         return False

@@ -80,6 +80,9 @@ def finding(package, problem):
     file, line = problem.file, problem.line
     lines = package.lines(file)
     line = max(1, min(line, len(lines)))
+    standard = re.search(r"support for the ISO C\+\+ (?:20)?(\d+) standard", problem.text)
+    if standard:
+        return _old_standard(package, standard.group(1), problem)
     said, fix, better, *change = _in_words(package, problem, lines)
     line = better or line
     return Finding(
@@ -91,6 +94,22 @@ def finding(package, problem):
         seen=f"{lines[line - 1].strip()}  (g++: {problem.text})",
         fix=fix,
         change=change[0] if change else None,
+    )
+
+
+def _old_standard(package, needed, problem):
+    """Return the Finding about a standard of C++ that is too old, as CMakeLists.txt sets it."""
+    file = "CMakeLists.txt"
+    line = package.find_line(file, "CXX_STANDARD") or package.find_line(file, "-std=") or 1
+    return Finding(
+        "compile",
+        f"The compiler is told to take a standard of C++ that is older than C++{needed}, which the"
+        " code or ROS's headers need.",
+        file,
+        line,
+        expected="set(CMAKE_CXX_STANDARD 17), or no such line",
+        seen=f"{package.lines(file)[line - 1].strip()}  (g++: {problem.text})",
+        fix="Set the standard to 17.",
     )
 
 

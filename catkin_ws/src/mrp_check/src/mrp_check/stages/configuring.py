@@ -37,6 +37,9 @@ def finding(package, output, copy, model):
     text = " ".join(block.split("Call Stack")[0].split())
     if file is None or file not in package.files:
         file, line = "CMakeLists.txt", 1
+    undeclared = re.search(r"package '(\w+)' which must therefore be listed as a run dep", text)
+    if undeclared:
+        return _undeclared(package, undeclared.group(1), text)
     said, fix = _in_words(package, text, command, model)
     # An unknown command stands where it is called: what defines it is missing further up.
     if (
@@ -54,6 +57,23 @@ def finding(package, output, copy, model):
         expected="a CMakeLists.txt that CMake can follow",
         seen=f"{package.lines(file)[line - 1].strip()}  (CMake: {text[:300]})",
         fix=fix,
+    )
+
+
+def _undeclared(package, name, text):
+    """Return the Finding about what catkin_package() names and package.xml lacks at run time."""
+    line = package.find_line("package.xml", f">{name}<")
+    return Finding(
+        "configure",
+        f"catkin_package() names {name}, and package.xml does not say that it is needed when the"
+        " package runs.",
+        "package.xml",
+        line or package.find_line("package.xml", "depend>", 1),
+        expected=f"<depend>{name}</depend>, which is for building and for running",
+        seen=package.lines("package.xml")[line - 1].strip()
+        if line
+        else f"no {name}; CMake: {text}",
+        fix=f"Write <depend>{name}</depend>.",
     )
 
 

@@ -217,6 +217,8 @@ def _can_start(package, model, node, spec_node=None):
     if node.package != package.name:
         if spec_node and not uses.is_ros_package(node.package):
             manifest_line = package.find_line("package.xml", "<name>", 1)
+            # CMakeLists.txt says the same: then package.xml is wrong, which has been said.
+            same = model.project and model.project[0] == node.package
             yield Finding(
                 "package-name",
                 f"The launch file looks for {node.type} in the package {node.package};"
@@ -227,6 +229,7 @@ def _can_start(package, model, node, spec_node=None):
                 expected=f'pkg="{package.name}"',
                 seen=f'pkg="{node.package}"',
                 fix=f'Write pkg="{package.name}".',
+                consequence_of="package-name" if same else None,
             )
         return
     names = executables(package, model)

@@ -143,7 +143,8 @@ def findings(package, manifest):
             "manifest",
             "package.xml does not say that the package is built with catkin.",
             FILE,
-            package.find_line(FILE, "buildtool_depend", package.find_line(FILE, "<package", 1)),
+            # Where it belongs: at the first of the dependencies.
+            package.find_line(FILE, "depend>", package.find_line(FILE, "<package", 1)),
             expected="<buildtool_depend>catkin</buildtool_depend>",
             seen=", ".join(d.name for d in manifest.buildtool_depends) or "no buildtool_depend",
             fix="Add the line <buildtool_depend>catkin</buildtool_depend>.",

@@ -37,6 +37,7 @@ def findings(package, model, started):
     started: file -> the launch.Started node that it is, for the scripts that the launch file starts
     """
     relayed = {s.path for s in model.scripts if s.by == "catkin_install_python"}
+    unrelayed = None
     yield from _listed(package, model)
     for path in package.of_kind("python"):
         if is_test(path) or path == "setup.py":
@@ -44,7 +45,11 @@ def findings(package, model, started):
         shebang = package.shebang(path) or ""
         is_node = path in started or path in {s.path for s in model.scripts}
         if is_node or shebang and _is_node(package, path):
-            yield from _of(package, model, path, shebang, path in relayed)
+            for finding in _of(package, model, path, shebang, path in relayed):
+                if finding.expected.startswith("catkin_install_python"):
+                    # One call mends it for all scripts.
+                    finding.consequence_of, unrelayed = unrelayed, "scripts"
+                yield finding
             yield from _shadowing(path)
 
 
@@ -120,6 +125,13 @@ def _other_program(path, plain, relayed, what):
     )
 
 
+def _install_place(model, path):
+    """Return where a script would be handed to catkin_install_python()."""
+    calls = [s for s in model.scripts if s.by == "catkin_install_python"]
+    calls += [s for s in model.scripts if s.path == path]
+    return (calls[0].file, calls[0].line) if calls else (path, 1)
+
+
 def _of(package, model, path, shebang, relayed):
     plain = shebang.rstrip("\r")
     absent = names_no_program(plain) if plain else None
@@ -147,8 +159,7 @@ def _of(package, model, path, shebang, relayed):
             "scripts",
             f"{path} is not made to run by catkin_install_python(), and its first line asks for"
             " 'python', which this system does not have: it has python3.",
-            install.file if install else path,
-            install.line if install else 1,
+            *_install_place(model, path),
             expected=f"catkin_install_python(PROGRAMS ... {path} ...) in CMakeLists.txt",
             seen=plain,
             fix=f"Add {path} to catkin_install_python(PROGRAMS ...)."
