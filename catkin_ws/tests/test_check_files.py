@@ -52,7 +52,7 @@ def test_windows_line_ends_of_cpp_are_a_note(tmp_path):
         (' email="someone@some.example"', "", 6, "email"),
         ("<depend>rospy", "<dependd>rospy", 10, "dependd"),
         ("<depend>rospy</depend>", "<run_depend>rospy</run_depend>", 10, "run_depend"),
-        ("  <buildtool_depend>catkin</buildtool_depend>\n", "", 2, "catkin"),
+        ("  <buildtool_depend>catkin</buildtool_depend>\n", "", 8, "catkin"),
     ],
     ids=range(8),
 )

@@ -200,6 +200,10 @@ def test_consequences(entries, expected):
 def test_the_same_is_told_once():
     entry = ("spin", "src/a.py", 1, "static", "a")
     assert len(causes.told_once(findings(entry, entry), facts())) == 1
+    of_no_node = ("spin", "src/a.py", 1, "static", None)
+    assert len(causes.told_once(findings(of_no_node, entry), facts())) == 1
+    of_another = ("spin", "src/a.py", 1, "static", "b")
+    assert len(causes.told_once(findings(entry, of_another), facts())) == 2
 
 
 def run(*arguments, **variables):

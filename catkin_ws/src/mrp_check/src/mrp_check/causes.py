@@ -72,12 +72,15 @@ def told_once(findings, facts=None):
 
     facts: a stages.static.facts.Facts, which says which files a node is made of; or None
     """
-    kept, seen = [], set()
+    kept, seen = [], {}
     for finding in findings:
-        what = (finding.id, finding.file, finding.line, finding.node, finding.severity)
-        if what in seen and finding.severity != NOTE:
+        what = (finding.id, finding.file, finding.line, finding.severity)
+        nodes = seen.setdefault(what, set())
+        # A rule about a source knows no node; one about the node that it makes says the same again.
+        same = finding.node in nodes or finding.file and None in nodes
+        if same and finding.severity != NOTE:
             continue
-        seen.add(what)
+        nodes.add(finding.node)
         kept.append(finding)
     for index, finding in enumerate(kept):
         if finding.consequence_of or finding.severity == NOTE:

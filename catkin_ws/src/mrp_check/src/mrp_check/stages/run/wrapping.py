@@ -74,7 +74,8 @@ def _wrap_finding(node, after, place, expected):
 
 def _continues(after, rule):
     """Return whether the values simply go on from where they were before."""
-    return after[0] < rule.start + 20 * abs(rule.step)
+    near = after[0] < rule.start + 20 * abs(rule.step)
+    return near and (after[0] - rule.start) % rule.step == 0
 
 
 def _stopped(events):

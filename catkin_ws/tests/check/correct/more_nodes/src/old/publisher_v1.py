@@ -1,0 +1,2 @@
+# The first try, in Python 2. Nothing uses it.
+print "hello"
