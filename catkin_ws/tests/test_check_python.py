@@ -45,6 +45,13 @@ BROKEN = [
     ("rospy.spin()", "rospy.spln()", "python-names", "rospy.spln", "spin"),
     ("rospy.spin()", "rospy.spin", "spin", "rospy.spin", "brackets"),
     ("    main()\n", "    main\n", "node-start", "    main", "brackets"),
+    (
+        '    rospy.init_node("publisher_py_node")\n',
+        '    early = Node()\n    rospy.init_node("publisher_py_node")\n',
+        "node-start",
+        "early = Node()",
+        "before rospy.init_node",
+    ),
     ("= self.counter\n", "= self.conter\n", "python-names", "self.conter", "self.counter"),
     ("= self.counter\n", "= counter\n", "python-names", "= counter", "self.counter"),
     ("msg.data = ", "msg.dta = ", "python-names", "msg.dta", "data"),

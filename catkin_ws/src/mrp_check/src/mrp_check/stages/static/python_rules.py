@@ -31,6 +31,7 @@ def findings(package, source):
         messages.unknown_fields,
         messages.unknown_arguments,
         calls.wrong,
+        calls.too_early,
         statements.useless,
         statements.kept,
     ):
