@@ -95,7 +95,7 @@ exercise:  ## show the next exercise, or check it; HINT=1 gives a hint
 
 # What else runs on this machine shows in the figures: end it before.
 .PHONY: bench
-bench: build  ## measure how fast nodes are; QUICK=1: in a minute; RESUME=1: go on with the last run
+bench: build  ## measure how fast nodes are; QUICK=1: less of it; RESUME=1: go on with the last run
 	@$(INSTALL) catkin_ws/apt/bench.txt
 	@$(if $(QUICK),,$(IN_WORKSPACE) tools/build_original.py $(ORIGINAL) > /dev/null)
 	@$(IN_WORKSPACE) $(ALONE) source devel/setup.bash; \

@@ -21,7 +21,7 @@ from mrp_bench.rounds import PlanError, Results, run
 def arguments():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("folder", type=pathlib.Path, help="where the results go")
-    parser.add_argument("--quick", action="store_true", help="less of everything, in a minute")
+    parser.add_argument("--quick", action="store_true", help="less of everything")
     parser.add_argument("--resume", action="store_true", help="go on where the last run ended")
     parser.add_argument(
         "--beside",
