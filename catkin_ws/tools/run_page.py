@@ -58,6 +58,7 @@ class Reader:
     """One who reads the pages, with an empty home but for a copy of the repository in ~/mrp.
 
     outputs: name -> what was printed, as it goes into recorded/NAME.txt
+    printed: name -> all that was printed, also what the page leaves out
     graphs: name -> what goes into recorded/NAME.json
 
     Use it in a `with`: on leaving, whatever runs in a terminal is ended.
@@ -66,6 +67,7 @@ class Reader:
     def __init__(self, home):
         self.home = pathlib.Path(home)
         self.outputs = {}
+        self.printed = {}
         self.graphs = {}
         self._terminals = {}
         _copy_repository(self.home / "mrp")
@@ -106,9 +108,11 @@ class Reader:
             terminal.stop()
         if "output" in step:
             only = re.compile(step.get("only", ""))
-            lines = [line for line in printed if only.search(line) and not _CHANCE.match(line)]
-            shown = "\n".join(lines).strip()
-            self.outputs[step["output"]] = shown.replace(str(self.home), "/home/you")
+            lines = [line for line in printed if not _CHANCE.match(line)]
+            shown = [line for line in lines if only.search(line)]
+            for texts, chosen in ((self.outputs, shown), (self.printed, lines)):
+                text = "\n".join(chosen).strip()
+                texts[step["output"]] = text.replace(str(self.home), "/home/you")
 
     def _environment(self):
         names = ("USER", "LOGNAME", "LANG", "TZ")
