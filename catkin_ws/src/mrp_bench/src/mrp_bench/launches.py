@@ -6,7 +6,7 @@ import pathlib
 import time
 
 from mrp_bench.launched import Launched
-from mrp_bench.processes import megabytes
+from mrp_bench.processes import cpu, megabytes
 
 # Seconds over which the nodes' processor time is taken while they do their work.
 _WINDOW = 2
@@ -36,9 +36,9 @@ def measure(robots, folder):
         memory = {"cpp": [], "py": []}
         for pid in pids:
             memory["py" if _is_python(pid) else "cpp"].append(megabytes(pid))
-        cpu, moment = _cpu(pids), launched.now()
+        before, moment = cpu(pids), launched.now()
         time.sleep(_WINDOW)
-        cores = (_cpu(pids) - cpu) / (launched.now() - moment)
+        cores = (cpu(pids) - before) / (launched.now() - moment)
         stop, _, end = launched.stop({})
     found = launched.console.events
     return {
@@ -55,14 +55,6 @@ def measure(robots, folder):
 
 def _is_python(pid):
     return "python" in pathlib.Path(f"/proc/{pid}/exe").resolve().name
-
-
-def _cpu(pids):
-    return sum(
-        int(path.read_text().split()[0]) / 1e9
-        for pid in pids
-        for path in pathlib.Path(f"/proc/{pid}/task").glob("*/schedstat")
-    )
 
 
 def run(robots, rounds, results, say):

@@ -28,6 +28,23 @@ def tree(pid):
     return pids
 
 
+def of_threads(pids, name):
+    """Return the texts of a file in /proc of all threads of these processes."""
+    texts = []
+    for pid in pids:
+        for path in pathlib.Path(f"/proc/{pid}/task").glob(f"*/{name}"):
+            try:
+                texts.append(path.read_text())
+            except (FileNotFoundError, ProcessLookupError):
+                pass  # it has just ended
+    return texts
+
+
+def cpu(pids):
+    """Return the processor time that these processes have used so far, in seconds."""
+    return sum(int(text.split()[0]) / 1e9 for text in of_threads(pids, "schedstat"))
+
+
 def megabytes(pid):
     """Return the memory of a process; what several share is divided among them (proc(5): Pss)."""
     text = pathlib.Path(f"/proc/{pid}/smaps_rollup").read_text()

@@ -7,7 +7,6 @@ How they talk is said in include/mrp_bench/program.h.
 import array
 import collections
 import os
-import pathlib
 import queue
 import re
 import signal
@@ -16,7 +15,7 @@ import threading
 
 import roslib.packages
 
-from mrp_bench.processes import megabytes, tree, with_parent
+from mrp_bench.processes import cpu, megabytes, of_threads, tree, with_parent
 
 PACKAGE = "mrp_bench"
 
@@ -107,29 +106,18 @@ class Program:
 
     def cpu(self):
         """Return the processor time that it has used so far, with its children, in seconds."""
-        return sum(float(text.split()[0]) / 1e9 for text in self._of_threads("schedstat"))
+        return cpu(tree(self._popen.pid))
 
     def switches(self):
         """Return how often its threads have waited so far, and those of its children."""
         return sum(
             int(re.search(r"^voluntary_ctxt_switches:\s*(\d+)", text, re.MULTILINE).group(1))
-            for text in self._of_threads("status")
+            for text in of_threads(tree(self._popen.pid), "status")
         )
 
     def megabytes(self):
         """Return the memory that it and its children use, see processes.megabytes()."""
         return sum(megabytes(pid) for pid in tree(self._popen.pid))
-
-    def _of_threads(self, name):
-        """Return the texts of a file in /proc of all its threads, and those of its children."""
-        texts = []
-        for pid in tree(self._popen.pid):
-            for path in pathlib.Path(f"/proc/{pid}/task").glob(f"*/{name}"):
-                try:
-                    texts.append(path.read_text())
-                except (FileNotFoundError, ProcessLookupError):
-                    pass  # it has just ended
-        return texts
 
     def ask_to_end(self):
         try:

@@ -16,7 +16,6 @@ _ERROR = re.compile(
 )
 _FROM = re.compile(r"^(?P<file>[^\s:][^:]*):(?P<line>\d+):\d+:\s+required from")
 _INCLUDED = re.compile(r"^(?:In file included from| +from) (?P<file>[^:]+):(?P<line>\d+)")
-_NOTE = re.compile(r"^(?P<file>[^\s:][^:]*):(?P<line>\d+):\d+: note: (?P<text>.*)$")
 
 _MESSAGES = (
     "Bool Byte Char ColorRGBA Duration Empty Float32 Float64 Header Int16 Int32 Int64 Int8 String"

@@ -14,7 +14,6 @@ _CMAKE_ERROR = re.compile(
     r"(?: \((?P<command>\w+)\))?:",
     re.MULTILINE,
 )
-_CMAKE_ERROR_NO_LINE = re.compile(r"^CMake Error(?::| in| at| (?=\())", re.MULTILINE)
 _STACK = re.compile(r"^  (?P<file>[^:\s]+):(?P<line>\d+) \((?P<command>\w+)\)", re.MULTILINE)
 
 

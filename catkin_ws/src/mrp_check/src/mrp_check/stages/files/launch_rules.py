@@ -161,10 +161,6 @@ def _error(package, launch, tags):
     )
 
 
-def _described(node):
-    return f'<node pkg="{node.package}" type="{node.type}" name="{node.name}">'
-
-
 def _missing(package, spec, model, launch, name):
     """Return the Finding about a node that the launch file does not start."""
     spare = [n for n in launch.nodes if n.name not in spec.nodes and n.package == package.name]

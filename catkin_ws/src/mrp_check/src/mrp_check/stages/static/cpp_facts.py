@@ -528,11 +528,9 @@ class _Unit:
                 offset=variable.extent.start.offset,
                 function=function.spelling if function is not None else None,
             )
-        elif is_global and self.handles_in(variable.type.get_declaration()):
-            inside = self.handles_in(variable.type.get_declaration())
+        elif is_global and (inside := self.handles_in(variable.type.get_declaration())):
             self.add(variable, "global", text, name=variable.spelling, holds=inside)
-        elif is_global and self.owned_handles(variable):
-            holds = self.owned_handles(variable)
+        elif is_global and (holds := self.owned_handles(variable)):
             self.add(variable, "owner", text, name=variable.spelling, holds=holds)
         elif text.startswith("std::") is False and variable.kind == kinds.VAR_DECL:
             inside = self.handles_in(variable.type.get_canonical().get_declaration())
