@@ -220,6 +220,8 @@ case "$1" in
   info) exit $(cat "$0.engine") ;;
   image) exit $(cat "$0.image") ;;
 esac
+# Before it prints what SIGINT follows on: a shell that ends without this leaves the sleep behind.
+trap 'kill $!; exit' INT
 for node in {PUBLISHER,SUBSCRIBER}" "{CPP,PY}; do
   name=${node,,}
   echo "process[mrp/${name/ /_}_node-1]: started with pid [1]"
@@ -227,7 +229,6 @@ for node in {PUBLISHER,SUBSCRIBER}" "{CPP,PY}; do
 done
 for language in CPP PY; do echo "[SUBSCRIBER $language NODE] received message with data = 2"; done
 sleep infinity &
-trap 'kill $!; exit' INT
 wait
 """
 

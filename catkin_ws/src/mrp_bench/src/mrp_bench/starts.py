@@ -90,8 +90,8 @@ def _free_uri():
         return f"http://localhost:{probe.getsockname()[1]}"
 
 
-def run(variants, rounds, results, say, missing=None):
-    """Measure each variant that often, cold and then warm; keep it in the results' folder.
+def run(variants, rounds, results, say, missing=None, cold_too=True):
+    """Measure each variant that often, cold (if so) and then warm; keep it in the results' folder.
 
     missing: name -> why it is not measured, for the report
     """
@@ -101,7 +101,7 @@ def run(variants, rounds, results, say, missing=None):
     for number in range(rounds):
         for variant in variants:
             # An image's files are the engine's. After a cold start they are warm.
-            for is_cold in (False,) if variant.in_container else (True, False):
+            for is_cold in (True, False) if cold_too and not variant.in_container else (False,):
                 heat = "cold" if is_cold else "warm"
                 path = folder / f"{variant.name}_{heat}_{number}.json"
                 line = f"start and stop: {variant.name}, {heat}, round {number + 1} of {rounds}"
