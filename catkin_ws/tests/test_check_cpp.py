@@ -10,24 +10,36 @@ import check_rules
 import pytest
 from check_rules import PUB_SUB, told
 from mrp_check.stages import static
+from mrp_check.stages.static import cpp_headers, node_rules
 from mrp_check.stages.static import facts as facts_
-from mrp_check.stages.static import node_rules
 
 FOLDER = pathlib.Path(__file__).resolve().parents[1] / "src" / "mrp" / "src"
 PUBLISHER, SUBSCRIBER = "publisher_cpp_node", "subscriber_cpp_node"
 SOURCES = {name: (FOLDER / f"{name}.cpp").read_text() for name in (PUBLISHER, SUBSCRIBER)}
 
 
-def findings(folder, node, source):
-    """Return what the rules say of a node of the tutorial that is made of a source."""
-    package = check_rules.make(folder, src__a_DOT_cpp=source)
-    task = {"folder": str(folder), "units": [[str(folder / "src/a.cpp"), "-std=gnu++17"]]}
+@pytest.fixture(scope="session")
+def headers(tmp_path_factory):
+    return cpp_headers.make(tmp_path_factory.mktemp("headers") / "ros.pch")
+
+
+def said_of(folder, headers, standard=cpp_headers.STANDARD):
+    """Return what cpp_facts.py says of src/a.cpp in a folder."""
+    unit = [str(folder / "src/a.cpp"), standard]
+    task = {"folder": str(folder), "headers": str(headers), "units": [unit]}
     done = subprocess.run(
         ["/usr/bin/python3", static._CPP_FACTS, json.dumps(task)],
         stdout=subprocess.PIPE,
         check=True,
     )
     (said,) = json.loads(done.stdout).values()
+    return said
+
+
+def findings(folder, headers, node, source):
+    """Return what the rules say of a node of the tutorial that is made of a source."""
+    package = check_rules.make(folder, src__a_DOT_cpp=source)
+    said = said_of(folder, headers)
     assert said["errors"] == []
     facts = facts_.Facts()
     static._mark_unused(facts, static._take(package, facts, "src/a.cpp", said))
@@ -160,9 +172,9 @@ BROKEN = {
 
 
 @pytest.mark.parametrize(("node", "changes", "id_", "line", "words"), BROKEN.values(), ids=BROKEN)
-def test_broken_line_is_found(node, changes, id_, line, words, tmp_path):
+def test_broken_line_is_found(node, changes, id_, line, words, tmp_path, headers):
     source = replaced(node, *changes)
-    found = findings(tmp_path, node, source)
+    found = findings(tmp_path, headers, node, source)
     assert [finding.id for finding in found] == [id_], found
     assert line in source.splitlines()[found[0].line - 1]
     assert re.search(words, f"{found[0].message} {found[0].expected}")
@@ -210,5 +222,13 @@ CORRECT = {
 
 
 @pytest.mark.parametrize(("node", "changes"), CORRECT.values(), ids=CORRECT)
-def test_what_is_correct_is_not_flagged(node, changes, tmp_path):
-    assert told(findings(tmp_path, node, replaced(node, *changes))) == []
+def test_what_is_correct_is_not_flagged(node, changes, tmp_path, headers):
+    assert told(findings(tmp_path, headers, node, replaced(node, *changes))) == []
+
+
+def test_headers_that_do_not_fit_are_read_again(tmp_path, headers):
+    check_rules.make(tmp_path, src__a_DOT_cpp=SOURCES[PUBLISHER])
+    said = said_of(tmp_path, headers)
+    assert {place["kind"] for place in said["places"]} >= {"publisher", "log", "step"}
+    assert said_of(tmp_path, headers, "-std=gnu++20") == said
+    assert said_of(tmp_path, tmp_path / "no_such_file") == said

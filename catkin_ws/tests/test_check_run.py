@@ -31,8 +31,19 @@ if __name__ == "__main__":
 PUBLISHER = (
     """\
 #!/usr/bin/python3
+import time
+
 import rospy
+import rospy.topics
 from std_msgs.msg import Int32, String, UInt32
+
+
+def add_connection(self, connection, add=rospy.topics._TopicImpl.add_connection):
+    time.sleep(0.2)
+    return add(self, connection)
+
+
+rospy.topics._TopicImpl.add_connection = add_connection
 
 
 class Node:
@@ -68,6 +79,14 @@ class Node:
 # line that it names, what its message says)
 PUBLISHERS = {
     "right": ("", "", None, None, None),
+    # It publishes at once, and is slow to send to whom it has answered.
+    "at_once": (
+        "self.timer =",
+        "self.callback(None); self.timer =",
+        None,
+        None,
+        None,
+    ),
     "start": ("self.counter = 1", "self.counter = 3", "values", "counter|publish", "begins with 3"),
     "step": ("+ 2)", "+ 4)", "values", r"\+ 4", "after 1 came 5"),
     "same": ("(self.counter + 2)", "self.counter", "values", "counter", "again and again"),

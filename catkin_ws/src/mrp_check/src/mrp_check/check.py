@@ -15,6 +15,7 @@ from mrp_check.finding import ERROR, CannotCheck, Finding
 from mrp_check.package import Package
 from mrp_check.spec import Spec
 from mrp_check.stages.catkin import Catkin, missing_tool
+from mrp_check.stages.static import cpp_headers
 
 MET, FINDINGS, UNCHECKED = "met", "findings", "unchecked"
 BROKEN = "broken"
@@ -29,6 +30,7 @@ class Workspace:
     timeout: seconds that the whole check may take
     progress: called with a sentence that says what is being done
     catkin: a stages.catkin.Catkin, which configures and builds the copy
+    headers: a future, whose result is the file of ROS's headers (stages.static.cpp_headers)
     built: whether catkin_make succeeded
     executables: name of each executable that there is after building -> its path
     launch: what roslaunch makes of the launch file, a stages.launching.Launch; None if it cannot
@@ -41,6 +43,7 @@ class Workspace:
     timeout: float
     progress: typing.Callable[[str], None]
     catkin: typing.Any = None
+    headers: typing.Any = None
     built: bool = False
     executables: dict[str, pathlib.Path] = dataclasses.field(default_factory=dict)
     launch: typing.Any = None
@@ -92,9 +95,12 @@ def check(
     try:
         workspace = _workspace(package, folder, timeout, progress)
         workspace.catkin = Catkin(workspace)
+        chosen = needed if stages is None else [stage for stage in needed if stage in stages]
         findings, done = [], set()
         try:
-            for stage in needed if stages is None else [s for s in needed if s in stages]:
+            if "static" in chosen:
+                workspace.headers = workspace.catkin.submit(cpp_headers.make, folder / "ros.pch")
+            for stage in chosen:
                 progress(f"stage {stage}")
                 module = importlib.import_module(f"mrp_check.stages.{stage}")
                 for finding in module.findings(package, spec, workspace):

@@ -25,6 +25,7 @@ import threading
 from mrp_check import check, confine
 from mrp_check.package import Package, PackageError
 from mrp_check.requirements import REQUIREMENTS, STAGES, of_stage
+from mrp_check.stages.static import cpp_headers
 
 JOBS = 2
 DEEP = 3  # folders below a student's own in which the package may be
@@ -120,11 +121,17 @@ class Classroom:
         name = pathlib.Path(folder).resolve()
         self.results = pathlib.Path(results or name.with_name(name.name + ".checked"))
         self._running, self._done, self._lock = {}, [], threading.Lock()
+        self._headers, self._reading = None, threading.Lock()
         self._stopped = False
 
     def check(self):
         """Check all that must be; return a Submission of each, in the order of their names."""
         self.results.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryDirectory(prefix="mrp_check_class_") as folder:
+            self._headers = pathlib.Path(folder) / "ros.pch"
+            return self._check_all()
+
+    def _check_all(self):
         with concurrent.futures.ThreadPoolExecutor(self.jobs) as pool:
             futures = [pool.submit(self._checked, folder) for folder in self.folders]
             try:
@@ -196,7 +203,12 @@ class Classroom:
         command = [sys.executable, "-c", "from mrp_check.command import main; main()", str(package)]
         command += [f"--spec={self.spec_file}", f"--timeout={self.timeout:g}"]
         command += [f"--json={report_file}", f"--html={page}"]
+        with self._reading:  # the first reads them for all
+            if not self._headers.exists():
+                cpp_headers.make(self._headers)
         env = {**os.environ, "TMPDIR": str(scratch)}
+        if self._headers.exists():
+            env[cpp_headers.KEPT] = str(self._headers)
         env["PYTHONPATH"] = os.pathsep.join([str(_HERE.parent), env.get("PYTHONPATH", "")])
         with self._lock:
             if self._stopped:

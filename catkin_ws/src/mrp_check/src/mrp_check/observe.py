@@ -141,6 +141,10 @@ class Observer:
         end = time.monotonic() + _HOLD
         while not self._is_connected(node, topic) and time.monotonic() < end:
             time.sleep(0.002)
+        if node != NAME:
+            # A publisher answers a subscriber before it begins to send to it. It lets in one after
+            # the other: where the next one is answered, it sends to the one before.
+            self._shake_hands(node, topic)
 
     def _is_connected(self, node, topic):
         subscriber = self._subscribers.get(topic)
@@ -212,6 +216,11 @@ class Observer:
 
         What it tells its first subscribers may be too early: rospy latches after it has announced.
         """
+        answer = self._shake_hands(node, topic)
+        return answer and answer.get("latching") == "1"
+
+    def _shake_hands(self, node, topic):
+        """Subscribe for a moment; return what the publisher says of it, or None."""
         try:
             api = self._handler.publishers.get_apis(topic)
             by_node = dict(zip(self._publisher_names(topic), api))
@@ -222,8 +231,7 @@ class Observer:
             with socket.create_connection(tuple(found[1:3]), _ANSWER) as connection:
                 header = {"topic": topic, "md5sum": "*", "type": "*", "callerid": NAME + "_late"}
                 rosgraph.network.write_ros_handshake_header(connection, header)
-                answer = rosgraph.network.read_ros_handshake_header(connection, io.BytesIO(), 2048)
-            return answer.get("latching") == "1"
+                return rosgraph.network.read_ros_handshake_header(connection, io.BytesIO(), 2048)
         except (KeyError, OSError, xmlrpc.client.Error, rosgraph.network.ROSHandshakeException):
             return None
 

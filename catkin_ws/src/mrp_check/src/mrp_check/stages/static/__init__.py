@@ -10,8 +10,15 @@ import pathlib
 from mrp_check import confine
 from mrp_check.finding import WARNING, CannotCheck
 from mrp_check.stages import uses
+from mrp_check.stages.static import (
+    cpp_headers,
+    node_rules,
+    python_facts,
+    python_read,
+    python_rules,
+    roles,
+)
 from mrp_check.stages.static import facts as facts_
-from mrp_check.stages.static import node_rules, python_facts, python_read, python_rules, roles
 
 _CPP_FACTS = pathlib.Path(__file__).resolve().with_name("cpp_facts.py")
 
@@ -132,12 +139,12 @@ def _defaults(package, workspace):
         "/usr/include/xmlrpcpp",
     ]
     name = package.name.replace('"', "")
-    return ["-std=gnu++17", f'-DROS_PACKAGE_NAME="{name}"', *(f"-I{folder}" for folder in folders)]
+    return [f'-DROS_PACKAGE_NAME="{name}"', *(f"-I{folder}" for folder in folders)]
 
 
 def _arguments(command, source):
     """Return what of a compiler's command line clang needs: without outputs and g++'s own flags."""
-    kept, skip = [], False
+    kept, skip = [cpp_headers.STANDARD], False
     for word in command[1:]:
         if skip:
             skip = False
@@ -152,7 +159,8 @@ def _arguments(command, source):
 
 def _read_cpp(package, workspace, unit):
     """Return (file, what cpp_facts.py says of it or None)."""
-    task = {"folder": str(workspace.package_folder), "units": [unit]}
+    headers = str(workspace.headers.result())
+    task = {"folder": str(workspace.package_folder), "headers": headers, "units": [unit]}
     done = workspace.catkin.run("/usr/bin/python3", str(_CPP_FACTS), json.dumps(task))
     file = os.path.relpath(unit[0], workspace.package_folder)
     try:

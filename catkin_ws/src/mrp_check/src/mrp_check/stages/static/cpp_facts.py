@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Prints, as JSON, what C++ sources say. Runs confined: the sources may be anything.
 
-Usage: cpp_facts.py TASKS, TASKS being JSON: {"folder": FOLDER, "units": [[FILE, ARGUMENT...]...]}.
-The answer has, for each file, its places as in facts.Place, or why it could not be read.
+Usage: cpp_facts.py TASKS, TASKS being JSON: {"folder": FOLDER, "headers": FILE,
+"units": [[FILE, ARGUMENT...]...]}; the headers are those of cpp_headers.py. The answer has, for
+each file, its places as in facts.Place, or why it could not be read.
 """
 
 import json
@@ -34,19 +35,28 @@ def main():
     answer = {}
     for file, *arguments in task["units"]:
         try:
-            answer[file] = _Unit(cindex, task["folder"], file, arguments).answer()
+            unit = parsed(cindex, file, arguments, task["headers"])
+            answer[file] = _Unit(cindex, task["folder"], unit).answer()
         except cindex.TranslationUnitLoadError as error:
             answer[file] = {"places": [], "errors": [str(error)]}
     json.dump(answer, sys.stdout)
 
 
+def parsed(cindex, file, arguments, headers):
+    """Return the TranslationUnit of a source; ROS's headers are read only if they must be."""
+    try:
+        return cindex.Index.create().parse(file, [*arguments, "-include-pch", headers])
+    except cindex.TranslationUnitLoadError:
+        # There are none, or they do not fit: those of another standard of C++ do not.
+        return cindex.Index.create().parse(file, arguments)
+
+
 class _Unit:
-    def __init__(self, cindex, folder, file, arguments):
+    def __init__(self, cindex, folder, unit):
         self.kinds = cindex.CursorKind
         self.folder = folder
         self.places = []
-        options = cindex.TranslationUnit.PARSE_DETAILED_PROCESSING_RECORD
-        self.unit = cindex.Index.create().parse(file, arguments, options=options)
+        self.unit = unit
         self.parents = {}
         self.uses = {}  # variable -> how often it is named
         self.named = set()  # functions that are named
@@ -58,6 +68,7 @@ class _Unit:
     def answer(self):
         for cursor in self.cursors:
             self.look_at(cursor)
+        self.look_at_logs()
         errors = [
             [self.path(d.location.file), d.location.line, d.spelling]
             for d in self.unit.diagnostics
@@ -262,8 +273,6 @@ class _Unit:
             kinds.UNARY_OPERATOR,
         ):
             self.look_at_operator(cursor)
-        elif cursor.kind == kinds.MACRO_INSTANTIATION:
-            self.look_at_macro(cursor)
         elif cursor.kind in (kinds.IF_STMT, kinds.CONDITIONAL_OPERATOR):
             self.look_at_reset(cursor)
         elif self.is_loop(cursor):
@@ -651,13 +660,23 @@ class _Unit:
             if isinstance(value, (int, float)):
                 self.add(target, "counter", target.spelling, value=value, type=kind, bits=8 * size)
 
-    def look_at_macro(self, cursor):
-        found = _LOG.match(cursor.spelling)
-        if not found:
-            return
-        tokens = [token.spelling for token in cursor.get_tokens()]
-        level = _LEVELS[found.group(1)]
-        self.add(cursor, "log", logged(cursor.spelling, tokens), level=level)
+    def look_at_logs(self):
+        """Look at each ROS_INFO... that is compiled: then something stands at its place."""
+        at = {}
+        for cursor in self.cursors:
+            if self.own_file(cursor):
+                place = cursor.location
+                at.setdefault((place.file.name, place.offset), cursor)
+        for file in {name for name, _ in at}:
+            extent = self.unit.get_extent(file, (0, os.path.getsize(file)))
+            tokens = list(self.unit.get_tokens(extent=extent))
+            words = [token.spelling for token in tokens]
+            for number, word in enumerate(words):
+                found = _LOG.match(word)
+                cursor = found and at.get((file, tokens[number].location.offset))
+                if cursor:
+                    level = _LEVELS[found.group(1)]
+                    self.add(cursor, "log", logged(word, words[number:]), level=level)
 
 
 def number(token):
