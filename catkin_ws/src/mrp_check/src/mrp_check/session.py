@@ -284,6 +284,9 @@ def _is_settled(plan, node, roslaunch, observer, activity):
         counts = [n for (name, _), n in list(observer.counts.items()) if name == path]
         if max(counts, default=0) < plan["enough"]:
             return False
+    # It may be that nobody sends it anything.
+    if node["hears"] and not any(one.node == path for one in list(observer.subscriptions)):
+        return False
     if node["received"]:
         pattern = re.compile(node["received"])
         lines = [

@@ -24,7 +24,7 @@ from mrp_check.stages import catkin, launching
 
 ENOUGH = 8  # messages of each publisher
 BURST = tuple(range(21, 29))  # what each subscriber is sent at once: fewer than its queue holds
-PACED = (31, 32, 33, 34)  # and then one by one
+PACED = (2, 3, 33, 34)  # and then one by one, small ones too
 DEFAULT_PERIOD = 0.5  # seconds, where the contract names none
 SPARE_SECONDS = 60  # that one run may take besides
 WRAP = "wrap:"  # before the name of a Python publisher that runs near the end of its numbers

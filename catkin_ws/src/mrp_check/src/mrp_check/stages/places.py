@@ -58,6 +58,15 @@ class Places:
     def facts_of(self, node, *kinds):
         return self.facts.of(node, *kinds) if self.facts else []
 
+    def sleep_beside(self, node, *kinds):
+        """Return the place of a sleep in the same function as a place of these kinds, or None."""
+        for function in self.facts_of(node, "function"):
+            places = [place for place in self.facts_of(node, *kinds) if function.is_around(place)]
+            for sleep in self.facts_of(node, "sleep"):
+                if places and function.is_around(sleep):
+                    return sleep.file, sleep.line
+        return None
+
     def of_topic(self, node, kind, topic):
         """Return the place at which a node names a topic: the kind is publisher or subscriber."""
         base = topic.rsplit("/", 1)[-1]

@@ -142,8 +142,16 @@ def _error(package, launch, tags):
         message = f"The launch file names a package or a file that is not there: {name}."
     elif argument and ("arg" in text):
         name = next(filter(None, argument.groups()))
-        file, line = first(lambda e: any(f"arg {name}" in v for v in e.attributes.values()))
-        message = f"roslaunch cannot load the launch file: {text}"
+        declared = [
+            (f, e.line) for f, e in tags if e.tag == "arg" and e.attributes.get("name") == name
+        ]
+        if declared:
+            file, line = declared[0]
+            message = f"The launch file's argument {name} has no value: roslaunch asks for one."
+            fix = 'Give it one for when no other is given: default="...".'
+        else:
+            file, line = first(lambda e: any(f"arg {name}" in v for v in e.attributes.values()))
+            message = f"roslaunch cannot load the launch file: {text}"
     else:
         words = re.findall(r"[\w./$()-]+", text)
         if unknown:

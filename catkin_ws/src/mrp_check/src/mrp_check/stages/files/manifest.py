@@ -73,6 +73,8 @@ def xml_finding(id_, package, path, error):
 def _bad_token(package, path, line):
     """Return the line that is to blame for a character that cannot stand where it does."""
     lines = package.lines(path)
+    if re.search(r"<!--(?:(?!-->).)*--$|<!--(?:(?!-->).)*--(?!>)", lines[line - 1]):
+        return line, "Within a comment there must be no two hyphens (--)."
     for number in range(line, 0, -1):
         text = lines[number - 1] if number <= len(lines) else ""
         # A tag that never ends swallows the lines below it.

@@ -138,11 +138,15 @@ def _rate_findings(node, messages, role):
         return
     if too_fast or too_slow:
         seen = f"a message every {middle:.2g} s"
+        # Beside a timer: a loop's own sleep is what its rate is made of.
+        timer = "Timer" in (node.package.lines(place[0])[place[1] - 1] if place[0] else "")
+        sleep = too_slow and timer and node.places.sleep_beside(node.name, "publish")
         yield node.finding(
             "rate",
             f"{node.name} publishes too {'often' if too_fast else 'seldom'}: {seen}, where the"
-            f" contract says every {role.period:g} s.",
-            place,
+            f" contract says every {role.period:g} s."
+            + (" Its callback sleeps, and the timer waits for it." if sleep else ""),
+            sleep or place,
             expected=expected,
             seen=seen,
         )

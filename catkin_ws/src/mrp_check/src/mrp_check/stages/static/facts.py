@@ -31,6 +31,11 @@ class Place:
     text: str | None = None
     values: dict = dataclasses.field(default_factory=dict)
 
+    def is_around(self, place):
+        """Return whether this is a function in which another place is."""
+        within = self.line <= place.line <= self.values.get("end", 0)
+        return self.kind == "function" and self.file == place.file and within
+
 
 @dataclasses.dataclass
 class Facts:

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import os
+import re
 
 from mrp_check.finding import WARNING, Finding
 from mrp_check.stages.static.python_source import GAP
@@ -216,6 +217,7 @@ class _Node:
                 )
             return
         if spins:
+            yield from self._made_too_late(spins)
             return
         called_back = self.places("subscriber") + (
             []
@@ -257,6 +259,33 @@ class _Node:
             seen="no such call",
             fix=f"Add {call}{'' if self.is_python else ';'} at the end of main.",
         )
+
+    def _made_too_late(self, spins):
+        """Yield a finding if the node's parts are made below a spin() of the same function."""
+        classes = {
+            name
+            for file in self.files
+            for line in self.package.lines(file)
+            for name in re.findall(r"^\s*(?:class|struct) (\w+)", line)
+        }
+        for spin in spins:
+            ends = [f.values["end"] for f in self.places("function") if f.is_around(spin)]
+            if spin.text not in (None, "spin", "waitForShutdown") or not ends:
+                continue
+            made = {p.line for p in self.places("publisher", "subscriber") if p.file == spin.file}
+            for number in range(spin.line + 1, min(ends) + 1):
+                line = self.package.lines(spin.file)[number - 1]
+                if number in made or classes & set(re.findall(r"\w+", line)):
+                    call = "rospy.spin()" if self.is_python else "ros::spin()"
+                    yield self.finding(
+                        "spin",
+                        f"{call} returns only when the node is to end: what stands below it, in"
+                        f" line {number}, is made too late.",
+                        spin,
+                        expected=f"{call} below all that the node is made of",
+                        fix=f"Move it below line {number}.",
+                    )
+                    return
 
     def _is_rate(self, place):
         return "Rate" in self.package.lines(place.file)[place.line - 1]
