@@ -636,15 +636,21 @@ class _Unit:
         if counter is None or self.operator(condition, sides) not in (">", ">=", "=="):
             return
         if cursor.kind == self.kinds.CONDITIONAL_OPERATOR:
-            self.add_reset(cursor, counter, limit, self.value(then))
+            wrapping = (self.kinds.UNEXPOSED_EXPR, self.kinds.PAREN_EXPR)
+            above = next((p for p in self.above(cursor) if p.kind not in wrapping), None)
+            if self.gives(above, counter):
+                self.add_reset(cursor, counter, limit, self.value(then))
             return
         for one in then.walk_preorder():
-            if one.kind == self.kinds.BINARY_OPERATOR:
-                left, right = one.get_children()
-                if self.operator(one, [left, right]) == "=" and (
-                    self.peel(left).referenced == counter
-                ):
-                    self.add_reset(one, counter, limit, self.value(right))
+            if self.gives(one, counter):
+                self.add_reset(one, counter, limit, self.value(list(one.get_children())[1]))
+
+    def gives(self, cursor, variable):
+        """Return whether an expression is `variable = ...`."""
+        if cursor is None or cursor.kind != self.kinds.BINARY_OPERATOR:
+            return False
+        sides = list(cursor.get_children())
+        return self.operator(cursor, sides) == "=" and self.peel(sides[0]).referenced == variable
 
     def add_reset(self, cursor, counter, limit, value):
         if isinstance(limit, int) and isinstance(value, int):
