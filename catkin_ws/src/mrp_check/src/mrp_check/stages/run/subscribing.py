@@ -75,7 +75,7 @@ def subscriber_findings(node):
         kept = [str(value) for value in sent if value in heard]
         why = " While its callback sleeps, more arrives than its queue holds." if sleep else ""
         yield node.finding(
-            "received",
+            "callbacks" if sleep else "received",
             f"{node.name} was sent {', '.join(map(str, sent))}, but logs only"
             f" {', '.join(kept)}." + (why or _whose(node, lost, heard)),
             sleep or _logged_place(node, logs, pattern),
