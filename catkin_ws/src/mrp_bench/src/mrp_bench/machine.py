@@ -22,7 +22,7 @@ def describe():
         "cores": str(len(os.sched_getaffinity(0))),
         "memory": f"{int(memory.group()) / 1e6:.0f} GB",
         "system": re.search(r'^PRETTY_NAME="?([^"\n]*)', release, re.MULTILINE).group(1),
-        "kernel": platform.release(),
+        "kernel": platform.release().split("-")[0],
         "python": platform.python_version(),
         "roscpp": version or "unknown",
     }

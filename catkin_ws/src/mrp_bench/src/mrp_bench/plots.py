@@ -132,7 +132,7 @@ def _latencies(rows):
 def _throughputs(rows):
     rows = sorted(rows, key=lambda row: -row.throughput)
     figure, axes = _dots_figure(
-        rows, "How many messages of 8 bytes arrive, as fast as it goes", "messages per second"
+        rows, "Messages of 8 bytes, as fast as it goes", "messages per second"
     )
     for y, row in enumerate(rows):
         color = _LIMIT_COLOR if WAYS[row.way].is_raw else _COLOR
