@@ -138,17 +138,18 @@ class Observer:
 
     def hold(self, node, topic):
         """Wait until this observer is connected to a publisher, or for _HOLD seconds."""
+        if node == NAME:
+            return
         end = time.monotonic() + _HOLD
         while not self._is_connected(node, topic) and time.monotonic() < end:
             time.sleep(0.002)
-        if node != NAME:
-            # A publisher answers a subscriber before it begins to send to it. It lets in one after
-            # the other: where the next one is answered, it sends to the one before.
-            self._shake_hands(node, topic)
+        # A publisher answers a subscriber before it begins to send to it. It lets in one after the
+        # other: where the next one is answered, it sends to the one before.
+        self._shake_hands(node, topic)
 
     def _is_connected(self, node, topic):
         subscriber = self._subscribers.get(topic)
-        if node == NAME or subscriber is None:
+        if subscriber is None:
             return True
         connections = subscriber.impl.connections if subscriber.impl else []
         return any(getattr(c, "callerid_pub", None) == node for c in list(connections))

@@ -143,8 +143,8 @@ def _in_words(package, text, command, model):
     )
     if match:
         name = match.group(1)
-        others = [target for target in model.targets if target != name]
-        near = [] if name in model.targets else difflib.get_close_matches(name, others, 1, 0.5)
+        targets = [] if name in model.targets else list(model.targets)
+        near = difflib.get_close_matches(name, targets, 1, 0.5)
         hint = f" There is {near[0]}." if near else ""
         return (
             f"there is no target {name} at this point.{hint} add_executable() has to come before.",

@@ -60,11 +60,11 @@ class Places:
 
     def sleep_beside(self, node, *kinds):
         """Return the place of a sleep in the same function as a place of these kinds, or None."""
+        places, sleeps = self.facts_of(node, *kinds), self.facts_of(node, "sleep")
         for function in self.facts_of(node, "function"):
-            places = [place for place in self.facts_of(node, *kinds) if function.is_around(place)]
-            for sleep in self.facts_of(node, "sleep"):
-                if places and function.is_around(sleep):
-                    return sleep.file, sleep.line
+            beside = [sleep for sleep in sleeps if function.is_around(sleep)]
+            if beside and any(function.is_around(place) for place in places):
+                return beside[0].file, beside[0].line
         return None
 
     def of_topic(self, node, kind, topic):

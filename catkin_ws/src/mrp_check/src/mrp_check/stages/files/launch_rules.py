@@ -115,6 +115,9 @@ def _error(package, launch, tags):
     def first(condition):
         return next(((f, e.line) for f, e in tags if condition(e)), (file, 1))
 
+    def named(tag, name):
+        return [(f, e.line) for f, e in tags if e.tag == tag and e.attributes.get("name") == name]
+
     twice = re.search(r"multiple nodes named \[(\S+?)\]", text)
     attribute = re.search(r"<(\w+)> tag is missing required attribute:? ?'(\w+)'", text)
     argument = re.search(
@@ -125,9 +128,7 @@ def _error(package, launch, tags):
     fix = "Mend this line, and try again: roslaunch --nodes says whether it can be read."
     if twice:
         name = twice.group(1).rsplit("/", 1)[-1]
-        lines = [
-            (f, e.line) for f, e in tags if e.tag == "node" and e.attributes.get("name") == name
-        ]
+        lines = named("node", name)
         file, line = lines[-1] if lines else (file, 1)
         message = f"Two nodes of the launch file have the name {name}; each needs its own."
         fix = "Give each <node> its own name."
@@ -142,9 +143,7 @@ def _error(package, launch, tags):
         message = f"The launch file names a package or a file that is not there: {name}."
     elif argument and ("arg" in text):
         name = next(filter(None, argument.groups()))
-        declared = [
-            (f, e.line) for f, e in tags if e.tag == "arg" and e.attributes.get("name") == name
-        ]
+        declared = named("arg", name)
         if declared:
             file, line = declared[0]
             message = f"The launch file's argument {name} has no value: roslaunch asks for one."

@@ -73,10 +73,10 @@ def xml_finding(id_, package, path, error):
 def _bad_token(package, path, line):
     """Return the line that is to blame for a character that cannot stand where it does."""
     lines = package.lines(path)
-    if re.search(r"<!--(?:(?!-->).)*--$|<!--(?:(?!-->).)*--(?!>)", lines[line - 1]):
-        return line, "Within a comment there must be no two hyphens (--)."
     for number in range(line, 0, -1):
         text = lines[number - 1] if number <= len(lines) else ""
+        if number == line and re.search(r"<!--(?:(?!-->).)*--(?!>)", text):
+            return line, "Within a comment there must be no two hyphens (--)."
         # A tag that never ends swallows the lines below it.
         if number < line and text.count("<") > text.count(">"):
             return number, "The tag that begins there has no end."

@@ -42,19 +42,18 @@ def start_findings(node):
     started_ros = bool(registered or direct.get("name"))
     said = last_words(node.errors())
     expected = "a node that goes on until Ctrl-C"
-    if code == 0 and started_ros:
-        ends = [p for p in node.places.facts_of(node.name, "exit") if p.text != "return"]
-        if ends and node.places.facts_of(node.name, "spin"):
-            yield node.finding(
-                "spin",
-                f"{node.name} ends by itself soon after it has started, though it waits: most"
-                f" likely by its call of {ends[0].text}().",
-                (ends[0].file, ends[0].line),
-                expected=expected,
-                seen="it ended with exit code 0",
-                fix="Leave the call out, or see to it that it is only made at the end.",
-            )
-            return
+    ends = [p for p in node.places.facts_of(node.name, "exit") if p.text != "return"]
+    if code == 0 and started_ros and ends and node.places.facts_of(node.name, "spin"):
+        yield node.finding(
+            "spin",
+            f"{node.name} ends by itself soon after it has started, though it waits: most likely"
+            f" by its call of {ends[0].text}().",
+            (ends[0].file, ends[0].line),
+            expected=expected,
+            seen="it ended with exit code 0",
+            fix="Leave the call out, or see to it that it is only made at the end.",
+        )
+    elif code == 0 and started_ros:
         yield node.finding(
             "spin",
             f"{node.name} ends by itself soon after it has started: nothing keeps it waiting"

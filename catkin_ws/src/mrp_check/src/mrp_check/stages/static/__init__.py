@@ -135,8 +135,7 @@ def _defaults(package, workspace):
     folders = [
         workspace.package_folder / "include",
         workspace.folder / "devel" / "include",
-        "/opt/ros/noetic/include",
-        "/usr/include/xmlrpcpp",
+        *cpp_headers.FOLDERS,
     ]
     name = package.name.replace('"', "")
     return [f'-DROS_PACKAGE_NAME="{name}"', *(f"-I{folder}" for folder in folders)]

@@ -638,19 +638,21 @@ class _Unit:
         if cursor.kind == self.kinds.CONDITIONAL_OPERATOR:
             wrapping = (self.kinds.UNEXPOSED_EXPR, self.kinds.PAREN_EXPR)
             above = next((p for p in self.above(cursor) if p.kind not in wrapping), None)
-            if self.gives(above, counter):
+            if above is not None and self.given(above, counter) is not None:
                 self.add_reset(cursor, counter, limit, self.value(then))
             return
         for one in then.walk_preorder():
-            if self.gives(one, counter):
-                self.add_reset(one, counter, limit, self.value(list(one.get_children())[1]))
+            given = self.given(one, counter)
+            if given is not None:
+                self.add_reset(one, counter, limit, self.value(given))
 
-    def gives(self, cursor, variable):
-        """Return whether an expression is `variable = ...`."""
-        if cursor is None or cursor.kind != self.kinds.BINARY_OPERATOR:
-            return False
+    def given(self, cursor, variable):
+        """Return the right side of `variable = ...`, or None if the expression is another."""
         sides = list(cursor.get_children())
-        return self.operator(cursor, sides) == "=" and self.peel(sides[0]).referenced == variable
+        if cursor.kind != self.kinds.BINARY_OPERATOR or len(sides) != 2:
+            return None
+        is_given = self.operator(cursor, sides) == "="
+        return sides[1] if is_given and self.peel(sides[0]).referenced == variable else None
 
     def add_reset(self, cursor, counter, limit, value):
         if isinstance(limit, int) and isinstance(value, int):

@@ -6,13 +6,12 @@ configures, and for a class once for all. Nothing of a package has a part in it.
 """
 
 import os
-import pathlib
 import shutil
 import subprocess
 import sys
 
 STANDARD = "-std=gnu++17"  # the default of g++ 12 and 14
-_FOLDERS = ("/opt/ros/noetic/include", "/usr/include/xmlrpcpp")
+FOLDERS = ("/opt/ros/noetic/include", "/usr/include/xmlrpcpp")
 _SOURCE = ("ros.h", "#include <ros/ros.h>\n")
 
 # Where a class keeps them.
@@ -29,14 +28,13 @@ def make(path):
 
 
 def main():
-    folder = str(pathlib.Path(__file__).resolve().parent)
-    sys.path = [path for path in sys.path if path != folder]  # its modules are none of clang's
+    del sys.path[0]  # this file's folder, whose modules are none of clang's
     from clang import cindex
 
     of = cindex.TranslationUnit
     # What the headers' functions do is none of the package's business.
     options = of.PARSE_SKIP_FUNCTION_BODIES | of.PARSE_INCOMPLETE | 0x10  # ForSerialization
-    arguments = ["-x", "c++-header", STANDARD, "-w", *(f"-I{path}" for path in _FOLDERS)]
+    arguments = ["-x", "c++-header", STANDARD, "-w", *(f"-I{path}" for path in FOLDERS)]
     unit = cindex.Index.create().parse(_SOURCE[0], arguments, [_SOURCE], options)
     if not any(diagnostic.severity >= diagnostic.Error for diagnostic in unit.diagnostics):
         unit.save(sys.argv[1])

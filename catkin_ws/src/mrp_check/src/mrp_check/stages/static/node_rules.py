@@ -238,11 +238,7 @@ class _Node:
         last = [p for p in self.places("init")]
         if self.is_python and last:
             # The end of the function in which the node is begun.
-            around = [
-                f
-                for f in self.places("function")
-                if f.file == last[0].file and f.line <= last[0].line <= f.values.get("end", 0)
-            ]
+            around = [f for f in self.places("function") if f.is_around(last[0])]
             where = (last[0].file, around[-1].values["end"] if around else last[0].line)
         else:
             where = ends[-1] if ends else functions[-1] if functions else (self.main, 1)
@@ -439,11 +435,7 @@ class _Node:
 
     def _unused_around(self, place):
         around = [
-            f
-            for f in self.places("function")
-            if f.file == place.file
-            and f.line <= place.line <= f.values.get("end", 0)
-            and f.values.get("unused")
+            f for f in self.places("function") if f.is_around(place) and f.values.get("unused")
         ]
         return around[0] if around else None
 
