@@ -13,6 +13,7 @@ import xml.etree.ElementTree as ElementTree
 
 import numpy
 import pytest
+import rosgraph
 import yaml
 from mrp_bench import (
     fan_report,
@@ -28,6 +29,7 @@ from mrp_bench import (
     summary,
 )
 from mrp_bench.master import Master
+from mrp_bench.processes import cpu
 from mrp_bench.programs import Measurement, ProgramError, Running, Slice
 from mrp_bench.ways import WAYS, Way
 from process import Process
@@ -568,6 +570,30 @@ def test_fans_deliver_every_message_and_leave_nothing_behind(master, mark, tmp_p
     assert started_with(mark) == []
 
     fans.run([1, 2], results, pytest.fail)
+
+
+def test_ros_spin_takes_a_core_while_its_node_ends(master):
+    """And mrp_bench's spin() does not. A master that stands still keeps both from ending."""
+    core = rosgraph.Master("/test_bench")
+    with Process("rosrun", "mrp", "subscriber_cpp_node") as plain:
+        with Process("rosrun", "mrp_bench", "bench_node", "subscribe=1", "only_small=1") as calm:
+            wait_until(
+                lambda: (
+                    {"/great_topic", "/small"} <= {name for name, _ in core.getSystemState()[1]}
+                ),
+                "both have subscribed",
+            )
+            pid = core.getPid()
+            os.kill(pid, signal.SIGSTOP)
+            try:
+                begin = cpu([plain.pid]), cpu([calm.pid])
+                for node in (plain, calm):
+                    os.kill(node.pid, signal.SIGINT)
+                wait_until(lambda: cpu([plain.pid]) - begin[0] > 1, "a second of processor time")
+                assert cpu([calm.pid]) - begin[1] < 0.1
+            finally:
+                os.kill(pid, signal.SIGCONT)
+            assert [plain.wait(), calm.wait()] == [0, 0]
 
 
 BENCH_THAT_WAITS = """

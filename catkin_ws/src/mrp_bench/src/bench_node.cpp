@@ -14,6 +14,7 @@
 #include <mrp_bench/node_receiver.h>
 #include <mrp_bench/node_sender.h>
 #include <mrp_bench/program.h>
+#include <mrp_bench/spin.h>
 #include <ros/ros.h>
 
 #include <memory>
@@ -36,7 +37,7 @@ int main(int argc, char* argv[])
   {
     if (options.number("async", 0) == 0)
     {
-      ros::spin();
+      mrp_bench::spin();
       return 0;
     }
     ros::AsyncSpinner spinner(options.number("async", 0));
