@@ -68,6 +68,13 @@ def test_seconds_of_the_last_make_test(tmp_path):
     assert own_times.test_seconds(tmp_path) == 12.5
 
 
+def test_a_build_takes_processors_and_waiting_takes_none():
+    compute = "/usr/bin/python3 -c 'sum(range(20_000_000))'"
+    assert own_times.run(["sh", "-c", f"{compute} & {compute} & wait"]).cpu > 0.2
+    asleep = own_times.run(["sleep", "0.5"])
+    assert asleep.seconds >= 0.5 and asleep.cpu < 0.1
+
+
 def test_image_grows_by_more_than_a_twentieth():
     before = [
         {"commit": commit, "image": "mrp:bookworm", "driver": driver, "megabytes": size}

@@ -5,9 +5,10 @@
 Usage: own_times.py check|record
 
 Another machine is faster or slower: so each time is a ratio to that of compiling one node,
-measured in turns with it. `record` appends the ratios to own_times.csv. `check` compares them
-with the last ones there that are of the same Debian, and fails if one has grown by more than the
-noise, and by more than a tenth.
+measured in turns with it. Of builds it is the time of the processors, which does not depend on how
+many there are, and on what else they do. `record` appends the ratios to own_times.csv. `check`
+compares them with the last ones there that are of the same Debian, and fails if one has grown by
+more than the noise, and by more than a tenth.
 
 The time of the tests is that of the last `make test`. Half of it is waiting, which is as long on
 any machine: so on a faster one the ratio grows, and on a slower one the seconds do. Only where both
@@ -15,6 +16,7 @@ have grown, by a quarter, it is the tests that take longer.
 """
 
 import pathlib
+import resource
 import subprocess
 import sys
 import tempfile
@@ -40,8 +42,15 @@ _ROUNDS = 4
 _NODE = WORKSPACE / "src" / "mrp" / "src" / "publisher_cpp_node.cpp"
 
 
+class Taken(typing.NamedTuple):
+    """What a command took; cpu: the seconds of all processors together."""
+
+    seconds: float
+    cpu: float
+
+
 class Figure(typing.NamedTuple):
-    """seconds: the median. ratio: to the time of compiling one node."""
+    """seconds: the median. ratio: to what compiling one node takes."""
 
     seconds: float
     ratio: stats.Estimate
@@ -84,7 +93,7 @@ def test_seconds(results):
 
 def measure():
     """Return what took time -> Figure."""
-    times = {"node": [], "clean build": [], "build after one change": [], "build of nothing": []}
+    taken = {"node": [], "clean build": [], "build after one change": [], "build of nothing": []}
     with tempfile.TemporaryDirectory() as folder:
         folder = pathlib.Path(folder)
         (folder / "src").mkdir()
@@ -94,38 +103,47 @@ def measure():
         for number in range(_ROUNDS):
             print(f"round {number + 1} of {_ROUNDS}", flush=True)
             changed.write_text(_NODE.read_text())
-            times["node"].append([_seconds(["g++", "-c", "-O2", "-g", "-o", "/dev/null", changed])])
+            taken["node"].append(run(["g++", "-c", "-O2", "-g", "-o", "/dev/null", changed]))
             subprocess.run(["rm", "-rf", folder / "build", folder / "devel"], check=True)
-            times["clean build"].append([_catkin_make(folder)])
+            taken["clean build"].append(_catkin_make(folder))
             # The program is made anew as if its source had changed: the source itself is shared.
             for path in (folder / "build" / "mrp").rglob("publisher_cpp_node.cpp.o"):
                 path.unlink()
-            times["build after one change"].append([_catkin_make(folder)])
-            times["build of nothing"].append([_catkin_make(folder)])
-    reference = times.pop("node")
+            taken["build after one change"].append(_catkin_make(folder))
+            taken["build of nothing"].append(_catkin_make(folder))
+    nodes = taken.pop("node")
+    found = {what: _figure(those, [[one.cpu] for one in nodes]) for what, those in taken.items()}
     seconds = test_seconds(RESULTS)
     if seconds is None:
         print("tests: not measured: run make test before")
     else:
-        times[TESTS] = [[seconds]] * _ROUNDS
-    return {
-        what: Figure(stats.median_of_rounds(rounds), stats.ratio(rounds, reference))
-        for what, rounds in times.items()
-    }
+        # Tests mostly wait.
+        tests = [Taken(seconds, seconds)] * _ROUNDS
+        found[TESTS] = _figure(tests, [[one.seconds] for one in nodes])
+    return found
+
+
+def _figure(taken, reference):
+    return Figure(
+        stats.median_of_rounds([[one.seconds] for one in taken]),
+        stats.ratio([[one.cpu] for one in taken], reference),
+    )
 
 
 def _catkin_make(folder):
     options = ["-DPYTHON_EXECUTABLE=/usr/bin/python3", "-DCMAKE_BUILD_TYPE=RelWithDebInfo"]
-    return _seconds(["catkin_make", "-C", folder, *options])
+    return run(["catkin_make", "-C", folder, *options])
 
 
-def _seconds(command):
-    """Run a command; return how long it took."""
-    begin = time.monotonic()
+def run(command):
+    """Run a command; return what it took, as Taken. If it fails, exit with what it printed."""
+    begin, used = time.monotonic(), resource.getrusage(resource.RUSAGE_CHILDREN)
     done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
     if done.returncode != 0:
         sys.exit(f"error: {' '.join(map(str, command))} failed:\n{done.stdout}")
-    return time.monotonic() - begin
+    now = resource.getrusage(resource.RUSAGE_CHILDREN)
+    cpu = now.ru_utime + now.ru_stime - used.ru_utime - used.ru_stime
+    return Taken(time.monotonic() - begin, cpu)
 
 
 def main():
