@@ -92,6 +92,17 @@ def items(browser):
     )
 
 
+def sideways(browser, table):
+    """Return how far a table must be scrolled to be seen in all its width, in pixels."""
+    return browser.run(
+        """
+        const around = document.querySelector(arguments[0]).parentElement;
+        return around.scrollWidth - around.clientWidth;
+        """,
+        table,
+    )
+
+
 def press_button(browser, name):
     browser.run("document.getElementById(arguments[0]).click()", name)
 
@@ -372,4 +383,5 @@ def test_looks(browser, shown, look):
     checks.assert_none(checks.width(browser, size))
     checks.assert_none(checks.pictures(browser))
     checks.assert_none(checks.contrast(browser))
+    assert sideways(browser, "#senders") == sideways(browser, "#links") == 0
     checks.assert_none(checks.requests(browser, shown.address))

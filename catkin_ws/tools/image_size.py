@@ -41,7 +41,10 @@ def main(action, image):
     megabytes = int(_ask("image", "inspect", "--format", "{{.Size}}", image)) / 1e6
     print(f"{image}: {megabytes:.1f} MB")
     if action == "check":
-        return fault(history.read(HISTORY), image, driver, megabytes)
+        rows = history.read(HISTORY)
+        if not history.last(rows, image=image, driver=driver):
+            print(f"nothing to compare with: {HISTORY.name} has no size with the driver {driver}")
+        return fault(rows, image, driver, megabytes)
     figures = {"image": image, "driver": driver, "megabytes": f"{megabytes:.1f}"}
     history.append(HISTORY, [{"commit": history.commit(), **figures}])
     return None

@@ -154,7 +154,10 @@ def main():
     for what, (seconds, ratio) in found.items():
         print(f"{what}: {ratio.value:.2f} [{ratio.low:.2f}, {ratio.high:.2f}], {seconds:.1f} s")
     if sys.argv[1] == "check":
-        sys.exit("\n".join(regressions(history.read(HISTORY), debian, found)) or 0)
+        rows = history.read(HISTORY)
+        if not history.last(rows, debian=debian):
+            print(f"nothing to compare with: {HISTORY.name} has no times of Debian {debian}")
+        sys.exit("\n".join(regressions(rows, debian, found)) or 0)
     rows = []
     for what, (seconds, ratio) in found.items():
         figures = {name: f"{number:.3f}" for name, number in ratio._asdict().items()}

@@ -5,11 +5,11 @@ import { byId, html, setText, styleOf, svg } from "./dom.js";
 
 // Keeps the rows of a table, sorted by their keys.
 class Table {
-  constructor(id, columns, empty) {
+  constructor(id, empty) {
     this.body = byId(id).tBodies[0];
-    this.columns = columns;
+    this.labels = [...byId(id).tHead.rows[0].cells].map((cell) => cell.textContent);
     this.rows = new Map();
-    this.empty = html("tr", {}, html("td", { colspan: columns }, empty));
+    this.empty = html("tr", {}, html("td", { colspan: this.labels.length }, empty));
     this.body.append(this.empty);
   }
 
@@ -27,7 +27,9 @@ class Table {
   set(key, texts) {
     let row = this.rows.get(key);
     if (!row) {
-      row = html("tr", {}, html("th", { scope: "row" }), ...texts.slice(1).map(() => html("td")));
+      // On a phone, where there is no room for the head, each cell says what it is.
+      const [first, ...others] = this.labels.map((label) => ({ "data-label": label }));
+      row = html("tr", {}, html("th", { scope: "row", ...first }), ...others.map((one) => html("td", one)));
       const after = [...this.rows.keys()].filter((one) => one > key).sort()[0];
       this.body.insertBefore(row, after === undefined ? null : this.rows.get(after));
       this.rows.set(key, row);
@@ -38,8 +40,8 @@ class Table {
   }
 }
 
-const senders = new Table("senders", 8, "No message yet.");
-const links = new Table("links", 7, "No connection yet.");
+const senders = new Table("senders", "No message yet.");
+const links = new Table("links", "No connection yet.");
 
 export const keyOfSender = (one) => `${one.topic}\n${one.from}`;
 export const keyOfLink = (one) => `${one.topic}\n${one.from}\n${one.to}`;
