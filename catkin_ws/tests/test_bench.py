@@ -198,7 +198,7 @@ def test_summary_of_known_samples(measurements):
 
 FACTS = {
     "cores": "2",
-    **dict.fromkeys(("processor", "memory", "system", "kernel", "roscpp", "python"), "some"),
+    **dict.fromkeys(("processor", "gigabytes", "system", "kernel", "roscpp", "python"), "some"),
 }
 
 
@@ -389,24 +389,35 @@ def start(robots, up):
         "cores": 0.01 * robots**2,
         "cpp_megabytes": 2,
         "py_megabytes": 30,
+        # Of a hundred one is lost, and the others take 1 to 99 us.
+        "pair": {
+            "sent": list(range(1, 101)),
+            "received": [number for i in range(1, 100) for number in (i, i + 1000 * i)],
+        },
     }
 
 
 def test_growth_with_the_robots():
     starts = [start(robots, up * robots) for robots in (1, 2, 4) for up in (1, 2, 9)]
     figures = launch_report.medians(starts)
-    assert figures[4] == {"up": 8, "down": 3, "cores": pytest.approx(0.16), "cpp": 2, "py": 30}
+    assert figures[4] == {
+        **{"up": 8, "down": 3, "cores": pytest.approx(0.16), "cpp": 2, "py": 30},
+        **{"p50": 50, "p99": 99},
+    }
     found = launch_report.exponents(figures)
     assert {name: round(estimate.value, 6) for name, estimate in found.items()} == {
         "up": 1,
         "down": 0,
         "cores": 2,
-        "cpp": 0,
-        "py": 0,
+        **dict.fromkeys(("cpp", "py", "p50", "p99"), 0),
     }
-    lines = launch_report.markdown(starts, None)
-    assert "| 4 | 8.00 | 3.00 | 0.16 | 2.00 | 30.00 |" in lines
-    assert "| 4 " + "| noisy " * 5 + "|" in launch_report.markdown(starts, "noisy")
+    lines = launch_report.markdown(starts, 2, 6400, None)
+    assert "| 4 | 8.00 | 3.00 | 0.16 | 2.00 | 30.00 | 50 | 99 | 3 |" in lines
+    # 0.01 of a core for the square of the robots, and 64 MB for each.
+    assert "If that goes on, 14 robots fill the 2 cores, and 100 fill the memory." in lines
+    noisy = launch_report.markdown(starts, 2, 6400, "noisy")
+    assert "| 4 " + "| noisy " * 7 + "| 3 |" in noisy
+    assert not any("goes on" in line for line in noisy)
     assert launch_report.exponents(launch_report.medians(starts[:6])) == {}
 
 
@@ -425,6 +436,8 @@ def test_robots_start_and_stop(master, tmp_path):
     assert found["up"] < found["stop"] < found["end"]
     assert 0 < found["cpp_megabytes"] < found["py_megabytes"]
     assert found["cores"] > 0
+    assert len(found["pair"]["sent"]) == launches.PIECE.count
+    assert found["pair"]["received"][::2] == found["pair"]["sent"]
 
     launches.run([2], 1, results, pytest.fail)
 

@@ -3,13 +3,15 @@
 
 import json
 import pathlib
-import time
 
 from mrp_bench.launched import Launched
 from mrp_bench.processes import cpu, megabytes
+from mrp_bench.programs import Running, Slice
+from mrp_bench.ways import WAYS
 
-# Seconds over which the nodes' processor time is taken while they do their work.
-_WINDOW = 2
+# Beside the robots, whose own messages have no stamp: a node that sends for two seconds, and one
+# that receives. So long the robots' processor time is taken, too.
+PAIR, PIECE = WAYS["cpp_cpp"], Slice(size=8, rate=100, count=200)
 
 
 def _launch_file(robots):
@@ -22,13 +24,13 @@ def _launch_file(robots):
     return f"<launch>{''.join(groups)}</launch>"
 
 
-def measure(robots, folder):
+def measure(robots, results):
     """Start that many robots with roslaunch, and stop them with SIGINT; return what happened.
 
-    Times are in seconds since the start of roslaunch. Raises ProgramError if a node does not come
-    up, or roslaunch does not end.
+    Times are in seconds since the start of roslaunch. pair: what became of PIECE.
+    Raises ProgramError if a node does not come up, or roslaunch does not end.
     """
-    file = folder / f"{robots}_robots.launch"
+    file = results.folder / "launches" / f"{robots}_robots.launch"
     file.write_text(_launch_file(robots))
     with Launched(["roslaunch", str(file)]) as launched:
         launched.wait_until_up(4 * robots)
@@ -36,9 +38,12 @@ def measure(robots, folder):
         memory = {"cpp": [], "py": []}
         for pid in pids:
             memory["py" if _is_python(pid) else "cpp"].append(megabytes(pid))
-        before, moment = cpu(pids), launched.now()
-        time.sleep(_WINDOW)
-        cores = (cpu(pids) - before) / (launched.now() - moment)
+        with Running(PAIR, results.folder / "programs.log") as pair:
+            pair.start()
+            pair.connect()
+            before, moment = cpu(pids), launched.now()
+            measurement = pair.measure(PIECE)
+            cores = (cpu(pids) - before) / (launched.now() - moment)
         stop, _, end = launched.stop({})
     found = launched.console.events
     return {
@@ -50,6 +55,7 @@ def measure(robots, folder):
         "cores": cores,
         "cpp_megabytes": sum(memory["cpp"]) / len(memory["cpp"]),
         "py_megabytes": sum(memory["py"]) / len(memory["py"]),
+        "pair": {"sent": measurement.sent, "received": measurement.received[0]},
     }
 
 
@@ -65,7 +71,7 @@ def run(robots, rounds, results, say):
         for count in robots:
             path = folder / f"{count}_robots_{number}.json"
             line = f"start and stop of {count} robots, round {number + 1} of {rounds}"
-            results.once(path, lambda: measure(count, folder), say, line)
+            results.once(path, lambda: measure(count, results), say, line)
 
 
 def load(results):

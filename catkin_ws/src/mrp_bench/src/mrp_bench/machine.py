@@ -20,7 +20,7 @@ def describe():
     return {
         "processor": model.group(1) if model else platform.machine(),
         "cores": str(len(os.sched_getaffinity(0))),
-        "memory": f"{int(memory.group()) / 1e6:.0f} GB",
+        "gigabytes": f"{int(memory.group()) / 1e6:.0f}",
         "system": re.search(r'^PRETTY_NAME="?([^"\n]*)', release, re.MULTILINE).group(1),
         "kernel": platform.release().split("-")[0],
         "python": platform.python_version(),

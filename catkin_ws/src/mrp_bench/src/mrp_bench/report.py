@@ -48,7 +48,7 @@ def write(results, say):
         [
             "",
             *start_report.markdown(started, missing, noisy),
-            *launch_report.markdown(robots, noisy),
+            *launch_report.markdown(robots, cores, 1e3 * int(facts["gigabytes"]), noisy),
             *fan_report.markdown(spread, cores, noisy),
         ]
     )
@@ -96,7 +96,7 @@ def markdown(rows, facts, probes):
     """Return the text on messages. On too noisy a machine, it says so instead of figures."""
     verdict = noise.verdict(probes)
     lines = [
-        f"Measured on {facts['cores']} cores of {facts['processor']}, {facts['memory']}, "
+        f"Measured on {facts['cores']} cores of {facts['processor']}, {facts['gigabytes']} GB, "
         f"{facts['system']}, Linux {facts['kernel']}, roscpp {facts['roscpp']}, "
         f"Python {facts['python']}.",
         "",
