@@ -216,13 +216,14 @@ docker-down: need-docker  ## take away what docker-up or docker-view leaves
 docker-test: docker-suite docker-containers  ## run every test in a container, and test the containers
 
 # The suite of `make test`, in a container without a network. Its name is one that it can resolve,
-# which roswtf asks for.
+# which roswtf asks for. Some tests make processes without end: the engine, too, sees to it that they
+# stay few.
 .PHONY: docker-suite
 docker-suite: need-docker
 	$(IMAGE_OF) --target test --tag mrp-test:$(DEBIAN) -
 	@rm -rf $(DOCKER_RESULTS)/suite; mkdir -p $(DOCKER_RESULTS)/suite
-	docker run --rm --init --network none --hostname localhost --user "$$(id -u):$$(id -g)" \
-	  --volume $(DOCKER_RESULTS)/suite:/results mrp-test:$(DEBIAN)
+	docker run --rm --init --network none --hostname localhost --pids-limit 4000 \
+	  --user "$$(id -u):$$(id -g)" --volume $(DOCKER_RESULTS)/suite:/results mrp-test:$(DEBIAN)
 
 # What the checker needs is in the image of the tests. The package is read alone; nothing that it does
 # reaches this machine, which the engine's own limits see to, too.

@@ -249,13 +249,17 @@ def _threads_of_machine():
 
 
 def _watch_first():
-    """Be scheduled before what is watched, if the system lets us: as root, the number of processes
-    is limited only by looking at it, and those that fork without end leave little time to look."""
+    """Be scheduled before what is watched; return whether the system lets us.
+
+    As root, the number of processes is limited only by looking at it, and those that fork without
+    end leave little time to look.
+    """
     try:
         policy = os.SCHED_FIFO | os.SCHED_RESET_ON_FORK
         os.sched_setscheduler(0, policy, os.sched_param(1))
     except OSError:
-        pass
+        return False
+    return True
 
 
 def _disk_used(folder):
@@ -279,8 +283,8 @@ def _disk_used(folder):
 # --- The command
 
 
-def _start(task, namespaces):
-    """Start the command; return its process id."""
+def _start(task, namespaces, is_first):
+    """Start the command; return its process id. is_first: what _watch_first() returned."""
     limits = task["limits"]
     pid = os.fork()
     if pid:
@@ -300,6 +304,8 @@ def _start(task, namespaces):
             # A namespace counts its own threads; without one, all of the user's count.
             others = 0 if namespaces else _threads_of_machine()
             bounds[resource.RLIMIT_NPROC] = limits["processes"] + others
+        elif not is_first:
+            os.nice(19)  # as root in a container: the next best thing
         for kind, bound in bounds.items():
             hard = resource.getrlimit(kind)[1]
             bound = bound if hard == resource.RLIM_INFINITY else min(bound, hard)
@@ -325,10 +331,11 @@ def _start(task, namespaces):
 
 def _watch(task, namespaces):
     """Run the command to its end, or to the first limit that it breaks; return the report."""
+    is_first = _watch_first()
     limits = task["limits"]
     codes, began = {}, time.monotonic()
     threads_before = _threads_of_machine()
-    main = _start(task, namespaces)
+    main = _start(task, namespaces, is_first)
     # What is written from here on is the command's alone.
     null = os.open("/dev/null", os.O_WRONLY)
     os.dup2(null, 1)
@@ -391,7 +398,6 @@ def main():
             return 0 if status == 0 else 1
         namespaces = True
     _call("prctl", PR_SET_CHILD_SUBREAPER, 1, 0, 0, 0)
-    _watch_first()
     text = json.dumps(_watch(task, namespaces))
     os.write(report, text.encode() + b"\n")
     os._exit(0)
