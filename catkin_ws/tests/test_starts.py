@@ -260,6 +260,10 @@ def test_container_starts_and_stops(fake_docker, tmp_path):
     calls = fake_docker.with_suffix(".calls").read_text().splitlines()
     assert calls[-1] == "run --rm --network none mrp:bookworm"
 
+    # A run that is resumed where there is no engine any more has it all the same.
+    starts.run([], 1, results, pytest.fail, {container.IMAGE: "not measured"})
+    assert starts.load(results) == ([one], {})
+
 
 def test_container_that_cannot_be_measured(fake_docker, monkeypatch):
     fake_docker.with_suffix(".image").write_text("1")

@@ -97,7 +97,11 @@ def run(variants, rounds, results, say, missing=None, cold_too=True):
     """
     folder = results.folder / "starts"
     folder.mkdir(exist_ok=True)
-    (folder / "missing.json").write_text(json.dumps(missing or {}))
+    # What a run that is resumed has measured is there.
+    missing = {
+        name: why for name, why in (missing or {}).items() if not any(folder.glob(f"{name}_*"))
+    }
+    (folder / "missing.json").write_text(json.dumps(missing))
     for number in range(rounds):
         for variant in variants:
             # An image's files are the engine's. After a cold start they are warm.
