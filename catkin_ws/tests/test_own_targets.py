@@ -19,7 +19,7 @@ def rows(*values):
     return [dict(zip(names, row)) for row in values]
 
 
-def test_times_grow_when_intervals_lie_apart_by_more_than_a_tenth():
+def test_times_grow_when_intervals_lie_apart_and_it_is_by_half():
     before = rows(
         ("old", "12", "clean build", "5.0", "4.9", "5.1", "1"),
         ("last", "12", "clean build", "10.0", "9.5", "10.5", "1"),
@@ -30,14 +30,14 @@ def test_times_grow_when_intervals_lie_apart_by_more_than_a_tenth():
         figure = own_times.Figure(1, stats.Estimate(*numbers))
         return own_times.regressions(before, "12", {what: figure})
 
-    assert found(12, 11, 13) == [
+    assert found(16, 14, 17) == [
         "clean build: expected about 10.00 times as long as to compile one node, found "
-        "12.00 [11.00, 13.00], 20% more than at last"
+        "16.00 [14.00, 17.00], 60% more than at last"
     ]
-    assert found(12, 10.4, 14) == [], "within the noise"
-    assert found(10.9, 10.8, 11) == [], "less than a tenth"
+    assert found(16, 10.4, 20) == [], "within the noise"
+    assert found(14.9, 14.8, 15) == [], "less than half"
     assert found(5, 4, 6) == [], "faster"
-    assert found(12, 11, 13, what="something new") == []
+    assert found(16, 14, 17, what="something new") == []
 
 
 def test_tests_take_longer_when_ratio_and_seconds_have_grown():
@@ -47,10 +47,10 @@ def test_tests_take_longer_when_ratio_and_seconds_have_grown():
         figure = own_times.Figure(seconds, stats.Estimate(value, value - 5, value + 5))
         return len(own_times.regressions(before, "12", {"tests": figure}))
 
-    assert found(400, 150) == 1
-    assert found(290, 150) == 0, "a faster machine, that waits as long"
-    assert found(400, 100) == 0, "a slower machine"
-    assert found(360, 120) == 0, "less than a quarter"
+    assert found(480, 160) == 1
+    assert found(290, 160) == 0, "a faster machine, that waits as long"
+    assert found(480, 100) == 0, "a slower machine"
+    assert found(440, 140) == 0, "less than half"
 
 
 def test_seconds_of_the_last_make_test(tmp_path):

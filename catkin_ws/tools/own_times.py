@@ -8,11 +8,11 @@ Another machine is faster or slower: so each time is a ratio to that of compilin
 processor, measured in turns with it. Of builds it is the time of the processors, which does not
 depend on how many there are, and on what else they do. `record` appends the ratios to
 own_times.csv. `check` compares them with the last ones there that are of the same Debian, and fails
-if one has grown by more than the noise, and by more than a tenth.
+if one has grown by more than the noise, and by more than half.
 
 The time of the tests is that of the last `make test`. Half of it is waiting, which is as long on
 any machine: so on a faster one the ratio grows, and on a slower one the seconds do. Only where both
-have grown, by a quarter, it is the tests that take longer.
+have grown so, it is the tests that take longer.
 """
 
 import os
@@ -36,8 +36,9 @@ from mrp_bench import stats  # noqa: E402
 
 TESTS = "tests"
 
-# Growth up to that is none: a new file is not a regression. The tests are measured once only.
-_TOLERATED, _TOLERATED_TESTS = 1.1, 1.25
+# Growth up to that is none. Of one commit on one machine, idle, just set up or busy, the ratios of
+# builds differed by a quarter, far more than the rounds of a run; other machines may differ more.
+_TOLERATED = 1.5
 
 _ROUNDS = 3
 _NODE = WORKSPACE / "src" / "mrp" / "src" / "publisher_cpp_node.cpp"
@@ -69,10 +70,9 @@ def regressions(rows, debian, found):
         if not before:
             continue
         value, high = float(before["value"]), float(before["high"])
-        tolerated = _TOLERATED_TESTS if what == TESTS else _TOLERATED
-        if now.low <= high or now.value <= tolerated * value:
+        if now.low <= high or now.value <= _TOLERATED * value:
             continue
-        if what == TESTS and seconds <= tolerated * float(before["seconds"]):
+        if what == TESTS and seconds <= _TOLERATED * float(before["seconds"]):
             continue
         lines.append(
             f"{what}: expected about {value:.2f} times as long as to compile one node, found "
