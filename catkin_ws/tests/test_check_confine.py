@@ -345,7 +345,7 @@ print("second")
 def test_the_caller_is_killed(tmp_path, namespaces):
     """Nothing outlives the checker itself, however that ends."""
     token = f"attack-{uuid.uuid4().hex}"
-    program = f"import os, time; os.fork(); os.setsid(); print(); time.sleep({FOR_EVER})"
+    program = f"import os, time; os.fork() or os.setsid(); print(); time.sleep({FOR_EVER})"
     caller = f"""
 import sys
 sys.path[:0] = {sys.path!r}
