@@ -1,9 +1,9 @@
 #!/bin/bash
 # SPDX-License-Identifier: BSD-3-Clause
-# Runs make test, and leaves its JUnit files in /results, if that is mounted. (Their own folder
+# Runs make test-all, and leaves its JUnit files in /results, if that is mounted. (Their own folder
 # cannot be mounted: make test deletes it first.)
 status=0
-make test || status=$?
+make test-all || status=$?
 if [ -d /results ]; then
   cp -r catkin_ws/build/test_results/. /results || status=1
 fi

@@ -9,7 +9,8 @@ import pytest
 
 WORKSPACE = pathlib.Path(__file__).resolve().parent.parent
 LISTS = {path.stem: path for path in (WORKSPACE / "apt").glob("*.txt")}
-BUILD, RUN = ("build",), ("runtime", "tools", "check", "view", "bench")
+BUILD = ("run", "build")
+RUN = ("run", "tools", "check", "view", "bench")
 TEST = (*BUILD, *RUN, "test")
 
 
@@ -51,18 +52,30 @@ def test_lists_have_what_building_and_testing_need(dependency_type, stages):
 
 
 def test_lists_have_what_running_needs():
-    # rosdep names the -dev packages for running, too. What of them runs is in libraries, which
-    # runtime.txt names; the container that has only these shows that they are enough. Of
-    # ros-message-runtime nothing runs: it is for CMake.
+    # rosdep names the -dev packages for running, too: what of them runs is in libraries that they
+    # depend on. Of ros-message-runtime nothing runs: it is for CMake.
     needed = {name for name in resolved("exec") if not name.endswith("-dev")}
     needed.discard("ros-message-runtime")
     assert needed - packages(*RUN) == set()
+
+
+def test_the_tutorial_needs_what_make_run_installs():
+    src = WORKSPACE / "src" / "mrp"
+    keys = with_rosdep("rosdep", "keys", "--from-paths", str(src), "-i", *"-t build -t exec".split())
+    lines = with_rosdep("rosdep", "resolve", *keys.split()).splitlines()
+    needed = {name for line in lines if not line.startswith("#") for name in line.split()}
+    assert needed - packages("run") == set()
 
 
 @pytest.mark.parametrize("stage", sorted(LISTS))
 def test_list_is_sorted_and_has_nothing_twice(stage):
     assert entries(stage) == sorted(entries(stage))
     assert len(entries(stage)) == len({tuple(names) for names in entries(stage)})
+
+
+@pytest.mark.parametrize("stage", sorted(LISTS))
+def test_list_says_first_what_it_is_for(stage):
+    assert LISTS[stage].read_text().startswith("# to ")
 
 
 def test_installer_has_nothing_to_do_where_the_tests_run(tmp_path):
@@ -80,6 +93,40 @@ def test_installer_takes_any_alternative(tmp_path):
     path.write_text("no-such-package | bash  # bash is everywhere\n")
     done = install([str(path)], tmp_path)
     assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
+
+
+def test_installer_says_what_it_installs_what_for_and_how_much(tmp_path):
+    """apt-get stands in: it says how much it would be, then that it fetches and installs."""
+    script = """#!/bin/sh
+case "$*" in
+  *--assume-no*) echo '0 upgraded, 3 newly installed, 0 to remove'
+    echo 'Need to get 1,234 kB/5 MB of archives.'
+    echo 'After this operation, 6 MB of additional disk space will be used.'; exit 1 ;;
+  *install*) echo dlstatus:1:50:one; echo pmstatus:two:100:done; echo 'Setting up two' ;;
+esac
+"""
+    (tmp_path / "apt-get").write_text(script)
+    (tmp_path / "apt-get").chmod(0o755)
+    (tmp_path / "apt-cache").symlink_to("/bin/true")
+    path = tmp_path / "list.txt"
+    path.write_text("# to see it\nno-such-package\nbash\n")
+    done = install([str(path)], tmp_path)
+    assert (done.returncode, done.stderr) == (0, "")
+    said = "Installing 3 Debian packages to see it: 1,234 kB to fetch, 6 MB on disk\n"
+    assert done.stdout == said
+
+
+def test_installer_shows_why_apt_get_failed(tmp_path):
+    script = "#!/bin/sh\necho 'E: no space left'\ncase \"$*\" in *install*) exit 1 ;; esac\n"
+    (tmp_path / "apt-get").write_text(script)
+    (tmp_path / "apt-get").chmod(0o755)
+    (tmp_path / "apt-cache").symlink_to("/bin/true")
+    path = tmp_path / "list.txt"
+    path.write_text("no-such-package\n")
+    done = install([str(path)], tmp_path)
+    assert done.returncode == 1
+    assert "E: no space left" in done.stderr
+    assert "error: apt-get could not install the packages" in done.stderr
 
 
 def test_installer_without_apt_points_to_the_container(tmp_path):

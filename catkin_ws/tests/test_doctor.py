@@ -36,7 +36,7 @@ sys.exit(doctor.examine(doctor.this_machine()._replace(**fields)))
 
 # What the doctor says where all is well.
 WELL = {
-    "packages": "all 3 of build.txt and runtime.txt are installed",
+    "packages": "all 3 of run.txt and tools.txt are installed",
     "python3": "/usr/bin/python3 imports catkin_pkg and rospy",
     "installation": "ROS comes from Debian",
     "host name": "not in use, because ROS_HOSTNAME is set",
@@ -93,10 +93,8 @@ class Patient:
     def __init__(self, folder, port):
         self.folder = folder
         self.workspace = folder / "catkin_ws"
-        self.write(
-            "apt/build.txt", "# Comment.\nlibc6  # on every Debian\n\nbash|no-such-package\n"
-        )
-        self.write("apt/runtime.txt", "libc6\nno-such-package | dpkg # any one of them\n")
+        self.write("apt/run.txt", "# Comment.\nlibc6  # on every Debian\n\nbash|no-such-package\n")
+        self.write("apt/tools.txt", "libc6\nno-such-package | dpkg # any one of them\n")
         self.write("src/mrp/package.xml", "<package><name>mrp</name></package>")
         self.write("src/mrp/src/node.py", "#!/usr/bin/env python3\n", mode=0o755)
         self.write("src/mrp/test/module.py", '"""No script."""\n')
@@ -173,9 +171,9 @@ def test_every_failure_is_counted(patient):
 
 
 def test_package_missing(patient):
-    patient.write("apt/build.txt", "no-such-package\nbash\n")
-    patient.write("apt/runtime.txt", "no-such-one | no-such-other # neither\n")
-    expected = "expected all of build.txt and runtime.txt; found "
+    patient.write("apt/run.txt", "no-such-package\nbash\n")
+    patient.write("apt/tools.txt", "no-such-one | no-such-other # neither\n")
+    expected = "expected all of run.txt and tools.txt; found "
     found = "no no-such-one | no-such-other, no no-such-package"
     patient.examine(debian_version="13.1").assert_only_failure(
         "packages", expected + found, "make deps", skipped=NEEDING_PACKAGES
@@ -186,8 +184,8 @@ def test_package_missing(patient):
     "facts", [{"debian_version": "bookworm/sid"}, {"dpkg_query": "/no/dpkg-query"}]
 )
 def test_system_without_ros(patient, facts):
-    patient.write("apt/build.txt", "no-such-package\n")
-    patient.write("apt/runtime.txt", "no-such-other-package\n")
+    patient.write("apt/run.txt", "no-such-package\n")
+    patient.write("apt/tools.txt", "no-such-other-package\n")
     patient.examine(**facts).assert_only_failure(
         "packages",
         "expected Debian 12 or 13, which have ROS packages; "
@@ -198,7 +196,7 @@ def test_system_without_ros(patient, facts):
 
 
 def test_list_of_packages_missing(patient):
-    path = patient.workspace / "apt" / "runtime.txt"
+    path = patient.workspace / "apt" / "tools.txt"
     path.unlink()
     patient.examine().assert_only_failure(
         "packages",
@@ -209,7 +207,7 @@ def test_list_of_packages_missing(patient):
 
 
 def test_packages_do_not_matter_with_noetic(patient):
-    patient.write("apt/build.txt", "no-such-package\n")
+    patient.write("apt/run.txt", "no-such-package\n")
     report = patient.examine(**patient.noetic())
     assert report.of("--") == {"packages": f"skipped: ROS comes from {patient.folder}/ros/noetic"}
     assert report.checks["installation"].text == f"ROS comes from {patient.folder}/ros/noetic"
@@ -643,7 +641,7 @@ def test_half_sourced(patient, lost, found):
 
 
 def test_colours_on_a_terminal(patient):
-    patient.write("apt/build.txt", "no-such-package\n")
+    patient.write("apt/run.txt", "no-such-package\n")
     ours, theirs = pty.openpty()
     with os.fdopen(ours, "rb", buffering=0) as terminal:
         try:

@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """make own-times and make docker-size: when they say that something has grown."""
 
+import json
 import pathlib
 import sys
-
-from mrp_bench import stats
 
 WORKSPACE = pathlib.Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(WORKSPACE / "tools"))
@@ -12,67 +11,80 @@ sys.path.insert(0, str(WORKSPACE / "tools"))
 import history  # noqa: E402
 import image_size  # noqa: E402
 import own_times  # noqa: E402
+import timed  # noqa: E402
 
 
-def rows(*values):
-    names = ("commit", "debian", "what", "value", "low", "high", "seconds")
-    return [dict(zip(names, row)) for row in values]
+LAST = {
+    "commit": "last",
+    "debian": "12",
+    "stage": "build",
+    "node": "2.0",
+    "seconds": "30",
+    "processor": "50",
+    "tests": "0",
+}
 
 
-def test_times_grow_when_intervals_lie_apart_and_it_is_by_half():
-    before = rows(
-        ("old", "12", "clean build", "5.0", "4.9", "5.1", "1"),
-        ("last", "12", "clean build", "10.0", "9.5", "10.5", "1"),
-        ("other", "13", "clean build", "1.0", "0.9", "1.1", "1"),
-    )
+def found(**figures):
+    """Return what is said of a stage that took that now, where it is in the history as LAST."""
+    return own_times.regressions([LAST], [{**LAST, "commit": "now", **figures}])
 
-    def found(*numbers, what="clean build"):
-        figure = own_times.Figure(1, stats.Estimate(*numbers))
-        return own_times.regressions(before, "12", {what: figure})
 
-    assert found(16, 14, 17) == [
-        "clean build: expected about 10.00 times as long as to compile one node, found "
-        "16.00 [14.00, 17.00], 60% more than at last"
+def test_work_grows_by_half_in_times_of_compiling_a_node():
+    assert found(processor="76") == [
+        "build: expected about 30 s and 50 s of processor time, as at last where a node took 2.0 s "
+        "to compile; found 30 s and 76 s, a node 2.0 s"
     ]
-    assert found(16, 10.4, 20) == [], "within the noise"
-    assert found(14.9, 14.8, 15) == [], "less than half"
-    assert found(5, 4, 6) == [], "faster"
-    assert found(16, 14, 17, what="something new") == []
+    assert found(processor="74") == []
+    assert found(processor="76", node="2.1") == [], "a slower machine"
+    assert found(processor="60", node="1.5") != [], "a faster machine"
+    assert found(processor="500", stage="something new") == []
 
 
-def test_tests_take_longer_when_ratio_and_seconds_have_grown():
-    before = rows(("last", "12", "tests", "100", "95", "105", "300"))
-
-    def found(seconds, value):
-        figure = own_times.Figure(seconds, stats.Estimate(value, value - 5, value + 5))
-        return len(own_times.regressions(before, "12", {"tests": figure}))
-
-    assert found(480, 160) == 1
-    assert found(290, 160) == 0, "a faster machine, that waits as long"
-    assert found(480, 100) == 0, "a slower machine"
-    assert found(440, 140) == 0, "less than half"
+def test_waiting_grows_by_half_in_seconds_and_in_times_of_compiling_a_node():
+    assert found(seconds="46") != []
+    assert found(seconds="44") == []
+    assert found(seconds="30", processor="30", node="1.2") == [], "a faster machine waits as long"
+    assert found(seconds="60", processor="100", node="4.0") == [], "a slower machine"
 
 
-def test_seconds_of_the_last_make_test(tmp_path):
-    assert own_times.test_seconds(tmp_path) is None
+def test_tests_become_fewer():
+    before = [{**LAST, "stage": "number of tests", "tests": "9"}]
+
+    def said(tests):
+        return own_times.regressions(before, [{**before[0], "tests": tests}])
+
+    assert said(8) == ["number of tests: expected 9 or more, found 8"]
+    assert said(9) == said(10) == []
+
+
+def test_cases_are_counted_once(tmp_path):
     suites = {
-        "workspace.xml": '<testsuites><testsuite time="10.5"/></testsuites>',
-        "mrp_labs/rosunit-some.xml": '<testsuite time="2"/>',
-        "mrp_labs/rostest-some.xml": '<testsuite time="2"/>',
-        "browser.xml": '<testsuite time="100"/>',
-        "bookworm/containers.xml": '<testsuite time="100"/>',
+        "pytest_quick.xml": 2,
+        "pytest_slow.xml": 3,
+        "mrp_labs/rosunit-some.xml": 4,
+        "mrp_labs/rostest-some.xml": 1,
+        "browser.xml": 1,
     }
-    for name, text in suites.items():
+    for name, cases in suites.items():
         (tmp_path / name).parent.mkdir(exist_ok=True)
-        (tmp_path / name).write_text(text)
-    assert own_times.test_seconds(tmp_path) == 12.5
+        (tmp_path / name).write_text(f"<testsuite>{'<testcase/>' * cases}</testsuite>")
+    assert own_times.count_tests(tmp_path) == 2 + 3 + 4
 
 
-def test_a_build_takes_processors_and_waiting_takes_none():
+def test_processor_time_is_that_of_all_descendants():
     compute = "/usr/bin/python3 -c 'sum(range(20_000_000))'"
-    assert own_times.run(["sh", "-c", f"{compute} & {compute} & wait"]).cpu > 0.2
-    asleep = own_times.run(["sleep", "0.5"])
-    assert asleep.seconds >= 0.5 and asleep.cpu < 0.1
+    code, _, processor = timed.run("sh", "-c", f"{compute} & {compute} & wait; exit 3")
+    assert code == 3
+    assert processor > 10 * timed.run("true")[2]
+
+
+def test_a_stage_is_kept_beside_the_others(tmp_path, monkeypatch):
+    monkeypatch.setattr(timed, "TIMES", tmp_path / "build" / "times.json")
+    assert timed.main("build", "true") == 0
+    assert timed.main("tests", "sh", "-c", "kill -INT $$") == 130
+    assert timed.main("build", "false") == 1
+    assert sorted(json.loads(timed.TIMES.read_text())) == ["build", "tests"]
 
 
 def test_image_grows_by_more_than_a_twentieth():

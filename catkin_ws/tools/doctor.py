@@ -43,16 +43,16 @@ def check_packages(machine):
     if noetic(machine):
         return note(f"skipped: ROS comes from {noetic(machine)}")
     lines = set()
-    for name in ("build.txt", "runtime.txt"):
+    for name in ("run.txt", "tools.txt"):
         with open(os.path.join(machine.workspace, "apt", name), errors="replace") as file:
             lines.update(line.split("#")[0].strip() for line in file)
     lines = sorted(lines - {""})
     there = installed(machine, re.findall(r"[^\s|]+", " ".join(lines)))
     missing = [line for line in lines if there.isdisjoint(re.split(r"[\s|]+", line))]
     if not missing:
-        return ok(f"all {len(lines)} of build.txt and runtime.txt are installed")
+        return ok(f"all {len(lines)} of run.txt and tools.txt are installed")
     if machine.debian_version.split(".")[0] in ("12", "13") and os.path.exists(machine.dpkg_query):
-        return fail("all of build.txt and runtime.txt", "no " + ", no ".join(missing), "make deps")
+        return fail("all of run.txt and tools.txt", "no " + ", no ".join(missing), "make deps")
     found = f"another system, without {len(missing)} of the {len(lines)} packages"
     return fail("Debian 12 or 13, which have ROS packages", found, "make docker-run")
 

@@ -1,8 +1,9 @@
 #!/bin/bash
 # SPDX-License-Identifier: BSD-3-Clause
 # Usage: install_packages.sh LIST...
-# Installs the Debian packages of the lists that are not installed yet. A line of a list is a
-# package, or alternatives: "a | b" is satisfied by any one of them. Does nothing if all are there.
+# Installs the Debian packages of the lists that are not installed yet. The first line of a list is a
+# comment that says what they are for. Each other line is a package, or alternatives: "a | b" is
+# satisfied by either. Does nothing if all are there.
 set -euo pipefail
 
 container="Run it in the container instead: make docker-run"
@@ -19,50 +20,85 @@ if ! command -v apt-get > /dev/null || ! command -v dpkg-query > /dev/null; then
   fail "this system has no apt-get; ROS 1 comes from Debian's packages. $container"
 fi
 
-installed() {
-  dpkg-query --show --showformat '${db:Status-Status}' "$1" 2> /dev/null | grep -qx installed
-}
+declare -A installed
+while read -r status package; do
+  [ "$status" != installed ] || installed[$package]=yes
+done < <(dpkg-query --show --showformat '${db:Status-Status} ${Package}\n')
 
-# Prints the lines of which no alternative is installed.
-missing() {
-  local line package
-  sed -e 's/#.*//' -e 's/ *| */ /g' -e 's/ *$//' "$@" | while read -r line; do
-    for package in $line; do
-      ! installed "$package" || continue 2
+# The lines of which no alternative is installed, and what the lists that have them are for.
+lines=() purposes=
+for list in "$@"; do
+  purpose=
+  while read -r line; do
+    [[ $line != "# "* ]] || { purpose=${purpose:-${line#"# "}}; continue; }
+    line=${line%%#*} alternatives=()
+    IFS='| ' read -r -a alternatives <<< "$line"
+    for package in "${alternatives[@]}"; do
+      [ -z "${installed[$package]:-}" ] || continue 2
     done
-    [ -z "$line" ] || echo "$line"
-  done
-}
+    [ ${#alternatives[@]} != 0 ] || continue
+    lines+=("${alternatives[*]}")
+    [ -z "$purpose" ] || [[ $purposes == *"$purpose"* ]] || purposes+="${purposes:+, }$purpose"
+  done < "$list"
+done
+[ ${#lines[@]} != 0 ] || exit 0
 
-lines=$(missing "$@" | sort -u)
-[ -n "$lines" ] || exit 0
-
-listed=${lines// / or }
-listed=${listed//$'\n'/, }
 as_root=()
 if [ "$(id -u)" != 0 ]; then
   command -v sudo > /dev/null ||
-    fail "installing packages needs root or sudo; missing: $listed"
+    fail "installing packages needs root or sudo; missing: $(IFS=,; echo "${lines[*]// / or }")"
   as_root=(sudo)
 fi
 
-echo "Installing Debian's packages: $listed"
-"${as_root[@]}" apt-get update ||
-  echo "warning: apt-get update failed; going on with the package lists as they are" >&2
+log=$(mktemp)
+trap 'rm -f "$log"' EXIT
+apt_get() {
+  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive LC_ALL=C apt-get "$@"
+}
+
+"${as_root[@]}" true  # sudo asks for the password here, where nothing hides its question
+[ ! -t 1 ] || echo -n "Fetching the lists of Debian's packages"
+apt_get update -qq > "$log" 2>&1 || {
+  echo "warning: apt-get update failed; going on with the package lists as they are:" >&2
+  cat "$log" >&2
+}
+[ ! -t 1 ] || printf '\r\e[K'
 
 packages=()
-while read -r line; do
-  found=
+for line in "${lines[@]}"; do
   for package in $line; do
     if apt-cache show "$package" > /dev/null 2>&1; then
       packages+=("$package")
-      found=yes
-      break
+      continue 2
     fi
   done
-  [ -n "$found" ] || fail "no package archive of this system has '${line// / or }'. $container"
-done <<< "$lines"
+  fail "no package archive of this system has '${line// / or }'. $container"
+done
 
-"${as_root[@]}" env DEBIAN_FRONTEND=noninteractive \
-  apt-get install -y --no-install-recommends "${packages[@]}" ||
+install=(install --no-install-recommends "${packages[@]}")
+apt_get --assume-no "${install[@]}" > "$log" 2>&1 || true  # it only says what it would do
+count=$(sed -n 's/.*, \([0-9]*\) newly installed.*/\1/p' "$log")
+fetch=$(sed -n 's/^Need to get \([^/]*B\)[/ ].*/\1/p' "$log")
+disk=$(sed -n 's/^After this operation, \(.*B\) of .*/\1/p' "$log")
+echo "Installing ${count:-the} Debian packages${purposes:+ $purposes}:" \
+  "${fetch:-nothing} to fetch, ${disk:-nothing} on disk"
+
+# What apt-get says of its progress becomes one line that moves, on a terminal; the rest is kept for
+# an error.
+show() {
+  local line what of percent
+  while IFS= read -r line; do
+    case $line in
+      dlstatus:*) what=fetched ;;
+      pmstatus:*) what=installed ;;
+      *) echo "$line" >> "$log" && continue ;;
+    esac
+    IFS=: read -r _ of percent _ <<< "$line"
+    [ ! -t 1 ] || printf '\r\e[K  %3.0f %% %s: %s' "$percent" "$what" "${of:0:40}"
+  done
+  [ ! -t 1 ] || printf '\r\e[K'
+}
+apt_get -y -o APT::Status-Fd=1 -o Dpkg::Use-Pty=0 "${install[@]}" 2>&1 < /dev/null | show || {
+  tail -n 30 "$log" >&2
   fail "apt-get could not install the packages; its own message is above"
+}
