@@ -52,8 +52,11 @@ fi
 
 log=$(mktemp)
 trap 'rm -f "$log"' EXIT
+# apt-get keeps from its children the descriptor on which it says its progress, and sudo keeps all but
+# the first three from apt-get: so it has one more, made here.
 apt_get() {
-  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive LC_ALL=C apt-get "$@"
+  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive LC_ALL=C \
+    bash -c 'exec apt-get "$@" 3>&1' apt-get "$@"
 }
 
 "${as_root[@]}" true  # sudo asks for the password here, where nothing hides its question
@@ -98,7 +101,7 @@ show() {
   done
   [ ! -t 1 ] || printf '\r\e[K'
 }
-apt_get -y -o APT::Status-Fd=1 -o Dpkg::Use-Pty=0 "${install[@]}" 2>&1 < /dev/null | show || {
+apt_get -y -o APT::Status-Fd=3 -o Dpkg::Use-Pty=0 "${install[@]}" 2>&1 < /dev/null | show || {
   tail -n 30 "$log" >&2
   fail "apt-get could not install the packages; its own message is above"
 }
