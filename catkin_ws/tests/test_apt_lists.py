@@ -99,9 +99,9 @@ def test_installer_says_what_it_installs_what_for_and_how_much(tmp_path):
     """apt-get stands in: it says how much it would be, then that it fetches and installs."""
     script = """#!/bin/sh
 case "$*" in
-  *--assume-no*) echo '0 upgraded, 3 newly installed, 0 to remove'
+  *--print-uris*) echo '0 upgraded, 3 newly installed, 0 to remove'
     echo 'Need to get 1,234 kB/5 MB of archives.'
-    echo 'After this operation, 6 MB of additional disk space will be used.'; exit 1 ;;
+    echo 'After this operation, 6 MB of additional disk space will be used.' ;;
   *install*) echo dlstatus:1:50:one; echo pmstatus:two:100:done; echo 'Setting up two' ;;
 esac
 """
@@ -112,7 +112,7 @@ esac
     path.write_text("# to see it\nno-such-package\nbash\n")
     done = install([str(path)], tmp_path)
     assert (done.returncode, done.stderr) == (0, "")
-    said = "Installing 3 Debian packages to see it: 1,234 kB to fetch, 6 MB on disk\n"
+    said = "Installing Debian packages to see it: 3 of them, 1,234 kB to fetch, 6 MB on disk\n"
     assert done.stdout == said
 
 

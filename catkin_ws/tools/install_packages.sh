@@ -79,11 +79,11 @@ for line in "${lines[@]}"; do
 done
 
 install=(install --no-install-recommends "${packages[@]}")
-apt_get --assume-no "${install[@]}" > "$log" 2>&1 || true  # it only says what it would do
+apt_get -y --print-uris "${install[@]}" > "$log" 2>&1 || true  # it only says what it would do
 count=$(sed -n 's/.*, \([0-9]*\) newly installed.*/\1/p' "$log")
 fetch=$(sed -n 's/^Need to get \([^/]*B\)[/ ].*/\1/p' "$log")
 disk=$(sed -n 's/^After this operation, \(.*B\) of .*/\1/p' "$log")
-echo "Installing ${count:-the} Debian packages${purposes:+ $purposes}:" \
+echo "Installing Debian packages${purposes:+ $purposes}: ${count:-some} of them," \
   "${fetch:-nothing} to fetch, ${disk:-nothing} on disk"
 
 # What apt-get says of its progress becomes one line that moves, on a terminal; the rest is kept for
