@@ -14,6 +14,8 @@ import pytest
 from mrp_check import check, classroom, package, spec
 from waiting import wait_until
 
+pytestmark = pytest.mark.quick
+
 MANIFEST = """<package format="3"><name>{name}</name><version>0.1.0</version>
 <description>d</description><maintainer email="a@mrp.example">A</maintainer><license>BSD</license>
 <buildtool_depend>catkin</buildtool_depend></package>
@@ -316,6 +318,7 @@ def command(*arguments):
     )
 
 
+@pytest.mark.slow
 def test_one_that_hangs(tmp_path):
     """The real command: one submission's CMake never ends, another is an empty folder."""
     hand_in(tmp_path / "class", "anna", HANGING)
@@ -336,6 +339,7 @@ def test_one_that_hangs(tmp_path):
     assert not sleepers()
 
 
+@pytest.mark.slow
 def test_ctrl_c(tmp_path):
     """What runs at that moment is ended, and nothing is left of it."""
     hand_in(tmp_path / "class", "anna", HANGING)

@@ -9,6 +9,8 @@ from check_rules import PUB_SUB, told
 from mrp_check.stages import launching
 from mrp_check.stages.files import launch_rules
 
+pytestmark = pytest.mark.quick
+
 CMAKE = check_rules.CMAKE.replace(
     "catkin_install_python(PROGRAMS src/odd.py DESTINATION bin)\n",
     "add_executable(publisher_cpp_node src/a.cpp)\n"

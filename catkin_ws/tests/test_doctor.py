@@ -20,6 +20,8 @@ import pytest
 from process import Process
 from waiting import DEADLINE
 
+pytestmark = pytest.mark.slow
+
 DOCTOR = pathlib.Path(__file__).resolve().parent.parent / "tools" / "doctor.py"
 PYTHON = "/usr/bin/python3"
 
@@ -154,6 +156,7 @@ def patient(tmp_path):
         yield Patient(tmp_path, reserved.getsockname()[1])
 
 
+@pytest.mark.quick
 def test_all_well(patient):
     report = patient.examine()
     well = {title: text.format(port=patient.port) for title, text in WELL.items()}
@@ -161,6 +164,7 @@ def test_all_well(patient):
     assert (report.summary, report.code) == ("10 checks, 0 failed", 0)
 
 
+@pytest.mark.quick
 def test_every_failure_is_counted(patient):
     patient.write("src/mrp/src/node.py", "#!/usr/bin/env python3\n")
     patient.env.update(ROS_HOSTNAME="192.0.2.1", ROS_MASTER_URI="http://localhost")
@@ -172,6 +176,7 @@ def test_every_failure_is_counted(patient):
 # packages
 
 
+@pytest.mark.quick
 def test_package_missing(patient):
     patient.write("apt/build.txt", "no-such-package\nbash\n")
     patient.write("apt/runtime.txt", "no-such-one | no-such-other # neither\n")
@@ -197,6 +202,7 @@ def test_system_without_ros(patient, facts):
     )
 
 
+@pytest.mark.quick
 def test_list_of_packages_missing(patient):
     path = patient.workspace / "apt" / "runtime.txt"
     path.unlink()
@@ -668,12 +674,14 @@ def test_text_that_the_terminal_cannot_show(patient):
     assert r"ROS_HOSTNAME=\udcff" in patient.examine().checks["ROS_HOSTNAME and ROS_IP"].text
 
 
+@pytest.mark.quick
 def test_standard_library_only(patient):
     # -S: without the folders in which Debian has ROS.
     run = subprocess.run([PYTHON, "-S", patient.script], env=patient.env, capture_output=True)
     assert (run.returncode, run.stderr) == (0, b"")
 
 
+@pytest.mark.quick
 def test_help(patient):
     run = subprocess.run([PYTHON, patient.script, "--help"], capture_output=True, text=True)
     assert run.returncode == 0
@@ -681,6 +689,7 @@ def test_help(patient):
     assert [line.split(":")[0].strip() for line in checks] == list(WELL)
 
 
+@pytest.mark.quick
 def test_unknown_argument(patient):
     run = subprocess.run([PYTHON, patient.script, "--fix"], capture_output=True, text=True)
     assert run.returncode == 2 and "unrecognized arguments: --fix" in run.stderr

@@ -8,6 +8,9 @@ import shutil
 import pytest
 from front_door import ROOT, make, with_other_python
 
+# One worker of pytest builds for all of these tests.
+pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("make")]
+
 
 @pytest.fixture(scope="module")
 def copy(tmp_path_factory):
@@ -64,6 +67,7 @@ def test_a_passing_test_passes_make_test(copy):
     assert "1 passed, 0 failed\n" in done.stdout
 
 
+@pytest.mark.quick
 def test_scripts_are_executable():
     first_lines = {
         path: path.open(errors="replace").readline()
@@ -76,6 +80,7 @@ def test_scripts_are_executable():
     assert [str(path) for path in scripts if not path.stat().st_mode & 0o111] == []
 
 
+@pytest.mark.quick
 def test_labs_lists_every_lab_with_its_claim():
     folder = ROOT / "catkin_ws" / "src" / "mrp_labs"
     listed = re.findall(r"^  roslaunch mrp_labs (\S+) +(.+)$", make("labs").stdout, re.MULTILINE)

@@ -13,6 +13,9 @@ import pytest
 import scratch
 from catkin_pkg.package import parse_package
 
+# One worker of pytest builds for all of these tests.
+pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("own_message")]
+
 USER = pathlib.Path(__file__).parent / "count_user"
 LABS = scratch.WORKSPACE / "src" / "mrp_labs"
 
@@ -78,6 +81,7 @@ def test_lab_and_message_are_installed(install):
     assert shown.split("\n")[-4:] == ["uint32 counter", "string language", "", ""]
 
 
+@pytest.mark.quick
 def test_dependencies_for_the_message():
     """On Debian all packages share one folder of headers: a build alone would not miss these."""
     package = parse_package(str(LABS))

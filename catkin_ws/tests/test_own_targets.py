@@ -4,6 +4,7 @@
 import pathlib
 import sys
 
+import pytest
 from mrp_bench import stats
 
 WORKSPACE = pathlib.Path(__file__).resolve().parent.parent
@@ -12,6 +13,8 @@ sys.path.insert(0, str(WORKSPACE / "tools"))
 import history  # noqa: E402
 import image_size  # noqa: E402
 import own_times  # noqa: E402
+
+pytestmark = pytest.mark.quick
 
 
 def rows(*values):

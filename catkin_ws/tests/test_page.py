@@ -15,6 +15,9 @@ sys.path.insert(0, str(WORKSPACE / "tools"))
 
 import run_page  # noqa: E402
 
+# One worker of pytest builds for all of these tests.
+pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("page")]
+
 
 @pytest.fixture(scope="module")
 def site(tmp_path_factory):
