@@ -12,8 +12,8 @@ import sys
 import pytest
 
 WORKSPACE = pathlib.Path(__file__).resolve().parent.parent
-sys.path.insert(0, str(WORKSPACE / "src" / "mrp" / "test"))
-sys.path.insert(0, str(WORKSPACE / "src" / "mrp_check" / "src"))
+for folder in ("src/mrp/test", "src/mrp_check/src", "tools"):
+    sys.path.insert(0, str(WORKSPACE / folder))
 
 KINDS = ("quick", "slow", "sets")
 

@@ -7,10 +7,9 @@ import shutil
 import socket
 import subprocess
 
-WORKSPACE = pathlib.Path(__file__).resolve().parent.parent
+import compiler_cache
 
-# What one test has compiled, ccache gives the next one, also in the next run.
-CACHE = WORKSPACE / "build" / "ccache"
+WORKSPACE = pathlib.Path(__file__).resolve().parent.parent
 
 
 def make(folder):
@@ -31,24 +30,11 @@ def environment():
     return env
 
 
-def cached(folder):
-    """Return the variables with which a build in a folder compiles what is new, and nothing else.
-
-    Paths below the folder count as relative to it: so what is equal in two folders is equal.
-    """
-    return {
-        "CMAKE_CXX_COMPILER_LAUNCHER": "ccache",
-        "CCACHE_DIR": str(CACHE),
-        "CCACHE_BASEDIR": str(folder),
-        "CCACHE_NOHASHDIR": "1",
-    }
-
-
 def catkin_make(folder, *arguments):
     """Run catkin_make; return what it printed. Raises AssertionError with it if that failed."""
     done = subprocess.run(
         ["catkin_make", "-C", str(folder), "-DPYTHON_EXECUTABLE=/usr/bin/python3", *arguments],
-        env={**environment(), **cached(folder)},
+        env={**environment(), **compiler_cache.variables(folder)},
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,
         text=True,

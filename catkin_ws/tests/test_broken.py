@@ -15,6 +15,7 @@ import shutil
 import subprocess
 import xml.etree.ElementTree as ElementTree
 
+import compiler_cache
 import pytest
 import scratch
 
@@ -74,7 +75,7 @@ def rebuild(workspace):
     """Build what a patch has changed, or what was changed back after the last one: make knows."""
     done = subprocess.run(
         ["make", "-C", workspace / "build"],
-        env={**scratch.environment(), **scratch.cached(workspace)},
+        env={**scratch.environment(), **compiler_cache.variables(workspace)},
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,
         text=True,

@@ -11,13 +11,14 @@ import pathlib
 import subprocess
 
 import check_sets
+import compiler_cache
 import pytest
 import scratch
 
 pytestmark = pytest.mark.sets
 
-# The checker's central tests, which `make test` runs: the tutorial, and one defect in it. One worker
-# of pytest runs both: what it has compiled for the first, it has for the second.
+# The checker's central tests, which `make test` runs: the tutorial, and one defect in it.
+# One worker of pytest runs both: what is compiled for the first need not be for the second.
 CENTRAL = ("mrp", "py_member_misspelt")
 
 
@@ -37,14 +38,14 @@ def run_check(tmp_path):
 
     def run(folder, spec):
         report = tmp_path / "report.json"
-        scratch.CACHE.mkdir(parents=True, exist_ok=True)
+        compiler_cache.FOLDER.mkdir(parents=True, exist_ok=True)
         env = scratch.environment()
         env.update(
             PYTHONPATH=str(CHECK / "src"),
             PYTHONDONTWRITEBYTECODE="1",
             # Only what a style or a defect changes is compiled anew.
             PATH=f"/usr/lib/ccache:{os.environ['PATH']}",
-            CCACHE_DIR=str(scratch.CACHE),
+            CCACHE_DIR=str(compiler_cache.FOLDER),
         )
         command = ["/usr/bin/python3", CHECK / "scripts" / "check", folder]
         done = subprocess.run(
