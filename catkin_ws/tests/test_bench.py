@@ -13,6 +13,7 @@ import xml.etree.ElementTree as ElementTree
 
 import numpy
 import pytest
+import record_bench
 import rosgraph
 import yaml
 from mrp_bench import (
@@ -37,10 +38,6 @@ from rospy.impl import tcpros_pubsub
 from waiting import wait_until
 
 WORKSPACE = pathlib.Path(__file__).resolve().parent.parent
-sys.path.insert(0, str(WORKSPACE / "tools"))
-
-import record_bench  # noqa: E402
-
 pytestmark = pytest.mark.quick
 
 
@@ -94,6 +91,7 @@ def test_ratio_of_known_distributions():
     assert stats.ratio(ours, limit) == found
 
 
+@pytest.mark.slow
 def test_interval_of_ratio_has_the_true_value_as_often_as_it_says():
     """In 95 of 100, or about; the rounds are six, and each is slower or faster as a whole."""
     hits = 0
@@ -223,6 +221,7 @@ def test_table_has_no_figures_of_a_noisy_machine(measurements):
     assert "25.0" not in text
 
 
+@pytest.mark.slow
 def test_report_is_in_all_files(measurements, tmp_path):
     results = rounds.Results(tmp_path)
     results.begin([], 3, resume=False)
@@ -532,6 +531,7 @@ def test_table_of_fans_has_no_figures_of_a_noisy_machine():
     assert fan_report.markdown([], 1, None) == []
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("verdict", [None, "too noisy"])
 def test_plot_of_fans(tmp_path, verdict):
     measured = [

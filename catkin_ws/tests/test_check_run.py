@@ -355,9 +355,9 @@ rospy.spin()
 
 # Their wrap is not a `% 2**32` in the line that counts: there is none to take away.
 ALWAYS_WRAP = ("c_number", "property", "factor")
-COUNTER_GROUPS = [(True, list(part)) for part in slices(COUNTERS, 3)] + [
+COUNTER_GROUPS = [(True, list(part)) for part in slices(COUNTERS, 2)] + [
     (False, list(part))
-    for part in slices({n: c for n, c in COUNTERS.items() if n not in ALWAYS_WRAP}, 2)
+    for part in slices({n: c for n, c in COUNTERS.items() if n not in ALWAYS_WRAP}, 1)
 ]
 
 

@@ -24,6 +24,7 @@ pytestmark = pytest.mark.slow
 
 DOCTOR = pathlib.Path(__file__).resolve().parent.parent / "tools" / "doctor.py"
 PYTHON = "/usr/bin/python3"
+REAL_PATH = "/usr/bin:/bin"
 
 # Runs the doctor with other facts of the machine (lower case) or constants (upper case).
 WITH_FACTS = """
@@ -108,10 +109,12 @@ class Patient:
         self.script = self.workspace / "tools" / "doctor.py"
         self.script.parent.mkdir()
         shutil.copy(DOCTOR, self.script)
+        # The tests about python3 take the real one; it imports rospy slowly.
+        python3 = self.write("stand_in/python3", "#!/bin/sh\nexit 0\n", mode=0o755)
         self.port = port
         self.uri = f"http://localhost:{port}"
         self.env = {
-            "PATH": "/usr/bin:/bin",
+            "PATH": f"{os.path.dirname(python3)}:{REAL_PATH}",
             "HOME": str(folder),
             "ROS_DISTRO": "Debian",
             "ROS_HOSTNAME": "localhost",
@@ -158,6 +161,7 @@ def patient(tmp_path):
 
 @pytest.mark.quick
 def test_all_well(patient):
+    patient.env["PATH"] = REAL_PATH
     report = patient.examine()
     well = {title: text.format(port=patient.port) for title, text in WELL.items()}
     assert list(report.checks.items()) == [(t, Check("OK", well[t], [])) for t in well]
@@ -243,7 +247,7 @@ def test_packages_do_not_matter_with_noetic(patient):
 )
 def test_other_python_first_on_path(patient, script, says):
     path = patient.write("bin/python3", script, mode=0o755)
-    patient.env["PATH"] = os.path.dirname(path) + ":/usr/bin:/bin"
+    patient.env["PATH"] = f"{os.path.dirname(path)}:{REAL_PATH}"
     facts = {"PYTHON_TIMEOUT": 0.5} if "sleep" in script else {}
     patient.examine(**facts).assert_only_failure(
         "python3",
@@ -276,6 +280,7 @@ def test_other_python_that_can_import(patient):
 
 
 def hide_rospy(patient):
+    patient.env["PATH"] = REAL_PATH
     path = patient.write("hidden/rospy.py", "raise ImportError('not ROS')\n")
     patient.env["PYTHONPATH"] = os.path.dirname(path)
 

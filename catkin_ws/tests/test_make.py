@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The Makefile, in a copy of the repository in which nothing is built."""
+"""The Makefile, in a copy of the repository that has one package, and in which nothing is built."""
 
 import pathlib
 import re
 import shutil
 
+import compiler_cache
 import pytest
 from front_door import ROOT, make, with_other_python
 
@@ -16,9 +17,10 @@ pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("make")]
 def copy(tmp_path_factory):
     """A copy of the repository, built while another python3 is first on PATH."""
     root = tmp_path_factory.mktemp("copy") / "mrp"
-    ignore = shutil.ignore_patterns(".git", "build", "devel", "install", "__pycache__")
+    ignore = shutil.ignore_patterns(".git", "build", "devel", "install", "__pycache__", "mrp_*")
     shutil.copytree(ROOT, root, ignore=ignore, symlinks=True)
-    done = make("build", root=root, PATH=with_other_python(tmp_path_factory.mktemp("bin")))
+    path = with_other_python(tmp_path_factory.mktemp("bin"))
+    done = make("build", root=root, PATH=path, **compiler_cache.variables(root))
     assert done.returncode == 0, done.stdout
     return root
 
@@ -39,12 +41,12 @@ def replace_tests(copy, text):
     shutil.rmtree(tests)
     tests.mkdir()
     if text:
-        (tests / "test_one.py").write_text(text)
+        (tests / "test_one.py").write_text(f"import pytest\n\n{text}")
     return make("test", "CATKIN_MAKE=true", root=copy)
 
 
 def test_a_failing_test_fails_make_test(copy):
-    done = replace_tests(copy, "def test_one():\n    assert 1 == 2\n")
+    done = replace_tests(copy, "@pytest.mark.quick\ndef test_one():\n    assert 1 == 2\n")
     assert done.returncode == 2, done.stdout
     assert "0 passed, 1 failed\n" in done.stdout
 
@@ -56,13 +58,13 @@ def test_no_test_at_all_fails_make_test(copy):
 
 
 def test_a_skipped_test_fails_make_test(copy):
-    done = replace_tests(copy, "import pytest\n\n\ndef test_one():\n    pytest.skip('why')\n")
+    done = replace_tests(copy, "@pytest.mark.quick\ndef test_one():\n    pytest.skip('why')\n")
     assert done.returncode == 2, done.stdout
     assert "0 passed, 0 failed, 1 skipped\n" in done.stdout
 
 
 def test_a_passing_test_passes_make_test(copy):
-    done = replace_tests(copy, "def test_one():\n    pass\n")
+    done = replace_tests(copy, "@pytest.mark.quick\ndef test_one():\n    pass\n")
     assert done.returncode == 0, done.stdout
     assert "1 passed, 0 failed\n" in done.stdout
 

@@ -1,18 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """make own-times and make docker-size: when they say that something has grown."""
 
-import pathlib
-import sys
-
+import history
+import image_size
+import own_times
 import pytest
 from mrp_bench import stats
-
-WORKSPACE = pathlib.Path(__file__).resolve().parent.parent
-sys.path.insert(0, str(WORKSPACE / "tools"))
-
-import history  # noqa: E402
-import image_size  # noqa: E402
-import own_times  # noqa: E402
 
 pytestmark = pytest.mark.quick
 
