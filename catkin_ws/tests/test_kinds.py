@@ -43,7 +43,9 @@ TWO_OF_THE_FILE = SLOW.replace("pytest.mark.slow", "[pytest.mark.slow, pytest.ma
 
 
 @pytest.mark.parametrize(
-    ("text", "kind"), [(NONE, "quick"), (TWO, "slow"), (TWO_OF_THE_FILE, "sets")]
+    ("text", "kind"),
+    [(NONE, "quick"), (TWO, "slow"), (TWO_OF_THE_FILE, "sets")],
+    ids=["none", "two", "two_of_the_file"],
 )
 def test_a_test_with_none_or_two_is_an_error_of_every_run(tmp_path, text, kind):
     done = run(tmp_path, text, "-m", kind)

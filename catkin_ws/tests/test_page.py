@@ -56,8 +56,16 @@ def test_graphs_are_those_in_the_pages(shown):
     assert {name: json.loads(text) for name, text in recorded.items()} == shown.graphs
 
 
+@pytest.mark.quick
+def test_a_page_that_writes_files_is_read_before_all_that_build(tmp_path):
+    step = {"kind": "file", "path": "a.py", "text": "", "page": "pages/latch", "line": 7}
+    with pytest.raises(run_page.StepError, match="latch.rst, line 7.*\n.*one of TUTORIAL"):
+        run_page.Reader(tmp_path).do(step)
+    assert list(tmp_path.iterdir()) == []
+
+
 def test_every_proof_was_run_and_passed(site):
-    """rostest's cases are run before these tests; those of pytest pass or fail in this very run."""
+    """rostest's cases are run before these tests; those of pytest fail the run they belong to."""
     pages = json.loads((site / "proofs.json").read_text())
     rostests = {
         proof
