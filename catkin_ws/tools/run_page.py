@@ -23,6 +23,7 @@ import socket
 import subprocess
 import sys
 import tempfile
+import time
 
 import compiler_cache
 import pexpect
@@ -41,11 +42,12 @@ CLONE = ("message_types",)
 # Each other page runs what is built in the clone, and writes nothing that another page reads: so it
 # has a reader of its own. Where it names this folder, it needs the tutorial as well.
 OF_TUTORIAL = "~/catkin_ws"
-SIDE_BY_SIDE = 3
+SIDE_BY_SIDE = 2
 
 _PROMPT = re.compile(r"<reader (\d+)> $")
 # rospy prints it, and goes on, where two nodes that start at once both make the link `latest`.
 _CHANCE = re.compile("INFO: cannot create a symlink to latest log directory")
+_STARTED = re.compile(r"^process\[(\S+)-\d+\]: started", re.MULTILINE)
 _ESCAPES = re.compile(r"\x1b\[[0-9;?]*[a-zA-Z]|\x1b\][^\x07]*\x07|\x07")
 
 
@@ -200,7 +202,7 @@ class Reader:
             else:
                 printed = terminal.run(last, step.get("exit", 0))
         if "graph" in step:
-            self.shown.graphs[step["graph"]] = graph(self._master)
+            self.shown.graphs[step["graph"]] = self._whole_graph(printed)
         if "until" in step and "keep" not in step:
             terminal.stop()
         if "output" in step:
@@ -210,6 +212,16 @@ class Reader:
             for texts, chosen in ((self.shown.outputs, shown), (self.shown.printed, lines)):
                 text = "\n".join(chosen).strip()
                 texts[step["output"]] = text.replace(str(self.home), "/home/you")
+
+    def _whole_graph(self, printed):
+        """Return the graph with all nodes that roslaunch has started, also those that start slowly."""
+        started = {"/" + name for name in _STARTED.findall("\n".join(printed))} - {"/rosout"}
+        end = time.monotonic() + SECONDS
+        while not started <= set(graph(self._master)["nodes"]):
+            if time.monotonic() > end:
+                raise StepError(f"expected the nodes {started}, found {graph(self._master)}")
+            time.sleep(0.1)
+        return graph(self._master)
 
     def _environment(self):
         names = ("USER", "LOGNAME", "LANG", "TZ")
