@@ -106,7 +106,7 @@ check: packages-check  ## check the package at PKG against the tutorial's contra
 # `make test-all`.
 .PHONY: test-check
 test-check: packages-test-all  ## check the packages that judge the checker
-	@$(IN_WORKSPACE) $(ALONE) /usr/bin/python3 -m pytest -n 3 -m sets --junit-xml=$(RESULTS)/sets.xml tests
+	@$(IN_WORKSPACE) $(ALONE) /usr/bin/python3 -m pytest -n 3 --dist loadgroup -m sets --junit-xml=$(RESULTS)/sets.xml tests
 
 # HINT=1 shows the hint; RESET=1 begins the exercise anew. Exit code 1 only says: not yet.
 .PHONY: exercise

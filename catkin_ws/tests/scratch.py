@@ -7,6 +7,8 @@ import shutil
 import socket
 import subprocess
 
+import compiler_cache
+
 WORKSPACE = pathlib.Path(__file__).resolve().parent.parent
 
 
@@ -32,7 +34,7 @@ def catkin_make(folder, *arguments):
     """Run catkin_make; return what it printed. Raises AssertionError with it if that failed."""
     done = subprocess.run(
         ["catkin_make", "-C", str(folder), "-DPYTHON_EXECUTABLE=/usr/bin/python3", *arguments],
-        env=environment(),
+        env={**environment(), **compiler_cache.variables(folder)},
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,
         text=True,

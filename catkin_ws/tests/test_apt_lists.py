@@ -7,6 +7,8 @@ import subprocess
 
 import pytest
 
+pytestmark = pytest.mark.quick
+
 WORKSPACE = pathlib.Path(__file__).resolve().parent.parent
 LISTS = {path.stem: path for path in (WORKSPACE / "apt").glob("*.txt")}
 BUILD = ("run", "build")
@@ -24,26 +26,24 @@ def packages(*stages):
     return {name for stage in stages for names in entries(stage) for name in names}
 
 
-def with_rosdep(*command):
-    """Return what a command prints to whom rosdep knows Debian's packages."""
-    return subprocess.run(
-        [str(WORKSPACE / "tools" / "with_rosdep.sh"), *command],
+# rosdep says nothing, and fails, where no package.xml has a dependency of the type.
+RESOLVE = 'rosdep resolve $(rosdep keys --from-paths "$0" -i -t "$1")'
+
+
+def resolved(dependency_type, folder="src"):
+    """Return the Debian packages of all dependencies of a type, of the packages in a folder."""
+    rosdep = str(WORKSPACE / "tools" / "with_rosdep.sh")
+    printed = subprocess.run(
+        [rosdep, "bash", "-c", RESOLVE, str(WORKSPACE / folder), dependency_type],
         check=True,
         stdout=subprocess.PIPE,
         text=True,
     ).stdout
+    return {name for line in printed.splitlines() if line[0] != "#" for name in line.split()}
 
 
-def resolved(dependency_type):
-    """Return the Debian packages of all dependencies of a type, in all packages."""
-    keys = with_rosdep(
-        "rosdep", "keys", "--from-paths", str(WORKSPACE / "src"), "-i", "-t", dependency_type
-    )
-    assert keys, f"no package.xml has a dependency of type {dependency_type}"
-    lines = with_rosdep("rosdep", "resolve", *keys.split()).splitlines()
-    return {name for line in lines if not line.startswith("#") for name in line.split()}
-
-
+# They are run by one worker of pytest: what rosdep reads is in one folder for all of them.
+@pytest.mark.xdist_group("rosdep")
 @pytest.mark.parametrize(
     ("dependency_type", "stages"), [("buildtool", BUILD), ("build", BUILD), ("test", TEST)]
 )
@@ -51,6 +51,7 @@ def test_lists_have_what_building_and_testing_need(dependency_type, stages):
     assert resolved(dependency_type) - packages(*stages) == set()
 
 
+@pytest.mark.xdist_group("rosdep")
 def test_lists_have_what_running_needs():
     # rosdep names the -dev packages for running, too: what of them runs is in libraries that they
     # depend on. Of ros-message-runtime nothing runs: it is for CMake.
@@ -59,12 +60,10 @@ def test_lists_have_what_running_needs():
     assert needed - packages(*RUN) == set()
 
 
-def test_the_tutorial_needs_what_make_run_installs():
-    src = WORKSPACE / "src" / "mrp"
-    keys = with_rosdep("rosdep", "keys", "--from-paths", str(src), "-i", *"-t build -t exec".split())
-    lines = with_rosdep("rosdep", "resolve", *keys.split()).splitlines()
-    needed = {name for line in lines if not line.startswith("#") for name in line.split()}
-    assert needed - packages("run") == set()
+@pytest.mark.xdist_group("rosdep")
+def test_make_run_installs_what_the_tutorial_needs():
+    for dependency_type in ("buildtool", "build", "exec"):
+        assert resolved(dependency_type, "src/mrp") - packages("run") == set()
 
 
 @pytest.mark.parametrize("stage", sorted(LISTS))

@@ -13,6 +13,7 @@ import xml.etree.ElementTree as ElementTree
 
 import numpy
 import pytest
+import record_bench
 import rosgraph
 import yaml
 from mrp_bench import (
@@ -37,9 +38,7 @@ from rospy.impl import tcpros_pubsub
 from waiting import wait_until
 
 WORKSPACE = pathlib.Path(__file__).resolve().parent.parent
-sys.path.insert(0, str(WORKSPACE / "tools"))
-
-import record_bench  # noqa: E402
+pytestmark = pytest.mark.quick
 
 
 def test_percentiles_are_values_that_were_measured():
@@ -92,6 +91,7 @@ def test_ratio_of_known_distributions():
     assert stats.ratio(ours, limit) == found
 
 
+@pytest.mark.slow
 def test_interval_of_ratio_has_the_true_value_as_often_as_it_says():
     """In 95 of 100, or about; the rounds are six, and each is slower or faster as a whole."""
     hits = 0
@@ -221,6 +221,7 @@ def test_table_has_no_figures_of_a_noisy_machine(measurements):
     assert "25.0" not in text
 
 
+@pytest.mark.slow
 def test_report_is_in_all_files(measurements, tmp_path):
     results = rounds.Results(tmp_path)
     results.begin([], 3, resume=False)
@@ -267,6 +268,7 @@ def master(tmp_path, monkeypatch):
         yield
 
 
+@pytest.mark.slow
 def test_every_way_delivers_every_message_in_order(master, tmp_path):
     plan = rounds.steps(WAYS, (8, 200, 10))
     plan += rounds.steps([way for way in WAYS if "rostopic" not in way], (70000, 0, 3))
@@ -284,6 +286,7 @@ def test_every_way_delivers_every_message_in_order(master, tmp_path):
         assert WAYS[one["way"]].receiver is None or one["receiver_cpu"] > 0
 
 
+@pytest.mark.slow
 def test_a_run_goes_on_where_it_ended(tmp_path):
     plan = rounds.steps(summary.LIMITS, (8, 200, 10), (70000, 0, 3))
     results = rounds.Results(tmp_path)
@@ -318,6 +321,7 @@ def test_another_plan_cannot_be_resumed(tmp_path):
         results.begin(rounds.steps(["raw_cpp"], (8, 0, 2)), 1, resume=True)
 
 
+@pytest.mark.slow
 def test_program_that_ends_is_an_error(tmp_path, monkeypatch):
     ends = Way("ends", "ends", ("bench_raw", "send=1"), ("bench_raw.py", "receive=1"))
     monkeypatch.setitem(WAYS, "ends", ends)
@@ -334,6 +338,7 @@ def test_program_that_ends_is_an_error(tmp_path, monkeypatch):
         rounds.run(rounds.steps(["ends"], (8, 0, 1)), 1, results, print)
 
 
+@pytest.mark.slow
 def test_nodelets_are_loaded_by_one_manager(master, tmp_path):
     with Running(WAYS["cpp_nodelet"], tmp_path / "log") as running:
         running.start()
@@ -360,6 +365,7 @@ def test_launch_file_compares_ways_that_exist(path):
     assert set(names) <= set(WAYS) and len(names) >= 2
 
 
+@pytest.mark.slow
 def test_launch_file_prints_a_table(master):
     with Process("roslaunch", "mrp_bench", "direct_queue.launch") as launched:
         launched.wait_for(lambda: "done" in launched.lines, "roslaunch's end")
@@ -369,6 +375,7 @@ def test_launch_file_prints_a_table(master):
     assert all(line.split(" | ")[7:9] == ["0", "kept"] for line in lines), lines
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("arguments", ["", "8 9 x cpp_cpp", "8 9 5 cpp_cppp", "7 9 5 cpp_cpp"])
 def test_compare_says_what_it_expects(arguments):
     command = ["rosrun", "mrp_bench", "compare.py", *arguments.split()]
@@ -421,6 +428,7 @@ def test_growth_with_the_robots():
     assert launch_report.exponents(launch_report.medians(starts[:6])) == {}
 
 
+@pytest.mark.slow
 def test_robots_start_and_stop(master, tmp_path):
     results = rounds.Results(tmp_path)
     launches.run([2], 1, results, print)
@@ -523,6 +531,7 @@ def test_table_of_fans_has_no_figures_of_a_noisy_machine():
     assert fan_report.markdown([], 1, None) == []
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("verdict", [None, "too noisy"])
 def test_plot_of_fans(tmp_path, verdict):
     measured = [
@@ -563,6 +572,7 @@ def mark(monkeypatch):
         os.kill(pid, signal.SIGKILL)
 
 
+@pytest.mark.slow
 def test_fans_deliver_every_message_and_leave_nothing_behind(master, mark, tmp_path, monkeypatch):
     monkeypatch.setattr(fans, "PIECE", Slice(size=8, rate=100, count=5))
     results = rounds.Results(tmp_path)
@@ -585,6 +595,7 @@ def test_fans_deliver_every_message_and_leave_nothing_behind(master, mark, tmp_p
     fans.run([1, 2], results, pytest.fail)
 
 
+@pytest.mark.slow
 def test_ros_spin_takes_a_core_while_its_node_ends(master):
     """And mrp_bench's spin() does not. A master that stands still keeps both from ending."""
     core = rosgraph.Master("/test_bench")
@@ -624,6 +635,7 @@ with Master(log), Running(WAYS["rostopic_pub"], log) as running:
 """
 
 
+@pytest.mark.slow
 def test_nothing_outlives_a_bench_that_is_killed(mark, tmp_path):
     """A master with a child of its own, and programs that stand still, one of them with a child."""
     with Process(sys.executable, "-c", BENCH_THAT_WAITS, str(tmp_path / "log")) as bench:

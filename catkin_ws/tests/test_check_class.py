@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """A class at once: one table, and a broken submission never stops the rest."""
 
+import contextlib
 import csv
 import dataclasses
 import html.parser
@@ -9,10 +10,13 @@ import pathlib
 import signal
 import subprocess
 import sys
+import uuid
 
 import pytest
 from mrp_check import check, classroom, package, spec
 from waiting import wait_until
+
+pytestmark = pytest.mark.quick
 
 MANIFEST = """<package format="3"><name>{name}</name><version>0.1.0</version>
 <description>d</description><maintainer email="a@mrp.example">A</maintainer><license>BSD</license>
@@ -287,38 +291,51 @@ def test_html(results, tmp_path):
     assert page.texts.count("✗") == 2
 
 
-HANGING = """cmake_minimum_required(VERSION 3.10)
+@pytest.fixture
+def seconds():
+    """For how long the submission sleeps: a number that no other test on this machine has."""
+    return f"10000.{uuid.uuid4().int}"
+
+
+def hanging(seconds):
+    return f"""cmake_minimum_required(VERSION 3.10)
 project(student_pkg)
-execute_process(COMMAND sleep 10000.125)
+execute_process(COMMAND sleep {seconds})
 """
 
 
-def sleepers():
+def sleepers(seconds):
     found = []
     for folder in pathlib.Path("/proc").glob("[0-9]*"):
         try:
-            if b"10000.125" in (folder / "cmdline").read_bytes():
+            if (folder / "cmdline").read_bytes() == f"sleep\0{seconds}\0".encode():
                 found.append(folder.name)
         except OSError:
             continue
     return found
 
 
+@contextlib.contextmanager
 def command(*arguments):
+    """The checker's command, running; whatever becomes of the test, it ends with it."""
     program = "from mrp_check.command import main; main()"
     env = {**os.environ, "PYTHONPATH": ":".join(sys.path)}
-    return subprocess.Popen(
+    with subprocess.Popen(
         ["/usr/bin/python3", "-c", program, *map(str, arguments)],
         env=env,
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
-    )
+    ) as checker:
+        try:
+            yield checker
+        finally:
+            checker.kill()
 
 
-def test_one_that_hangs(tmp_path):
+def test_one_that_hangs(tmp_path, seconds):
     """The real command: one submission's CMake never ends, another is an empty folder."""
-    hand_in(tmp_path / "class", "anna", HANGING)
+    hand_in(tmp_path / "class", "anna", hanging(seconds))
     (tmp_path / "class" / "berta").mkdir()
     table = tmp_path / "table.csv"
     page = tmp_path / "table.html"
@@ -333,20 +350,21 @@ def test_one_that_hangs(tmp_path):
     assert "berta" in output
     assert "2 of 2: " in errors
     assert "berta" in page.read_text()
-    assert not sleepers()
+    assert not sleepers(seconds)
 
 
-def test_ctrl_c(tmp_path):
+@pytest.mark.slow
+def test_ctrl_c(tmp_path, seconds):
     """What runs at that moment is ended, and nothing is left of it."""
-    hand_in(tmp_path / "class", "anna", HANGING)
+    hand_in(tmp_path / "class", "anna", hanging(seconds))
     with command("--class", tmp_path / "class") as checker:
-        wait_until(sleepers, "the submission's CMake runs")
+        wait_until(lambda: sleepers(seconds), "the submission's CMake runs")
         checker.send_signal(signal.SIGINT)
         _, errors = checker.communicate()
     assert checker.returncode == 1
     assert "stopped by Ctrl-C" in errors
     assert "Traceback" not in errors
-    wait_until(lambda: not sleepers(), "nothing is left")
+    wait_until(lambda: not sleepers(seconds), "nothing is left")
 
 
 @pytest.mark.parametrize(

@@ -18,6 +18,8 @@ import pytest
 from mrp_check import confine
 from waiting import wait_until
 
+pytestmark = pytest.mark.slow
+
 FEW_SECONDS = 3  # a limit of wall time, for what never ends by itself
 
 # What an attack sleeps for: longer than any test.

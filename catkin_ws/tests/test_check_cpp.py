@@ -13,6 +13,9 @@ from mrp_check.stages import static
 from mrp_check.stages.static import cpp_headers, node_rules
 from mrp_check.stages.static import facts as facts_
 
+# One worker of pytest builds for all of these tests.
+pytestmark = [pytest.mark.quick, pytest.mark.xdist_group("check_cpp")]
+
 FOLDER = pathlib.Path(__file__).resolve().parents[1] / "src" / "mrp" / "src"
 PUBLISHER, SUBSCRIBER = "publisher_cpp_node", "subscriber_cpp_node"
 SOURCES = {name: (FOLDER / f"{name}.cpp").read_text() for name in (PUBLISHER, SUBSCRIBER)}
@@ -228,6 +231,7 @@ def test_what_is_correct_is_not_flagged(node, changes, tmp_path, headers):
     assert told(findings(tmp_path, headers, node, replaced(node, *changes))) == []
 
 
+@pytest.mark.slow
 def test_headers_that_do_not_fit_are_read_again(tmp_path, headers):
     check_rules.make(tmp_path, src__a_DOT_cpp=SOURCES[PUBLISHER])
     said = said_of(tmp_path, headers)

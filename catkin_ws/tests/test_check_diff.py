@@ -8,6 +8,8 @@ import pytest
 from mrp_check import diff
 from test_check_python import replaced
 
+pytestmark = pytest.mark.quick
+
 TIMER = "rospy.Timer(rospy.Duration(0.5), self.callback)"
 
 

@@ -7,6 +7,8 @@ from check_rules import CMAKE, MANIFEST, PUB_SUB, told
 from mrp_check.stages import cmake, compiler
 from mrp_check.stages.files import cmake_rules, dependencies, manifest, names, scripts, text
 
+pytestmark = pytest.mark.quick
+
 NODE = (
     "#!/usr/bin/env python\nimport rospy\nfrom std_msgs.msg import UInt32\nrospy.init_node('a')\n"
 )

@@ -9,6 +9,8 @@ from check_rules import PUB_SUB, told
 from mrp_check.stages import launching
 from mrp_check.stages.files import launch_rules
 
+pytestmark = pytest.mark.slow  # each test imports roslaunch anew, in a process of its own
+
 CMAKE = check_rules.CMAKE.replace(
     "catkin_install_python(PROGRAMS src/odd.py DESTINATION bin)\n",
     "add_executable(publisher_cpp_node src/a.cpp)\n"
@@ -125,6 +127,7 @@ def test_broken_launch_file(old, new, wanted, words, tmp_path):
     assert re.search(words, f"{found[0].message} {found[0].expected} {found[0].fix}")
 
 
+@pytest.mark.quick
 def test_other_file_name(tmp_path):
     package = check_rules.make(tmp_path, launch__pubsub_DOT_launch=LAUNCH)
     path, (finding,) = launch_rules.readable(package, PUB_SUB)

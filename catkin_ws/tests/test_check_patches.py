@@ -17,6 +17,8 @@ sys.path.insert(0, str(CHECK / "src"))
 
 from mrp_check.requirements import REQUIREMENTS  # noqa: E402
 
+pytestmark = pytest.mark.quick
+
 SOLUTIONS = sorted(CHECK.glob("exercises/*/solution.patch"))
 
 

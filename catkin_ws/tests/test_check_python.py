@@ -7,6 +7,8 @@ import check_rules
 import pytest
 from check_rules import told
 
+pytestmark = pytest.mark.quick
+
 HEAD = """#!/usr/bin/env python
 import rospy
 from std_msgs.msg import UInt32

@@ -17,6 +17,8 @@ from mrp_check.report import html as html_report
 from mrp_check.requirements import REQUIREMENTS
 from mrp_check.stages.static.facts import Facts
 
+pytestmark = pytest.mark.quick
+
 CHECK = scratch.WORKSPACE / "src" / "mrp_check" / "scripts" / "check"
 CAUSE = Finding(
     "spin",

@@ -16,6 +16,8 @@ from mrp_check.finding import ERROR, NOTE
 from mrp_check.package import Package
 from mrp_check.stages import run, stop
 
+pytestmark = pytest.mark.slow
+
 MAIN = """
 
 def main():
@@ -271,6 +273,7 @@ GROUPS = [(part, {}) for part in slices(PUBLISHERS, 7)] + [
 ]
 
 
+@pytest.mark.sets
 @pytest.mark.parametrize(("publishers", "subscribers"), GROUPS, ids=range(len(GROUPS)))
 def test_each_defect_is_found_at_its_place(tmp_path, publishers, subscribers):
     folder = make_package(tmp_path / "lab_pkg", publishers, subscribers)
@@ -352,9 +355,9 @@ rospy.spin()
 
 # Their wrap is not a `% 2**32` in the line that counts: there is none to take away.
 ALWAYS_WRAP = ("c_number", "property", "factor")
-COUNTER_GROUPS = [(True, list(part)) for part in slices(COUNTERS, 3)] + [
+COUNTER_GROUPS = [(True, list(part)) for part in slices(COUNTERS, 2)] + [
     (False, list(part))
-    for part in slices({n: c for n, c in COUNTERS.items() if n not in ALWAYS_WRAP}, 2)
+    for part in slices({n: c for n, c in COUNTERS.items() if n not in ALWAYS_WRAP}, 1)
 ]
 
 

@@ -11,11 +11,24 @@ import pathlib
 import subprocess
 
 import check_sets
+import compiler_cache
 import pytest
 import scratch
 
+pytestmark = pytest.mark.sets
+
+# The checker's central tests, which `make test` runs: the tutorial, and one defect in it.
+# One worker of pytest runs both: what is compiled for the first need not be for the second.
+CENTRAL = ("mrp", "py_member_misspelt")
+
+
+def parameters(values, name):
+    """Return the values for parametrize; those whose name is in CENTRAL are marked."""
+    marks = [pytest.mark.quick, pytest.mark.xdist_group("central")]
+    return [pytest.param(value, marks=marks if name(value) in CENTRAL else []) for value in values]
+
+
 CHECK = check_sets.HERE.parent / "src" / "mrp_check"
-CACHE = check_sets.HERE.parent / "build" / "ccache"
 EXERCISES = sorted(CHECK.glob("exercises/*/solution.patch"))
 
 
@@ -25,14 +38,14 @@ def run_check(tmp_path):
 
     def run(folder, spec):
         report = tmp_path / "report.json"
-        CACHE.mkdir(parents=True, exist_ok=True)
+        compiler_cache.FOLDER.mkdir(parents=True, exist_ok=True)
         env = scratch.environment()
         env.update(
             PYTHONPATH=str(CHECK / "src"),
             PYTHONDONTWRITEBYTECODE="1",
             # Only what a style or a defect changes is compiled anew.
             PATH=f"/usr/lib/ccache:{os.environ['PATH']}",
-            CCACHE_DIR=str(CACHE),
+            CCACHE_DIR=str(compiler_cache.FOLDER),
         )
         command = ["/usr/bin/python3", CHECK / "scripts" / "check", folder]
         done = subprocess.run(
@@ -59,7 +72,7 @@ def shown(findings):
     )
 
 
-@pytest.mark.parametrize("style", check_sets.STYLES)
+@pytest.mark.parametrize("style", parameters(check_sets.STYLES, str))
 def test_correct_package_is_met(style, tmp_path, run_check):
     folder = tmp_path / "package"
     check_sets.lay_out(style, folder)
@@ -71,7 +84,11 @@ def test_correct_package_is_met(style, tmp_path, run_check):
     assert {one["id"] for one in found} == set(warns)
 
 
-@pytest.mark.parametrize("patch", check_sets.PATCHES, ids=lambda patch: patch.stem)
+@pytest.mark.parametrize(
+    "patch",
+    parameters(check_sets.PATCHES, lambda patch: patch.stem),
+    ids=lambda patch: patch.stem,
+)
 def test_defect_is_found(patch, tmp_path, run_check):
     fields = check_sets.head(patch)
     style = fields.get("Base", ["mrp"])[0]

@@ -8,6 +8,8 @@ import pytest
 from mrp_check import resources, spec
 from mrp_check.requirements import REQUIREMENTS, STAGES
 
+pytestmark = pytest.mark.quick
+
 MINIMAL = """title: An exercise
 topics:
   a_topic:

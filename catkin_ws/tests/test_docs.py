@@ -10,6 +10,9 @@ import urllib.parse
 import pytest
 from mrp_view import findings
 
+# One worker of pytest builds for all of these tests.
+pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("docs")]
+
 WORKSPACE = pathlib.Path(__file__).resolve().parent.parent
 
 
@@ -78,6 +81,7 @@ def test_no_page_has_an_id_twice(site):
         assert {one for one in ids if ids.count(one) > 1} == set(), path.name
 
 
+@pytest.mark.quick
 def test_broken_links_are_found(tmp_path):
     (tmp_path / "b").mkdir()
     (tmp_path / "b" / "there.html").write_text('<p id="here">')

@@ -20,8 +20,11 @@ import pytest
 from process import Process
 from waiting import DEADLINE
 
+pytestmark = pytest.mark.slow
+
 DOCTOR = pathlib.Path(__file__).resolve().parent.parent / "tools" / "doctor.py"
 PYTHON = "/usr/bin/python3"
+REAL_PATH = "/usr/bin:/bin"
 
 # Runs the doctor with other facts of the machine (lower case) or constants (upper case).
 WITH_FACTS = """
@@ -104,10 +107,12 @@ class Patient:
         self.script = self.workspace / "tools" / "doctor.py"
         self.script.parent.mkdir()
         shutil.copy(DOCTOR, self.script)
+        # The tests about python3 take the real one; it imports rospy slowly.
+        python3 = self.write("stand_in/python3", "#!/bin/sh\nexit 0\n", mode=0o755)
         self.port = port
         self.uri = f"http://localhost:{port}"
         self.env = {
-            "PATH": "/usr/bin:/bin",
+            "PATH": f"{os.path.dirname(python3)}:{REAL_PATH}",
             "HOME": str(folder),
             "ROS_DISTRO": "Debian",
             "ROS_HOSTNAME": "localhost",
@@ -152,13 +157,16 @@ def patient(tmp_path):
         yield Patient(tmp_path, reserved.getsockname()[1])
 
 
+@pytest.mark.quick
 def test_all_well(patient):
+    patient.env["PATH"] = REAL_PATH
     report = patient.examine()
     well = {title: text.format(port=patient.port) for title, text in WELL.items()}
     assert list(report.checks.items()) == [(t, Check("OK", well[t], [])) for t in well]
     assert (report.summary, report.code) == ("10 checks, 0 failed", 0)
 
 
+@pytest.mark.quick
 def test_every_failure_is_counted(patient):
     patient.write("src/mrp/src/node.py", "#!/usr/bin/env python3\n")
     patient.env.update(ROS_HOSTNAME="192.0.2.1", ROS_MASTER_URI="http://localhost")
@@ -170,6 +178,7 @@ def test_every_failure_is_counted(patient):
 # packages
 
 
+@pytest.mark.quick
 def test_package_missing(patient):
     patient.write("apt/run.txt", "no-such-package\nbash\n")
     patient.write("apt/tools.txt", "no-such-one | no-such-other # neither\n")
@@ -195,6 +204,7 @@ def test_system_without_ros(patient, facts):
     )
 
 
+@pytest.mark.quick
 def test_list_of_packages_missing(patient):
     path = patient.workspace / "apt" / "tools.txt"
     path.unlink()
@@ -235,7 +245,7 @@ def test_packages_do_not_matter_with_noetic(patient):
 )
 def test_other_python_first_on_path(patient, script, says):
     path = patient.write("bin/python3", script, mode=0o755)
-    patient.env["PATH"] = os.path.dirname(path) + ":/usr/bin:/bin"
+    patient.env["PATH"] = f"{os.path.dirname(path)}:{REAL_PATH}"
     facts = {"PYTHON_TIMEOUT": 0.5} if "sleep" in script else {}
     patient.examine(**facts).assert_only_failure(
         "python3",
@@ -268,6 +278,7 @@ def test_other_python_that_can_import(patient):
 
 
 def hide_rospy(patient):
+    patient.env["PATH"] = REAL_PATH
     path = patient.write("hidden/rospy.py", "raise ImportError('not ROS')\n")
     patient.env["PYTHONPATH"] = os.path.dirname(path)
 
@@ -666,12 +677,14 @@ def test_text_that_the_terminal_cannot_show(patient):
     assert r"ROS_HOSTNAME=\udcff" in patient.examine().checks["ROS_HOSTNAME and ROS_IP"].text
 
 
+@pytest.mark.quick
 def test_standard_library_only(patient):
     # -S: without the folders in which Debian has ROS.
     run = subprocess.run([PYTHON, "-S", patient.script], env=patient.env, capture_output=True)
     assert (run.returncode, run.stderr) == (0, b"")
 
 
+@pytest.mark.quick
 def test_help(patient):
     run = subprocess.run([PYTHON, patient.script, "--help"], capture_output=True, text=True)
     assert run.returncode == 0
@@ -679,6 +692,7 @@ def test_help(patient):
     assert [line.split(":")[0].strip() for line in checks] == list(WELL)
 
 
+@pytest.mark.quick
 def test_unknown_argument(patient):
     run = subprocess.run([PYTHON, patient.script, "--fix"], capture_output=True, text=True)
     assert run.returncode == 2 and "unrecognized arguments: --fix" in run.stderr

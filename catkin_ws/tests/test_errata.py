@@ -14,9 +14,12 @@ import pytest
 import scratch
 from errata import ORIGINAL, PACKAGE, line_of, mend
 
+pytestmark = pytest.mark.slow
+
 PAGE = scratch.WORKSPACE / "src" / "mrp" / "doc" / "pages" / "errata.rst"
 
 
+@pytest.mark.quick
 def test_page_has_every_defect():
     expected = [f"E{n}" for n in range(1, 22)] + [f"P{n}" for n in range(1, 21)]
     assert re.findall(r"^_`([EP]\d+)`", PAGE.read_text(), re.MULTILINE) == expected
@@ -38,18 +41,21 @@ def syntax_error(path):
     return error.value.text.strip(), error.value.msg
 
 
+@pytest.mark.quick
 def test_e01_global_with_an_assignment():
     line, message = syntax_error(ORIGINAL / "src" / "publisher_py_node.py")
     assert line == "global this_nodes_namespace = rospy.get_namespace()"
     assert message == "invalid syntax"
 
 
+@pytest.mark.quick
 def test_e02_global_with_an_assignment_of_a_constant():
     line, message = syntax_error(ORIGINAL / "snippets" / "hard_coded_namespace.py")
     assert line == 'global my_global_namespace = "/my_global_namespace"'
     assert message == "invalid syntax"
 
 
+@pytest.mark.quick
 def test_e03_parenthesis_never_closed(package):
     subscriber = package / "src" / "subscriber_py_node.py"
     line, message = syntax_error(subscriber)
@@ -61,12 +67,14 @@ def test_e03_parenthesis_never_closed(package):
     assert syntax_error(subscriber)[0].startswith("global this_nodes_namespace =")
 
 
+@pytest.mark.quick
 def test_e04_comment_of_another_language():
     line, message = syntax_error(ORIGINAL / "snippets" / "timer_callback.py")
     assert line == "// Publish a message"
     assert message == "invalid syntax"
 
 
+@pytest.mark.quick
 def test_e01_e03_nothing_else_keeps_python_from_reading_them(package):
     mend(package, "e01_global", "e03_parenthesis")
     for path in (package / "src").glob("*.py"):
@@ -76,12 +84,14 @@ def test_e01_e03_nothing_else_keeps_python_from_reading_them(package):
 # What makes no difference when run, and what does only elsewhere.
 
 
+@pytest.mark.quick
 def test_e06_instance_is_named_after_another_class():
     text = (ORIGINAL / "src" / "subscriber_py_node.py").read_text()
     assert "publisher_py_node = SubscriberPyNode()" in text
     assert text.count("publisher_py_node") == 1  # nothing reads that name
 
 
+@pytest.mark.quick
 def test_e11_semicolon_changes_nothing(package):
     mend(package, "e01_global")
     text = (package / "src" / "publisher_py_node.py").read_text()
@@ -89,6 +99,7 @@ def test_e11_semicolon_changes_nothing(package):
     assert ast.dump(ast.parse(text)) == ast.dump(ast.parse(text.replace(";\n", "\n")))
 
 
+@pytest.mark.quick
 def test_e12_interpreter_that_debian_has_not(tmp_path):
     """PATH has no program named python here, as Debian has none."""
     done = subprocess.run(

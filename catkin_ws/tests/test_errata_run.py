@@ -14,6 +14,9 @@ from graph import Graph
 from process import LIVE, Process
 from waiting import wait_until
 
+# One worker of pytest builds for all of these tests.
+pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("errata_run")]
+
 TOPIC = contract.GROUP + "/" + contract.TOPIC
 SUBSCRIBER_CPP = contract.GROUP + "/" + contract.SUBSCRIBER_CPP.name
 

@@ -11,6 +11,8 @@ sys.path.insert(0, str(check_sets.HERE.parent / "src" / "mrp_check" / "src"))
 from mrp_check import check, exercise
 from mrp_check.finding import WARNING, Finding
 
+pytestmark = pytest.mark.quick
+
 COUNT = len(exercise.exercises())
 FIRST = "01_parenthesis"
 

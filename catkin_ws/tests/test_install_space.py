@@ -8,6 +8,9 @@ import pytest
 import scratch
 from console import check_console
 
+# One worker of pytest builds for all of these tests.
+pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("install_space")]
+
 
 @pytest.fixture(scope="module")
 def install(tmp_path_factory):

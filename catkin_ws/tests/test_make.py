@@ -1,21 +1,26 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The Makefile, in a copy of the repository in which nothing is built."""
+"""The Makefile, in a copy of the repository that has one package, and in which nothing is built."""
 
 import pathlib
 import re
 import shutil
 
+import compiler_cache
 import pytest
 from front_door import ROOT, make, with_other_python
+
+# One worker of pytest builds for all of these tests.
+pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("make")]
 
 
 @pytest.fixture(scope="module")
 def copy(tmp_path_factory):
     """A copy of the repository, built while another python3 is first on PATH."""
     root = tmp_path_factory.mktemp("copy") / "mrp"
-    ignore = shutil.ignore_patterns(".git", "build", "devel", "install", "__pycache__")
+    ignore = shutil.ignore_patterns(".git", "build", "devel", "install", "__pycache__", "mrp_*")
     shutil.copytree(ROOT, root, ignore=ignore, symlinks=True)
-    done = make("build", root=root, PATH=with_other_python(tmp_path_factory.mktemp("bin")))
+    path = with_other_python(tmp_path_factory.mktemp("bin"))
+    done = make("build", root=root, PATH=path, **compiler_cache.variables(root))
     assert done.returncode == 0, done.stdout
     return root
 
@@ -30,18 +35,30 @@ def test_second_build_does_nothing(copy):
     assert (done.returncode, done.stdout) == (0, "")
 
 
+def test_run_builds_the_tutorial_and_a_whole_workspace_stays_whole(copy):
+    """It only says what it would do: one option decides upon what is built."""
+    tutorial = "-DCATKIN_WHITELIST_PACKAGES=mrp "
+    built = copy / "catkin_ws/devel/.built_whole"
+    changed = ("--what-if", "catkin_ws/src/mrp/src/publisher_cpp_node.cpp")
+    assert tutorial not in make("run", "--dry-run", *changed, root=copy).stdout
+    built.rename(copy / "away")
+    assert tutorial in make("run", "--dry-run", *changed, root=copy).stdout
+    (copy / "away").rename(built)
+
+
 def replace_tests(copy, text):
     """Replace the workspace's tests by one file, or by none; the packages' tests are left out."""
     tests = copy / "catkin_ws/tests"
     shutil.rmtree(tests)
     tests.mkdir()
+    (tests / "rostests.txt").write_text("")
     if text:
-        (tests / "test_one.py").write_text(text)
-    return make("test", "CATKIN_MAKE=true", root=copy)
+        (tests / "test_one.py").write_text(f"import pytest\n\n{text}")
+    return make("test", root=copy)
 
 
 def test_a_failing_test_fails_make_test(copy):
-    done = replace_tests(copy, "def test_one():\n    assert 1 == 2\n")
+    done = replace_tests(copy, "@pytest.mark.quick\ndef test_one():\n    assert 1 == 2\n")
     assert done.returncode == 2, done.stdout
     assert "0 passed, 1 failed\n" in done.stdout
 
@@ -53,17 +70,18 @@ def test_no_test_at_all_fails_make_test(copy):
 
 
 def test_a_skipped_test_fails_make_test(copy):
-    done = replace_tests(copy, "import pytest\n\n\ndef test_one():\n    pytest.skip('why')\n")
+    done = replace_tests(copy, "@pytest.mark.quick\ndef test_one():\n    pytest.skip('why')\n")
     assert done.returncode == 2, done.stdout
     assert "0 passed, 0 failed, 1 skipped\n" in done.stdout
 
 
 def test_a_passing_test_passes_make_test(copy):
-    done = replace_tests(copy, "def test_one():\n    pass\n")
+    done = replace_tests(copy, "@pytest.mark.quick\ndef test_one():\n    pass\n")
     assert done.returncode == 0, done.stdout
     assert "1 passed, 0 failed\n" in done.stdout
 
 
+@pytest.mark.quick
 def test_scripts_are_executable():
     first_lines = {
         path: path.open(errors="replace").readline()
@@ -76,6 +94,7 @@ def test_scripts_are_executable():
     assert [str(path) for path in scripts if not path.stat().st_mode & 0o111] == []
 
 
+@pytest.mark.quick
 def test_labs_lists_every_lab_with_its_claim():
     folder = ROOT / "catkin_ws" / "src" / "mrp_labs"
     listed = re.findall(r"^  roslaunch mrp_labs (\S+) +(.+)$", make("labs").stdout, re.MULTILINE)

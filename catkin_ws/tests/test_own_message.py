@@ -9,9 +9,13 @@ import pathlib
 import shutil
 import subprocess
 
+import compiler_cache
 import pytest
 import scratch
 from catkin_pkg.package import parse_package
+
+# One worker of pytest builds for all of these tests.
+pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("own_message")]
 
 USER = pathlib.Path(__file__).parent / "count_user"
 LABS = scratch.WORKSPACE / "src" / "mrp_labs"
@@ -27,7 +31,8 @@ def run(folder, setup, *command):
     done = subprocess.run(
         scratch.sourced(setup, *command),
         cwd=folder,
-        env=scratch.environment(),
+        # What a build uses lies in this folder, or beside it.
+        env={**scratch.environment(), **compiler_cache.variables(folder.parent)},
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,
         text=True,
@@ -57,7 +62,9 @@ def test_beside_mrp_labs(tmp_path):
 def install(tmp_path_factory):
     folder = tmp_path_factory.mktemp("labs")
     copy(LABS, folder)
-    scratch.catkin_make(folder, "install", "-DCATKIN_ENABLE_TESTING=OFF")
+    # As `make build` does: what that has compiled for another test is in the cache.
+    options = ("-DCATKIN_ENABLE_TESTING=OFF", "-DCMAKE_BUILD_TYPE=RelWithDebInfo")
+    scratch.catkin_make(folder, "install", *options)
     for name in ("src", "build", "devel"):
         shutil.rmtree(folder / name)
     return folder / "install"
@@ -78,6 +85,7 @@ def test_lab_and_message_are_installed(install):
     assert shown.split("\n")[-4:] == ["uint32 counter", "string language", "", ""]
 
 
+@pytest.mark.quick
 def test_dependencies_for_the_message():
     """On Debian all packages share one folder of headers: a build alone would not miss these."""
     package = parse_package(str(LABS))

@@ -2,17 +2,14 @@
 """make own-times and make docker-size: when they say that something has grown."""
 
 import json
-import pathlib
-import sys
 
-WORKSPACE = pathlib.Path(__file__).resolve().parent.parent
-sys.path.insert(0, str(WORKSPACE / "tools"))
+import history
+import image_size
+import own_times
+import pytest
+import timed
 
-import history  # noqa: E402
-import image_size  # noqa: E402
-import own_times  # noqa: E402
-import timed  # noqa: E402
-
+pytestmark = pytest.mark.quick
 
 LAST = {
     "commit": "last",

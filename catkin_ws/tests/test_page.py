@@ -4,16 +4,16 @@
 import json
 import pathlib
 import re
-import sys
 import xml.etree.ElementTree as ElementTree
 
 import pytest
+import run_page
 
 WORKSPACE = pathlib.Path(__file__).resolve().parent.parent
 RESULTS = WORKSPACE / "build" / "test_results"
-sys.path.insert(0, str(WORKSPACE / "tools"))
 
-import run_page  # noqa: E402
+# One worker of pytest builds for all of these tests.
+pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("page")]
 
 
 @pytest.fixture(scope="module")
@@ -25,12 +25,9 @@ def site(tmp_path_factory):
 
 
 @pytest.fixture(scope="module")
-def reader(site, tmp_path_factory):
-    """One who has done all that the pages say, in their order."""
-    with run_page.Reader(tmp_path_factory.mktemp("home")) as reader:
-        for step in run_page.steps(site):
-            reader.do(step)
-    return reader
+def shown(site, tmp_path_factory):
+    """What they see who do all that the pages say."""
+    return run_page.read(run_page.steps(site), tmp_path_factory.mktemp("home"))
 
 
 def masked(text):
@@ -43,24 +40,32 @@ def masked(text):
     return {re.sub(r"(?<![\w.])-?\d+(\.\d+)?(?=s?(?!\w))", "#", line) for line in text.splitlines()}
 
 
-def test_reader_sees_what_the_pages_show(reader):
+def test_reader_sees_what_the_pages_show(shown):
     recorded = {path.stem: path.read_text() for path in run_page.RECORDED.glob("*.txt")}
-    assert sorted(reader.outputs) == sorted(recorded), "run make docs-record"
-    for name, output in reader.outputs.items():
-        shown, hint = masked(recorded[name]), f"{name}: run make docs-record"
-        assert masked(output) - shown == set(), hint
+    assert sorted(shown.outputs) == sorted(recorded), "run make docs-record"
+    for name, output in shown.outputs.items():
+        expected, hint = masked(recorded[name]), f"{name}: run make docs-record"
+        assert masked(output) - expected == set(), hint
         # A node that is slow to start has a line of each kind, too; perhaps not with the first
         # numbers, to which the page keeps.
-        assert shown - masked(reader.printed[name]) == set(), hint
+        assert expected - masked(shown.printed[name]) == set(), hint
 
 
-def test_graphs_are_those_in_the_pages(reader):
+def test_graphs_are_those_in_the_pages(shown):
     recorded = {path.stem: path.read_text() for path in run_page.RECORDED.glob("*.json")}
-    assert {name: json.loads(text) for name, text in recorded.items()} == reader.graphs
+    assert {name: json.loads(text) for name, text in recorded.items()} == shown.graphs
+
+
+@pytest.mark.quick
+def test_a_page_that_writes_files_is_read_before_all_that_build(tmp_path):
+    step = {"kind": "file", "path": "a.py", "text": "", "page": "pages/latch", "line": 7}
+    with pytest.raises(run_page.StepError, match="latch.rst, line 7.*\n.*one of TUTORIAL"):
+        run_page.Reader(tmp_path).do(step)
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_every_proof_was_run_and_passed(site):
-    """rostest's cases are run before these tests; those of pytest pass or fail in this very run."""
+    """rostest's cases are run before these tests; those of pytest fail the run they belong to."""
     pages = json.loads((site / "proofs.json").read_text())
     rostests = {
         proof

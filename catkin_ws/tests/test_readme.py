@@ -7,9 +7,12 @@ import signal
 
 import check_sets
 import contract
+import pytest
 from console import ROSLAUNCH_LINE
 from front_door import ROOT, environment, make
 from process import Process
+
+pytestmark = pytest.mark.quick
 
 README = (ROOT / "README.md").read_text()
 
@@ -33,6 +36,7 @@ def test_targets_are_those_of_make():
     ]
 
 
+@pytest.mark.slow
 def test_console_is_what_make_run_prints():
     block = console_block()
     assert make("build").returncode == 0

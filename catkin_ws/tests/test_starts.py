@@ -13,6 +13,8 @@ from mrp_bench import cold, container, plots, rounds, start_report, starts
 from mrp_bench.launched import Console, exits
 from mrp_bench.programs import ProgramError
 
+pytestmark = pytest.mark.quick
+
 WORKSPACE = pathlib.Path(__file__).resolve().parent.parent
 
 ROSLAUNCH_SAYS = """\
@@ -164,6 +166,7 @@ def test_files_are_forgotten():
         assert cold.forget([folder]) == {str(path): (0, 100_000)}
 
 
+@pytest.mark.slow
 def test_files_in_use_are_kept(tmp_path):
     path = tmp_path / "file"
     path.write_bytes(bytes(100_000))
@@ -195,6 +198,7 @@ def test_timeline_says_what_its_colours_are(tmp_path):
     }
 
 
+@pytest.mark.slow
 def test_tutorial_starts_and_stops(tmp_path):
     results = rounds.Results(tmp_path)
     starts.run([starts.ours()], 1, results, print)
@@ -249,6 +253,7 @@ def fake_docker(tmp_path, monkeypatch):
     return path
 
 
+@pytest.mark.slow
 def test_container_starts_and_stops(fake_docker, tmp_path):
     assert container.why_not() is None
     results = rounds.Results(tmp_path)

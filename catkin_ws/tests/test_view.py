@@ -18,6 +18,8 @@ from mrp_view.reports import End
 from rosgraph_msgs.msg import Log
 from std_msgs import msg as std_msgs
 
+pytestmark = pytest.mark.quick
+
 
 def gaps(*values, modulus=2**32):
     result = Gaps(modulus)

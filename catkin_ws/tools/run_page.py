@@ -1,15 +1,20 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Does what the pages in src/mrp/doc tell their reader to do, in the order of reading.
+"""Does what the pages in src/mrp/doc tell their reader to do.
 
 Usage: run_page.py record
 Writes into src/mrp/doc/recorded/ what the commands print, and the graphs.
 
+The steps of a page are done in the order of reading. Pages that do not need one another are read
+side by side: see TUTORIAL.
+
 The directives `file` and `terminal` in src/mrp/doc/extension/ say what a step is.
 """
 
+import concurrent.futures
 import io
 import json
+import multiprocessing
 import os
 import pathlib
 import re
@@ -18,7 +23,9 @@ import socket
 import subprocess
 import sys
 import tempfile
+import time
 
+import compiler_cache
 import pexpect
 import rosgraph
 
@@ -27,9 +34,20 @@ DOC = WORKSPACE / "src" / "mrp" / "doc"
 RECORDED = DOC / "recorded"
 SECONDS = 900  # that a command may take: one builds the whole repository
 
+# Which pages need one another. One reader reads these in their order: they write ~/catkin_ws, build
+# it, run it, and break it.
+TUTORIAL = ("package", "publisher", "subscriber", "building", "launching", "inspecting", "wrong")
+# It builds the clone in ~/mrp: a second reader reads it meanwhile.
+CLONE = ("message_types",)
+# Each other page runs what is built in the clone, and writes nothing that another page reads: so it
+# has a reader of its own. Where it names this folder, it needs the tutorial as well.
+OF_TUTORIAL = "~/catkin_ws"
+SIDE_BY_SIDE = 2
+
 _PROMPT = re.compile(r"<reader (\d+)> $")
 # rospy prints it, and goes on, where two nodes that start at once both make the link `latest`.
 _CHANCE = re.compile("INFO: cannot create a symlink to latest log directory")
+_STARTED = re.compile(r"^process\[(\S+)-\d+\]: started", re.MULTILINE)
 _ESCAPES = re.compile(r"\x1b\[[0-9;?]*[a-zA-Z]|\x1b\][^\x07]*\x07|\x07")
 
 
@@ -54,31 +72,110 @@ def steps(site):
     return json.loads((pathlib.Path(site) / "steps.json").read_text())
 
 
-class Reader:
-    """One who reads the pages, with an empty home but for a copy of the repository in ~/mrp.
+class Shown:
+    """What the steps show.
 
     outputs: name -> what was printed, as it goes into recorded/NAME.txt
     printed: name -> all that was printed, also what the page leaves out
     graphs: name -> what goes into recorded/NAME.json
+    """
+
+    def __init__(self):
+        self.outputs = {}
+        self.printed = {}
+        self.graphs = {}
+
+    def add(self, other):
+        for mine, theirs in zip(vars(self).values(), vars(other).values()):
+            mine.update(theirs)
+
+
+def read(to_do, home, say=None):
+    """Do all steps, in an empty home that gets a clone of the repository; return what they show.
+
+    say: is called with a line at each step
+
+    Raises StepError if a step does not go as the page says.
+    """
+    _copy_repository(pathlib.Path(home) / "mrp")
+    pages = list(dict.fromkeys(page_of(step) for step in to_do))
+    others = [page for page in pages if page not in TUTORIAL + CLONE]
+    after_tutorial = [page for page in others if needs_tutorial(to_do, page)]
+    # Processes, not threads: a terminal is made by a fork, which none but a single thread may do.
+    with concurrent.futures.ProcessPoolExecutor(
+        SIDE_BY_SIDE, multiprocessing.get_context("spawn")
+    ) as pool:
+
+        def begin(*pages):
+            return pool.submit(read_pages, to_do, pages, home, say)
+
+        tutorial, clone = begin(*TUTORIAL), begin(*CLONE)
+        clone.result()
+        rest = [begin(page) for page in others if page not in after_tutorial]
+        tutorial.result()
+        rest += [begin(page) for page in after_tutorial]
+        shown = Shown()
+        for reader in (tutorial, clone, *rest):
+            shown.add(reader.result())
+        return shown
+
+
+def page_of(step):
+    return step["page"].split("/")[-1]
+
+
+def needs_tutorial(to_do, page):
+    return any(
+        OF_TUTORIAL in command
+        for step in to_do
+        if page_of(step) == page
+        for command in step.get("commands", [])
+    )
+
+
+def read_pages(to_do, pages, home, say):
+    """Do the steps of some pages, as one reader; return what they show."""
+    with Reader(home) as reader:
+        for number, step in enumerate(to_do, 1):
+            if page_of(step) not in pages:
+                reader.keep_in_mind(step)
+                continue
+            if say:
+                what = step.get("path") or "; ".join(step["commands"]) or "Ctrl-C"
+                say(f"[{number}/{len(to_do)}] {step['page']}: {what}", flush=True)
+            reader.do(step)
+    return reader.shown
+
+
+class Reader:
+    """One who reads some of the pages, with terminals and a master of one's own.
+
+    shown: what the steps have shown so far
 
     Use it in a `with`: on leaving, whatever runs in a terminal is ended.
     """
 
     def __init__(self, home):
         self.home = pathlib.Path(home)
-        self.outputs = {}
-        self.printed = {}
-        self.graphs = {}
+        self.shown = Shown()
         self._terminals = {}
-        _copy_repository(self.home / "mrp")
+        self._begin_with = {}  # terminal -> commands
         with socket.socket() as probe:
             probe.bind(("localhost", 0))
             self._master = f"http://localhost:{probe.getsockname()[1]}"
+
+    def keep_in_mind(self, step):
+        """Where another reader does a step: begin with the folder and the setup of its terminal."""
+        for command in step.get("commands", []):
+            if command.split()[0] in ("cd", "source"):
+                self._begin_with.setdefault(step["terminal"], []).append(command)
 
     def do(self, step):
         """Do a step of a page. Raises StepError if it does not go as the page says."""
         try:
             if step["kind"] == "file":
+                if page_of(step) not in TUTORIAL:
+                    raise StepError("it writes a file: is this page one of TUTORIAL?")
                 path = self.home / step["path"]
                 path.parent.mkdir(parents=True, exist_ok=True)
                 path.write_text(step["text"])
@@ -92,6 +189,8 @@ class Reader:
         terminal = self._terminals.get(step["terminal"])
         if terminal is None:
             terminal = self._terminals[step["terminal"]] = Terminal(self._environment())
+            for command in self._begin_with.get(step["terminal"], []):
+                terminal.run(command, 0)
         if "stop" in step:
             printed = terminal.stop()
         else:
@@ -103,16 +202,26 @@ class Reader:
             else:
                 printed = terminal.run(last, step.get("exit", 0))
         if "graph" in step:
-            self.graphs[step["graph"]] = graph(self._master)
+            self.shown.graphs[step["graph"]] = self._whole_graph(printed)
         if "until" in step and "keep" not in step:
             terminal.stop()
         if "output" in step:
             only = re.compile(step.get("only", ""))
             lines = [line for line in printed if not _CHANCE.match(line)]
             shown = [line for line in lines if only.search(line)]
-            for texts, chosen in ((self.outputs, shown), (self.printed, lines)):
+            for texts, chosen in ((self.shown.outputs, shown), (self.shown.printed, lines)):
                 text = "\n".join(chosen).strip()
                 texts[step["output"]] = text.replace(str(self.home), "/home/you")
+
+    def _whole_graph(self, printed):
+        """Return the graph with all nodes that roslaunch has started, also those that start slowly."""
+        started = {"/" + name for name in _STARTED.findall("\n".join(printed))} - {"/rosout"}
+        end = time.monotonic() + SECONDS
+        while not started <= set(graph(self._master)["nodes"]):
+            if time.monotonic() > end:
+                raise StepError(f"expected the nodes {started}, found {graph(self._master)}")
+            time.sleep(0.1)
+        return graph(self._master)
 
     def _environment(self):
         names = ("USER", "LOGNAME", "LANG", "TZ")
@@ -123,6 +232,7 @@ class Reader:
             "TERM": "dumb",
             "ROS_MASTER_URI": self._master,
             "ROS_HOSTNAME": "localhost",
+            **compiler_cache.variables(self.home),
         }
 
     def __enter__(self):
@@ -226,17 +336,12 @@ def record():
     """Do all steps, and write what they print into recorded/."""
     with tempfile.TemporaryDirectory() as site, tempfile.TemporaryDirectory() as home:
         build(site, "-D", "recording=1")
-        to_do = steps(site)
-        with Reader(home) as reader:
-            for number, step in enumerate(to_do, 1):
-                what = step.get("path") or "; ".join(step["commands"]) or "Ctrl-C"
-                print(f"[{number}/{len(to_do)}] {step['page']}: {what}", flush=True)
-                reader.do(step)
+        shown = read(steps(site), home, say=print)
     for path in (*RECORDED.glob("*.txt"), *RECORDED.glob("*.json")):
         path.unlink()
-    for name, output in reader.outputs.items():
+    for name, output in shown.outputs.items():
         (RECORDED / f"{name}.txt").write_text(output + "\n")
-    for name, recorded in reader.graphs.items():
+    for name, recorded in shown.graphs.items():
         (RECORDED / f"{name}.json").write_text(json.dumps(recorded, indent=1) + "\n")
 
 

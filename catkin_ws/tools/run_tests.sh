@@ -21,7 +21,7 @@ status=0
 [ ${#rostests[@]} = 0 ] ||
   tools/timed.py "rostests, $level" \
     cmake --build build --parallel $((2 * processors + 1)) --target "${rostests[@]}" || status=1
-tools/timed.py "pytest, $level" /usr/bin/python3 -m pytest -n $((processors + 1)) -m "$level" \
+tools/timed.py "pytest, $level" /usr/bin/python3 -m pytest -n $((processors + 1)) --dist loadgroup -m "$level" \
   --junit-xml=$results/pytest_$level.xml tests || status=1
 catkin_test_results $results > /dev/null || status=1
 tools/test_summary.py $results || status=1
