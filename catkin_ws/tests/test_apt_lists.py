@@ -62,7 +62,7 @@ def test_lists_have_what_running_needs():
 
 @pytest.mark.xdist_group("rosdep")
 def test_make_run_installs_what_the_tutorial_needs():
-    for dependency_type in ("buildtool", "build", "exec"):
+    for dependency_type in ("build", "exec"):
         assert resolved(dependency_type, "src/mrp") - packages("run") == set()
 
 
