@@ -333,6 +333,7 @@ def command(*arguments):
             checker.kill()
 
 
+@pytest.mark.slow
 def test_one_that_hangs(tmp_path, seconds):
     """The real command: one submission's CMake never ends, another is an empty folder."""
     hand_in(tmp_path / "class", "anna", hanging(seconds))

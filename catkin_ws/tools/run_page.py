@@ -214,7 +214,7 @@ class Reader:
                 texts[step["output"]] = text.replace(str(self.home), "/home/you")
 
     def _whole_graph(self, printed):
-        """Return the graph with all nodes that roslaunch has started, also those that start slowly."""
+        """Return the graph once it has all nodes that roslaunch has started."""
         started = {"/" + name for name in _STARTED.findall("\n".join(printed))} - {"/rosout"}
         end = time.monotonic() + SECONDS
         while not started <= set(graph(self._master)["nodes"]):
