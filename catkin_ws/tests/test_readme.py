@@ -8,6 +8,7 @@ import signal
 import check_sets
 import contract
 import pytest
+import yaml
 from console import ROSLAUNCH_LINE
 from front_door import ROOT, environment, make
 from process import Process
@@ -37,6 +38,18 @@ def test_targets_are_those_of_make():
 
 
 @pytest.mark.slow
+def test_ci_and_the_workflow_call_targets_of_the_list():
+    workflow = yaml.safe_load((ROOT / ".github" / "workflows" / "ci.yml").read_text())
+    matrices = [job["strategy"]["matrix"] for job in workflow["jobs"].values()]
+    by_workflow = {word for one in matrices for line in one["targets"] for word in line.split()}
+    ci = (ROOT / ".ci" / "run").read_text()
+    by_ci = set(re.findall(r"^ *(?:part )?make (.+)$", ci, re.MULTILINE))
+    makefile = (ROOT / "Makefile").read_text()
+    targets = set(re.findall(r"^([a-z-]+):", makefile, re.MULTILINE))
+    assert by_ci and by_ci - by_workflow == set()
+    assert by_workflow - targets == set()
+
+
 def test_console_is_what_make_run_prints():
     block = console_block()
     assert make("build").returncode == 0
