@@ -13,7 +13,7 @@ import unittest
 import contract
 import rospy
 import rostest
-from process import rosrun
+from process import run
 from std_msgs.msg import UInt32
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), os.pardir, "src"))
@@ -40,7 +40,7 @@ class TestQueue(unittest.TestCase):
             values = [contract.received_value(subscriber, text) for text in texts]
             return [value for value in values if value is not None]
 
-        with rosrun(subscriber, contract.TOPIC + ":=" + topic) as process:
+        with run(subscriber, contract.TOPIC + ":=" + topic) as process:
             process.wait_for(publisher.get_num_connections, "the node is connected")
             publisher.publish(FIRST)
             process.wait_for(lambda: received() == [FIRST], "the first value is received")
