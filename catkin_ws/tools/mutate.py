@@ -6,8 +6,8 @@ Usage: mutate.py [TEXT]
 
 Each mutation is made in a copy of the package, which is built once; after that only what the
 mutation touches is built again. Then all rostests of mrp run side by side, up to the first failure.
-Each line of the table says what caught a mutation, and after how many seconds. With TEXT, only those
-mutations are made that have it in their line.
+It prints what caught each mutation, and after how many seconds. With TEXT, only those mutations are
+made that have it in their line.
 
 Exit code 1: one survived, or the rostests fail without any mutation.
 """
@@ -29,7 +29,6 @@ import scratch  # noqa: E402
 
 DEADLINE = "20"  # seconds that a test waits for what a mutation never does
 AT_ONCE = "-j8"  # rostests
-END = 60  # seconds in which a rostest that is interrupted ends its nodes
 
 Mutation = collections.namedtuple("Mutation", "file old new")
 
@@ -172,29 +171,29 @@ def first_failure(results):
     return None
 
 
-def run_rostests(folder, log):
+def run_rostests(folder):
     """Run mrp's rostests up to the first failure; return it, or None."""
     results = folder / "build" / "test_results"
     shutil.rmtree(results, ignore_errors=True)
-    process = start(folder, log, "run_tests_mrp", AT_ONCE)
+    with open(folder / "rostests.log", "w") as log:
+        process = start(folder, log, "run_tests_mrp", AT_ONCE)
     try:
         while process.poll() is None and not first_failure(results):
             time.sleep(0.2)
         return first_failure(results)
     finally:
-        end(process, folder)
+        # What they might still find out does not matter, nor how they end.
+        while processes_of(folder):
+            for pid in processes_of(folder):
+                kill(pid)
+        process.wait()
 
 
-def end(process, folder):
-    """End the rostests: first as by Ctrl-C, so that each ends its nodes; then whatever is left."""
-    if process.poll() is None:
-        os.killpg(process.pid, signal.SIGINT)
-    deadline = time.monotonic() + END
-    while processes_of(folder) and time.monotonic() < deadline:
-        time.sleep(0.1)
-    for pid in processes_of(folder):
+def kill(pid):
+    try:
         os.kill(pid, signal.SIGKILL)
-    process.wait()
+    except ProcessLookupError:
+        pass
 
 
 def processes_of(folder):
@@ -210,33 +209,32 @@ def processes_of(folder):
     return found
 
 
-def write(folder, mutation, text):
-    """Write a file of the package, and build what depends on it; return whether that worked."""
-    (folder / "src" / "mrp" / mutation.file).write_text(text)
-    if mutation.file == CMAKE:
+def build(folder, files):
+    """Build the nodes and the tests' own programs, if one of the files asks for it; return whether
+    that worked."""
+    if CMAKE in files:
         # The relay of a script that is not named there any more would stay.
-        shutil.rmtree(folder / "devel" / "lib" / "mrp")
-    if mutation.file not in (*CPP, CMAKE):
+        shutil.rmtree(folder / "devel" / "lib" / "mrp", ignore_errors=True)
+    if not {CMAKE, *CPP} & set(files):
         return True
-    return build(folder)
-
-
-def build(folder):
-    """Build the nodes and the tests' own programs; return whether that worked."""
     with open(folder / "build.log", "w") as log:
         return start(folder, log, "all", "tests").wait() == 0
 
 
-def caught_by(folder, mutation):
-    """Make a mutation and take it back; return what caught it, or None."""
-    text = (folder / "src" / "mrp" / mutation.file).read_text()
+def caught_by(folder, mutation, before):
+    """Make a mutation and take it back; return what caught it, or None.
+
+    before: the file that was mutated before, of which nothing has been built since
+    """
+    file = folder / "src" / "mrp" / mutation.file
+    text = file.read_text()
+    file.write_text(mutated(mutation, text))
     try:
-        if not write(folder, mutation, mutated(mutation, text)):
+        if not build(folder, [before, mutation.file]):
             return "the build"
-        with open(folder / "rostests.log", "w") as log:
-            return run_rostests(folder, log)
+        return run_rostests(folder)
     finally:
-        write(folder, mutation, text)
+        file.write_text(text)
 
 
 def line(mutation):
@@ -252,15 +250,16 @@ def main(text=""):
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         scratch.make(folder)
-        if not build(folder):
+        if not build(folder, [CMAKE]):
             sys.exit("error: the package does not build without any mutation")
-        with open(folder / "rostests.log", "w") as log:
-            failure = run_rostests(folder, log)
+        failure = run_rostests(folder)
         if failure:
             sys.exit(f"error: without any mutation, {failure} fails")
+        before = None
         for number, mutation in enumerate(mutations, 1):
             begin = time.monotonic()
-            cause = caught_by(folder, mutation)
+            cause = caught_by(folder, mutation, before)
+            before = mutation.file
             survived += cause is None
             seconds = time.monotonic() - begin
             print(f"{number:3} of {len(mutations)}  {line(mutation)}")
