@@ -10,6 +10,7 @@ GROUP = "/mrp"
 TOPIC = "great_topic"
 TYPE = "std_msgs/UInt32"
 
+QUEUE_SIZE = 10  # of each publisher and each subscriber, in messages
 PERIOD = 0.5  # seconds from one message of a publisher to its next
 STEP = 2
 MODULUS = 2**32  # a UInt32 wraps round past 2^32-1

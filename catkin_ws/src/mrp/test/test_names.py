@@ -8,15 +8,15 @@ import unittest
 import contract
 import rostest
 from graph import Graph
-from process import rosrun
+from process import rosrun, run
 
 
 class TestNames(unittest.TestCase):
-    def check(self, arguments, namespace, topic):
-        """Run all four nodes with the arguments; expect their names, one topic, and all values."""
+    def check(self, start, arguments, namespace, topic):
+        """Start all four nodes; expect their names, one topic, and all values."""
         with contextlib.ExitStack() as stack:
             processes = {
-                node: stack.enter_context(rosrun(node, *arguments)) for node in contract.NODES
+                node: stack.enter_context(start(node, *arguments)) for node in contract.NODES
             }
             for subscriber in contract.SUBSCRIBERS:
                 for publisher in contract.PUBLISHERS:
@@ -46,13 +46,14 @@ class TestNames(unittest.TestCase):
         return {contract.publisher_of(value) for value in values if value is not None}
 
     def test_bare_rosrun_is_in_the_root_namespace(self):
-        self.check([], "/", "/" + contract.TOPIC)
+        self.check(rosrun, [], "/", "/" + contract.TOPIC)
 
     def test_ns_moves_the_nodes_and_their_topic(self):
-        self.check(["__ns:=/robot1"], "/robot1/", "/robot1/" + contract.TOPIC)
+        self.check(run, ["__ns:=/robot1"], "/robot1/", "/robot1/" + contract.TOPIC)
 
     def test_remap_moves_the_topic_only(self):
-        self.check([contract.TOPIC + ":=/elsewhere/small_topic"], "/", "/elsewhere/small_topic")
+        remap = contract.TOPIC + ":=/elsewhere/small_topic"
+        self.check(run, [remap], "/", "/elsewhere/small_topic")
 
 
 if __name__ == "__main__":

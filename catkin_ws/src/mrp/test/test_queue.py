@@ -1,22 +1,27 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""A subscriber's queue of 10: ten values that come all at once are all received, in order.
+"""Queues of 10: their size, and that ten values that come all at once are all received, in order.
 
 The node is stopped (SIGSTOP) while they are sent, so that it finds all of them on going on.
 """
 
 import os
 import signal
+import sys
 import unittest
 
 import contract
 import rospy
 import rostest
-from process import rosrun
+from process import run
 from std_msgs.msg import UInt32
 
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), os.pardir, "src"))
+from publisher_py_node import PublisherPyNode
+from subscriber_py_node import SubscriberPyNode
+
 FIRST = 7
-BURST = list(range(101, 111))
+BURST = list(range(101, 101 + contract.QUEUE_SIZE))
 
 
 class TestQueue(unittest.TestCase):
@@ -35,7 +40,7 @@ class TestQueue(unittest.TestCase):
             values = [contract.received_value(subscriber, text) for text in texts]
             return [value for value in values if value is not None]
 
-        with rosrun(subscriber, contract.TOPIC + ":=" + topic) as process:
+        with run(subscriber, contract.TOPIC + ":=" + topic) as process:
             process.wait_for(publisher.get_num_connections, "the node is connected")
             publisher.publish(FIRST)
             process.wait_for(lambda: received() == [FIRST], "the first value is received")
@@ -47,6 +52,18 @@ class TestQueue(unittest.TestCase):
             os.kill(process.pid, signal.SIGCONT)
             process.wait_for(lambda: BURST[-1] in received(), "the last value is received")
             self.assertEqual(received(), [FIRST, *BURST])
+
+    # What a burst cannot show, a larger queue than 10, rospy itself knows; test_queue.cpp asks
+    # roscpp.
+
+    def test_size_publisher_py(self):
+        node = PublisherPyNode()
+        self.addCleanup(node.timer.shutdown)
+        self.assertEqual(node.publisher.impl.queue_size, contract.QUEUE_SIZE)
+
+    def test_size_subscriber_py(self):
+        node = SubscriberPyNode()
+        self.assertEqual(node.subscriber.impl.queue_size, contract.QUEUE_SIZE)
 
     def test_subscriber_cpp(self):
         self.check(contract.SUBSCRIBER_CPP)
@@ -62,4 +79,4 @@ def state_of(pid):
 
 
 if __name__ == "__main__":
-    rostest.rosrun(contract.PACKAGE, "queue", TestQueue)
+    rostest.rosrun(contract.PACKAGE, "queue_py", TestQueue)

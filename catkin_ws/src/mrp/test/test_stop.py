@@ -9,7 +9,7 @@ import contract
 import rospy
 import rostest
 from graph import Graph
-from process import rosrun
+from process import run
 from std_msgs.msg import UInt32
 
 
@@ -24,7 +24,7 @@ class TestStop(unittest.TestCase):
         values = []
         subscriber = rospy.Subscriber(contract.TOPIC, UInt32, values.append)
         self.addCleanup(subscriber.unregister)
-        with rosrun(node) as process:
+        with run(node) as process:
             if node in contract.PUBLISHERS:
                 process.wait_for(lambda: values, "a value from " + node.name)
             else:

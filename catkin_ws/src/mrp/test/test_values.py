@@ -13,7 +13,7 @@ import contract
 import rosgraph
 import rospy
 import rostest
-from process import rosrun
+from process import run
 from rosgraph_msgs.msg import Clock
 from std_msgs.msg import UInt32
 from waiting import within
@@ -45,7 +45,7 @@ class TestValues(unittest.TestCase):
         self.clock.publish(Clock(rospy.Time.from_sec(BEGIN)))
         values = []
         subscriber = self.subscribe(values)
-        with rosrun(publisher) as process:
+        with run(publisher) as process:
             process.wait_for(
                 lambda: connections_to_test(publisher), "the test's subscriber is connected"
             )

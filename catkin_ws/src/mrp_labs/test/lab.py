@@ -34,6 +34,11 @@ def path_of(launch_file):
     return roslib.packages.find_resource(PACKAGE, launch_file)[0]
 
 
+def program(node_type):
+    """Return the path of one of the labs' programs. It starts sooner by it than by rosrun."""
+    return roslib.packages.find_node(PACKAGE, node_type)[0]
+
+
 def pid_of(node, master_uri=None):
     """Return the process id of a running node, or None if the master or the node does not answer.
 
@@ -55,8 +60,8 @@ def free_port():
 
 
 def master(port):
-    """Return a running roscore at a port, as a Process."""
-    core = Process("roscore", "-p", str(port))
+    """Return a running master at a port, as a Process: what roscore starts."""
+    core = Process("rosmaster", "--core", "-p", str(port))
     uri = f"http://localhost:{port}"
     core.wait_for(lambda: rosgraph.is_master_online(uri), "a master that answers")
     return core

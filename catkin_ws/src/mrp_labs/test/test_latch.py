@@ -28,8 +28,7 @@ class TestLatch(unittest.TestCase):
             self.expect(lab, "latch_end", [1, 101])
 
             # Subscribers are restarted; publishers end for good.
-            kill("latch_restart", SUBSCRIBERS)
-            kill("latch_end", PUBLISHERS)
+            kill(latch_restart=SUBSCRIBERS, latch_end=PUBLISHERS)
             self.expect(lab, "latch_restart", [1, 1, 101, 101])
             topic = "/latch_end/great_topic"
             lab.wait_for(lambda: publishers_of(topic) == [], "the publishers have ended")
@@ -38,8 +37,7 @@ class TestLatch(unittest.TestCase):
             other = rospy.Publisher(topic, UInt32, latch=True, queue_size=1)
             other.publish(1000)
             self.expect(lab, "latch_end", [1, 101, 1000])
-            kill("latch_restart", PUBLISHERS)
-            kill("latch_end", SUBSCRIBERS)
+            kill(latch_restart=PUBLISHERS, latch_end=SUBSCRIBERS)
             self.expect(lab, "latch_restart", [1, 1, 1, 101, 101, 101])
             self.expect(lab, "latch_end", [1, 101, 1000, 1000])
 
@@ -82,9 +80,10 @@ def publishers_of(topic):
     return dict(publishers).get(topic, [])
 
 
-def kill(group, names):
-    """End nodes as a student does: by rosnode."""
-    with Process("rosnode", "kill", *(f"/{group}/{name}" for name in names)) as rosnode:
+def kill(**groups):
+    """End nodes of several groups as a student does: by rosnode."""
+    nodes = [f"/{group}/{name}" for group, names in groups.items() for name in names]
+    with Process("rosnode", "kill", *nodes) as rosnode:
         code = rosnode.wait()
     assert code == 0, f"exit code {code} of {rosnode}"
 

@@ -2,12 +2,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Every type of message gets through whole, at its extremes too; what happens out of its range."""
 
-import contextlib
 import unittest
 import zlib
 
 import rostest
-from lab import PACKAGE, Lab
+from lab import PACKAGE, Lab, path_of
 
 LANGUAGES = ("cpp", "py")
 LONG_TEXT = "Ein Topic ist ein Thema, über das Knoten reden: トピックはノードが話すテーマです 🤖"
@@ -141,17 +140,16 @@ REFUSED = {
 
 class TestMessageTypes(unittest.TestCase):
     def test_extremes(self):
-        launches = {
-            "message_types_integers.launch": ("integers", INTEGERS),
-            "message_types_floats.launch": ("floats", FLOATS),
-            "message_types_structures.launch": ("structures", STRUCTURES),
-        }
-        with contextlib.ExitStack() as stack:
-            labs = {launch: stack.enter_context(Lab(launch)) for launch in launches}
-            for launch, (group, expected) in launches.items():
+        groups = {"integers": INTEGERS, "floats": FLOATS, "structures": STRUCTURES}
+        with Lab(
+            "message_types_integers.launch",
+            path_of("message_types_floats.launch"),
+            path_of("message_types_structures.launch"),
+        ) as lab:
+            for group, expected in groups.items():
                 for publisher in LANGUAGES:
                     for subscriber in LANGUAGES:
-                        self.check(labs[launch], group, publisher, subscriber, expected)
+                        self.check(lab, group, publisher, subscriber, expected)
 
     def test_out_of_range(self):
         with Lab("message_types_out_of_range.launch") as lab:

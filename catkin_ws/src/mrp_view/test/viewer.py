@@ -16,11 +16,22 @@ from tornado.websocket import websocket_connect
 for package in ("mrp", "mrp_labs"):
     sys.path.append(os.path.join(roslib.packages.get_pkg_dir(package), "test"))
 
-from lab import Lab, free_port, master, pid_of  # noqa: E402
+from lab import Lab, free_port, master, pid_of, program  # noqa: E402
 from process import LIVE, Process  # noqa: E402
 from waiting import DEADLINE, wait_until  # noqa: E402
 
-__all__ = ["LIVE", "Lab", "free_port", "master", "pid_of"]  # for the tests, besides what is here
+__all__ = ["LIVE", "Lab", "free_port", "master", "pid_of", "program"]  # for the tests, too
+
+PUBLISHERS = ("/mrp/publisher_cpp_node", "/mrp/publisher_py_node")
+SUBSCRIBERS = ("/mrp/subscriber_cpp_node", "/mrp/subscriber_py_node")
+TOPIC = "/mrp/great_topic"
+
+
+class PubSub(Process):
+    """The tutorial's four nodes."""
+
+    def __init__(self, *arguments, extra_env=None):
+        super().__init__("roslaunch", "mrp", "pub_sub.launch", *arguments, extra_env=extra_env)
 
 
 class Viewer(Process):
@@ -28,9 +39,8 @@ class Viewer(Process):
 
     def __init__(self, *options, port=0, extra_env=None):
         super().__init__(
-            "rosrun",
-            "mrp_view",
-            "view_node.py",
+            # Not by rosrun, which takes as long again.
+            roslib.packages.find_node("mrp_view", "view_node.py")[0],
             *("--port", str(port), *options),
             extra_env={**LIVE, **(extra_env or {})},
         )
