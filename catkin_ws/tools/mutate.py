@@ -25,6 +25,8 @@ import xml.etree.ElementTree as ElementTree
 
 WORKSPACE = pathlib.Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(WORKSPACE / "tests"))
+
+import compiler_cache  # noqa: E402
 import scratch  # noqa: E402
 
 DEADLINE = "20"  # seconds that a test waits for what a mutation never does
@@ -146,6 +148,7 @@ def start(folder, log, *targets):
         ["catkin_make", "-C", str(folder), "-DPYTHON_EXECUTABLE=/usr/bin/python3", *targets],
         env={
             **scratch.environment(),
+            **compiler_cache.variables(folder),
             "MRP_TEST_DEADLINE": DEADLINE,
             "ROS_HOSTNAME": "localhost",
             "ROS_LOG_DIR": str(folder / "logs"),
