@@ -15,6 +15,7 @@ from mrp_check import confine, spec
 from mrp_check.finding import ERROR, NOTE
 from mrp_check.package import Package
 from mrp_check.stages import run, stop
+from mrp_check.stages.static.facts import Facts
 
 MAIN = """
 
@@ -251,12 +252,13 @@ def make_package(folder, publishers, subscribers):
 
 def findings_of(folder, contract, scratch):
     """Return what the stages run and stop find, without building anything."""
-    package = Package(folder)
-    workspace = check_rules.workspace_of(package, scratch)
-    workspace.catkin.__dict__["built"] = None
-    found = list(run.findings(package, contract, workspace))
-    found += stop.findings(package, contract, workspace)
-    workspace.catkin.close()
+    case = check_rules.case_of(Package(folder), scratch, contract, built=None, facts=Facts())
+    found = []
+    for rule in (*run.RULES, *stop.RULES):
+        of_rule = list(rule.findings(case))
+        assert {finding.id for finding in of_rule} <= {*rule.ids}
+        found += of_rule
+    case.catkin.close()
     return found
 
 

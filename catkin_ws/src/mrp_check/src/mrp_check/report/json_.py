@@ -29,6 +29,7 @@ def data(report):
         "package": report.package,
         "spec": report.spec,
         "requirements": report.requirements,
+        "unseen": report.unseen,
         "findings": [finding_data(finding) for finding in report.findings],
     }
     if report.reason:

@@ -113,6 +113,8 @@ def name_findings(node):
 
 def raised_findings(node):
     """Yield a Finding for an error that was raised while the node went on."""
+    if node.not_up:
+        return
     found = node.places.traceback(node.errors())
     if found:
         place, kind, text = found

@@ -45,28 +45,21 @@ class Facts:
     sources: name of a node of the spec -> the files it is made of, the main one first
     launch: name of a node of the launch file -> (file, line of its <node>)
     unread: the files that could not be read to their end: what they lack proves nothing
+    problems: the Findings that say why not, of those in Python
+    python: file -> python_source.Source
+    relevant: the Python files that are nodes, or that nodes are made of
     """
 
     places: list[Place] = dataclasses.field(default_factory=list)
     sources: dict[str, list[str]] = dataclasses.field(default_factory=dict)
     launch: dict[str, tuple[str, int]] = dataclasses.field(default_factory=dict)
     unread: set[str] = dataclasses.field(default_factory=set)
+    problems: list = dataclasses.field(default_factory=list)
+    python: dict = dataclasses.field(default_factory=dict)
+    relevant: list[str] = dataclasses.field(default_factory=list)
 
     def of(self, node, *kinds):
         """Return the places of these kinds in the sources of a node of the spec, in order."""
         files = self.sources.get(node, [])
         found = [p for p in self.places if p.file in files and (not kinds or p.kind in kinds)]
         return sorted(found, key=lambda place: (files.index(place.file), place.line))
-
-    def place_of(self, node, *kinds):
-        """Return (file, line) of the first place of the first kind that there is.
-
-        Without any, it is the node's <node> in the launch file, or its source's first line; without
-        these, (None, None).
-        """
-        for kind in kinds:
-            for place in self.of(node, kind):
-                return place.file, place.line
-        if self.sources.get(node):
-            return self.sources[node][0], 1
-        return self.launch.get(node, (None, None))
