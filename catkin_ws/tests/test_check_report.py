@@ -143,7 +143,7 @@ def findings(*entries):
 @pytest.mark.parametrize(
     ("entries", "expected"),
     [
-        # What one node does wrong, it does wrong when it runs, and others notice.
+        # What one node does wrong, it does wrong when it runs; another is sent values all the same.
         ([("spin", "src/a.py", 1, "static", "a"), ("starts", "src/a.py", 1, "run", "a")], ["spin"]),
         (
             [
@@ -157,7 +157,7 @@ def findings(*entries):
                 ("python-syntax", "src/a.py", 1, "static", None),
                 ("received", "src/b.py", 5, "run", "b"),
             ],
-            ["python-syntax"],
+            [None],
         ),
         (
             [
@@ -189,12 +189,63 @@ def findings(*entries):
             ],
             [None],
         ),
+        # Without the launch file, the checker starts the nodes by its own.
+        ([("launch-file", None, None, "files", None), ("rate", "src/a.py", 5, "run", "a")], [None]),
+        # A script that is no node of the exercise keeps no node from anything.
+        (
+            [
+                ("python-names", "src/c.py", 5, "static", None),
+                ("rate", "src/a.py", 5, "run", "a"),
+            ],
+            [None],
+        ),
+        # A second instance of a defect is another defect.
+        ([("wrap", "src/a.py", 5, "static", "a"), ("wrap", "src/a.py", 9, "static", "a")], [None]),
+        (
+            [
+                ("targets", "CMakeLists.txt", 4, "static", "a"),
+                ("launch-nodes", "a.launch", 9, "static", "b"),
+            ],
+            [None],
+        ),
     ],
-    ids=range(9),
+    ids=range(13),
 )
 def test_consequences(entries, expected):
     told = causes.told_once(findings(*entries), facts())
     assert [finding.consequence_of for finding in told] == [None, *expected]
+
+
+class Ran:
+    """What was seen of a node that runs."""
+
+    is_up = True
+
+    def has_rate(self):
+        return True
+
+
+@pytest.mark.parametrize(
+    ("cause", "result"),
+    [
+        (("configure", "CMakeLists.txt", 1, "build", None), ("rate", "src/a.py", 5, "run", "a")),
+        (("python-names", "src/a.py", 5, "static", None), ("rate", "src/a.py", 5, "run", "a")),
+    ],
+    ids=range(2),
+)
+def test_what_was_seen_all_the_same_is_no_consequence(cause, result):
+    assert causes.told_once(findings(cause, result), facts())[1].consequence_of == cause[0]
+    seen = causes.told_once(findings(cause, result), facts(), {"a": Ran()})
+    assert seen[1].consequence_of is None
+
+
+def test_an_error_does_not_follow_from_what_works_all_the_same():
+    for severity in ("note", "warning"):
+        cause, result = findings(
+            ("lifetime", "src/a.py", 4, "static", "a"), ("rate", "src/a.py", 9, "run", "a")
+        )
+        cause.severity = severity
+        assert causes.told_once([cause, result], facts())[1].consequence_of is None
 
 
 def test_the_same_is_told_once():

@@ -145,8 +145,8 @@ class _Examination:
         return [id_ for id_ in self.ids if id_ not in self.failed]
 
     def report(self):
-        package, facts = self.case.package, vars(self.case).get("facts")
-        findings = causes.told_once(self.findings, facts)
+        package, known = self.case.package, vars(self.case)
+        findings = causes.told_once(self.findings, known.get("facts"), known.get("nodes"))
         for finding in findings:
             if finding.change and finding.file and finding.line:
                 patch = diff.of_change(package, finding.file, finding.line, finding.change)

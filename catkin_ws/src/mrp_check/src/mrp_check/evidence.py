@@ -6,7 +6,6 @@ from __future__ import annotations
 from mrp_check.requirements import REQUIREMENTS
 from mrp_check.stages.run.console import received_line
 from mrp_check.stages.run.node import Node
-from mrp_check.stages.run.publishing import FEW
 
 
 def unseen(case, ids):
@@ -123,7 +122,7 @@ _OF_NODES = {
     "meets": _when(Node.meets, "was not seen on its topic"),
     "values": _values,
     "rate": _of_publisher(
-        lambda role: role.period, lambda node: len(node.published()) >= FEW, "published too few messages"
+        lambda role: role.period, Node.has_rate, "published too few messages"
     ),
     "messages": _of_publisher(lambda role: True, Node.published, "published no message"),
     "wrap": _of_publisher(

@@ -14,6 +14,7 @@ _DIED = re.compile(
     r"\[(?P<name>\S+)-\d+\] process has "
     r"(?:died \[pid \d+, exit code (?P<code>-?\d+)|finished cleanly)"
 )
+FEW = 4  # messages without which nothing is said of a rate
 # Topics that belong to ROS itself.
 _ROS_TOPICS = {"/rosout", "/rosout_agg", "/clock", "/tf", "/tf_static", "/diagnostics"}
 
@@ -132,7 +133,11 @@ class Node:
         return [value for value in (self.direct or {}).get("sent", []) if value is not None]
 
     def published(self):
-        return self.own_messages(self.wanted.publishing)
+        return self.own_messages(self.wanted.publishing) if self.wanted.publishing else []
+
+    def has_rate(self):
+        """Return whether it has published enough to tell its rate."""
+        return len(self.published()) >= FEW
 
     def published_numbers(self):
         values = [self.value(message, self.wanted.publishing) for message in self.published()]
