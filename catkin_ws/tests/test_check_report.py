@@ -239,15 +239,6 @@ def test_what_was_seen_all_the_same_is_no_consequence(cause, result):
     assert seen[1].consequence_of is None
 
 
-def test_an_error_does_not_follow_from_what_works_all_the_same():
-    for severity in ("note", "warning"):
-        cause, result = findings(
-            ("lifetime", "src/a.py", 4, "static", "a"), ("rate", "src/a.py", 9, "run", "a")
-        )
-        cause.severity = severity
-        assert causes.told_once([cause, result], facts())[1].consequence_of is None
-
-
 def test_the_same_is_told_once():
     entry = ("spin", "src/a.py", 1, "static", "a")
     assert len(causes.told_once(findings(entry, entry), facts())) == 1

@@ -95,8 +95,9 @@ def told_once(findings, facts=None, nodes=None):
 
 def _causes(cause, finding, earlier, facts, nodes):
     """Return whether a finding follows from a cause."""
-    # A package that works all the same, though not well, breaks nothing by that.
-    if cause.severity == NOTE or finding.severity == ERROR != cause.severity:
+    # What cannot be built cannot run, whatever keeps it from being built.
+    passed_on = _PACKAGE_WIDE | {"compile", "link"}
+    if cause.severity != ERROR or cause.consequence_of and cause.id not in passed_on:
         return False
     of_cause, of_finding = _nodes(cause, facts), _nodes(finding, facts)
     together = bool(of_cause & of_finding)
@@ -114,7 +115,6 @@ def _causes(cause, finding, earlier, facts, nodes):
         return True
     node = nodes.get(finding.node)
     if node is None or not node.is_up:
-        # What cannot be built cannot run, whatever keeps it from being built.
         return follows or cause.id in _FATAL
     if cause.id in _PACKAGE_WIDE or finding.id == "rate" and node.has_rate():
         return follows and together  # it ran all the same, and this was seen of it
