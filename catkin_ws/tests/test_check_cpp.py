@@ -167,6 +167,8 @@ BROKEN = {
         "% 256",
         "when it comes to 256",
     ),
+    "short_publisher": (PUBLISHER, [('_topic", 10', '_topic", 1')], "queue", ", 1)", "asks for 10"),
+    "long_queue": (SUBSCRIBER, [('_topic", 10', '_topic", 11')], "queue", ", 11,", "asks for 10"),
     "short_queue": (SUBSCRIBER, [('"great_topic", 10', '"great_topic", 1')], "queue", "1,", "one"),
 }
 

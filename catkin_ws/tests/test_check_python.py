@@ -6,6 +6,7 @@ import re
 import check_rules
 import pytest
 from check_rules import told
+from mrp_check.stages.static import node_rules
 
 HEAD = """#!/usr/bin/env python
 import rospy
@@ -176,3 +177,12 @@ def test_plain_texts_are_read(expression, value, tmp_path):
     _, facts = check_rules.python_facts_of(tmp_path, text)
     (init,) = [place for place in facts.places if place.kind == "init"]
     assert init.text == value
+
+
+@pytest.mark.parametrize("queue", [0, 1, 9, 11])
+def test_queue_is_as_long_as_the_contract_says(queue, tmp_path):
+    text = replaced("queue_size=10", f"queue_size={queue}")
+    package, facts = check_rules.python_facts_of(tmp_path, text)
+    model = check_rules.model_of(package)
+    found = node_rules.findings(package, check_rules.PUB_SUB, model, None, facts)
+    assert told(found, "error") == [("queue", 9)]
