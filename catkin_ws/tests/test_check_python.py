@@ -186,3 +186,13 @@ def test_queue_is_as_long_as_the_contract_says(queue, tmp_path):
     model = check_rules.model_of(package)
     found = node_rules.findings(package, check_rules.PUB_SUB, model, None, facts)
     assert told(found, "error") == [("queue", 9)]
+
+
+def test_module_that_this_machine_has_not_is_not_the_students_fault(tmp_path):
+    text = replaced("import rospy\n", "import rospy\nimport no_such_camera\n")
+    (finding,) = check_rules.python_findings(tmp_path, text)
+    assert (finding.severity, finding.line) == ("note", 3)
+    assert "Debian package python3-no-such-camera" in finding.message
+    text = replaced("import rospy\n", "import rospy\nimport cv3\n")
+    (finding,) = check_rules.python_findings(tmp_path, text)
+    assert "csv" not in f"{finding.message} {finding.fix}"

@@ -30,6 +30,9 @@ RULES = {
 }
 
 
+_FOLD = 3  # findings about files outside the exercise: more are folded into one
+
+
 @dataclasses.dataclass
 class Report:
     """What came of a check.
@@ -99,6 +102,8 @@ class _Examination:
                 case.progress(f"stage {stage}")
             for rule in chosen:
                 self._ask(stage, rule)
+        for said in self._absent():
+            self._lose(("python-names",), said)
         self._guarded(ids, lambda: self.failed.update(evidence.unseen(case, self._open())))
 
     def _ask(self, stage, rule):
@@ -137,9 +142,17 @@ class _Examination:
                 f"The checker itself failed, in {place.name}() of {pathlib.Path(place.filename).name}:"
                 f"{place.lineno}: {type(error).__name__}: {error}. Please report it."
             )
-        self.failed.update(dict.fromkeys(ids, reason))
+        self._lose(ids, reason)
+
+    def _lose(self, ids, reason):
+        self.failed.update({id_: reason for id_ in ids if id_ in self.ids})
         if reason not in self.reasons:
             self.reasons.append(reason)
+
+    def _absent(self):
+        """Return a sentence on each module that this machine has not, and a node needs."""
+        facts = vars(self.case).get("facts")
+        return facts.absent().values() if facts else ()
 
     def _open(self):
         return [id_ for id_ in self.ids if id_ not in self.failed]
@@ -151,7 +164,7 @@ class _Examination:
             if finding.change and finding.file and finding.line:
                 patch = diff.of_change(package, finding.file, finding.line, finding.change)
                 finding.fix = "\n".join(part for part in (finding.fix, patch) if part)
-        findings = [finding for finding in findings if finding.id in self.ids]
+        findings = _folded([f for f in findings if f.id in self.ids], known.get("facts"))
         errors = [finding for finding in findings if finding.severity == ERROR]
         broken = {f.id for f in errors if not f.consequence_of}
         unseen = {id_: why for id_, why in self.failed.items() if id_ not in broken}
@@ -168,6 +181,26 @@ class _Examination:
             reason=" ".join(self.reasons),
             unseen={id_: unseen[id_] for id_ in self.ids if id_ in unseen},
         )
+
+
+def _folded(findings, facts):
+    """Return the findings; of many about scripts that are no node of the exercise, one for each id
+    and severity tells of them all."""
+    of_nodes = {file for files in facts.sources.values() for file in files} if facts else set()
+    outside = facts.python.keys() - of_nodes if facts else ()
+    groups = {}
+    for finding in findings:
+        alone = finding.file not in outside
+        key = id(finding) if alone else (finding.id, finding.severity, finding.consequence_of)
+        groups.setdefault(key, []).append(finding)
+    for first, *more in groups.values():
+        if len(more) >= _FOLD:
+            files = list(dict.fromkeys(f.file for f in (first, *more)))
+            first.message = (
+                f"{len(more) + 1} such faults in files that are no node of the exercise:"
+                f" {', '.join(files[:5])}{', ...' if files[5:] else ''}. The first: {first.message}"
+            )
+    return [f for group in groups.values() for f in (group[:1] if len(group) > _FOLD else group)]
 
 
 def _needs(ids):

@@ -3,9 +3,9 @@
 
 from __future__ import annotations
 
-from mrp_check.finding import Finding
+from mrp_check.finding import CannotCheck, Finding
 from mrp_check.requirements import Rule
-from mrp_check.stages import compiler, configuring, linker
+from mrp_check.stages import compiler, configuring, linker, uses
 
 
 def _configure(case):
@@ -26,6 +26,9 @@ def _build(case):
 
 def _not_configured(package, catkin, copy):
     step = catkin.configured
+    missing = configuring.absent(package, step.output)
+    if missing:
+        raise CannotCheck(uses.absent(missing, "cpp"))
     finding = (
         None if step.why_ended else configuring.finding(package, step.output, copy, catkin.model)
     )

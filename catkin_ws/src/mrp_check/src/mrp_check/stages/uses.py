@@ -46,6 +46,20 @@ class Use(typing.NamedTuple):
     firm: bool  # whether not to declare it is an error: of some, others bring them along
 
 
+# Python modules whose Debian package is called otherwise.
+_DEBIAN = {"cv2": "python3-opencv", "PIL": "python3-pil", "OpenGL": "python3-opengl"}
+
+
+def absent(name, language):
+    """Return the sentence about a package or a module that this machine has not."""
+    plain = name.lower().replace("_", "-")
+    guess = _DEBIAN.get(name, f"python3-{plain}") if language == "python" else f"lib{plain}-dev"
+    return (
+        f"{name} is not on this machine (Debian package {guess}): what needs it could not be"
+        " checked. Install it, and check again."
+    )
+
+
 @functools.lru_cache(maxsize=None)
 def is_ros_package(name):
     """Return whether this machine has a ROS package of that name."""

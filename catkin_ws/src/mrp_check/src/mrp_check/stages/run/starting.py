@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import re
 
+from mrp_check.finding import ERROR, NOTE, WARNING
 from mrp_check.stages.run.words import code_text, last_words
 
 
@@ -31,10 +32,13 @@ def start_findings(node):
             found = None
     if found and code != 0:
         place, kind, text = found
+        module = re.match(r"No module named '(\w+)", text)
+        is_absent = module and module.group(1) in node.places.facts.absent(node.name)
         yield node.finding(
             _id_of_error(kind, text, "starts"),
             f"{node.name} ends as soon as it is started: {kind}: {text}",
             place,
+            NOTE if is_absent else ERROR,
             expected="a node that goes on until Ctrl-C",
             seen=f"{kind}: {text}",
         )
@@ -100,7 +104,17 @@ def name_findings(node):
     if not own:
         return
     name = own.rsplit("/", 1)[-1]
-    if name != node.name:
+    if re.fullmatch(rf"{re.escape(node.name)}_\d+(_\d+)?", name):
+        yield node.finding(
+            "node-name",
+            "The node asks for an anonymous name: rosrun starts it under another name each time;"
+            " the launch file gives it its own.",
+            node.places.of(node.name, "init"),
+            WARNING,
+            expected=node.name,
+            seen=name,
+        )
+    elif name != node.name:
         yield node.finding(
             "node-name",
             f"Started by itself, {node.name} calls itself {name}: the launch file hides it, but"

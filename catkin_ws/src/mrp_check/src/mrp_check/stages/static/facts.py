@@ -63,3 +63,12 @@ class Facts:
         files = self.sources.get(node, [])
         found = [p for p in self.places if p.file in files and (not kinds or p.kind in kinds)]
         return sorted(found, key=lambda place: (files.index(place.file), place.line))
+
+    def absent(self, node=None):
+        """Return module -> sentence, of what a node's sources import and this machine has not.
+
+        node: all nodes of the spec if None
+        """
+        names = [node] if node else self.sources
+        sources = [self.python.get(file) for name in names for file in self.sources.get(name, ())]
+        return {module: said for one in sources if one for module, said in one.absent.items()}
