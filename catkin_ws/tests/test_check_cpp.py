@@ -88,6 +88,13 @@ BROKEN = {
         PUBLISHER,
     ),
     "no_spin": (PUBLISHER, [("  ros::spin();\n", "")], "spin", "return 0", "end"),
+    "no_spin_no_return": (
+        PUBLISHER,
+        [("  ros::spin();\n", ""), ("  return 0;\n", "")],
+        "spin",
+        "}",
+        "end of main",
+    ),
     "spin_once": (SUBSCRIBER, [("ros::spin()", "ros::spinOnce()")], "spin", "spinOnce", "at once"),
     "local": (
         PUBLISHER,

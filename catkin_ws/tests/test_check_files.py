@@ -284,7 +284,9 @@ def test_error_in_a_header_of_ros_is_where_the_package_uses_it(tmp_path):
 
 @pytest.mark.parametrize("name", ["odd.py.save.1", "odd.py~", "odd.py.bak", "#odd.py#"])
 def test_what_an_editor_keeps_is_no_script(name, tmp_path):
-    package = check_rules.make(tmp_path, **{f"src__{name}": "#!/usr/bin/env python\nimport rospi\n"})
+    package = check_rules.make(
+        tmp_path, **{f"src__{name}": "#!/usr/bin/env python\nimport rospi\n"}
+    )
     assert package.files == ["CMakeLists.txt", "package.xml", f"src/{name}"]
     assert package.of_kind("python") == []
 
@@ -294,7 +296,9 @@ def test_what_an_editor_keeps_is_no_script(name, tmp_path):
     [("message_generation", []), ("genmsg", ["warning"]), ("roslib", ["error", "error"])],
 )
 def test_what_makes_messages(generator, severities, tmp_path):
-    text_ = CMAKE.replace("catkin_package", "add_message_files(FILES A.msg)\ngenerate_messages()\n#")
+    text_ = CMAKE.replace(
+        "catkin_package", "add_message_files(FILES A.msg)\ngenerate_messages()\n#"
+    )
     package = check_rules.make(
         tmp_path,
         package_DOT_xml=MANIFEST.replace(

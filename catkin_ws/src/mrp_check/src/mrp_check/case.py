@@ -16,6 +16,7 @@ from mrp_check.stages.places import Places
 from mrp_check.stages.run.node import Node
 from mrp_check.stages.static import cpp_headers
 
+
 class Case:
     """One package under check.
 

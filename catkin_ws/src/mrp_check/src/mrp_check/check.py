@@ -138,9 +138,10 @@ class _Examination:
             reason = f"A command could not be run confined: {error}."
         except Exception as error:  # the checker's own fault: no finding, and no end of it all
             place = traceback.extract_tb(error.__traceback__)[-1]
+            file = pathlib.Path(place.filename).name
             reason = (
-                f"The checker itself failed, in {place.name}() of {pathlib.Path(place.filename).name}:"
-                f"{place.lineno}: {type(error).__name__}: {error}. Please report it."
+                f"The checker itself failed, in {place.name}() of {file}:{place.lineno}:"
+                f" {type(error).__name__}: {error}. Please report it."
             )
         self._lose(ids, reason)
 
@@ -168,7 +169,9 @@ class _Examination:
         errors = [finding for finding in findings if finding.severity == ERROR]
         broken = {f.id for f in errors if not f.consequence_of}
         unseen = {id_: why for id_, why in self.failed.items() if id_ not in broken}
-        unseen.update({f.id: f"it follows from {f.consequence_of}" for f in errors if f.id not in broken})
+        unseen.update(
+            {f.id: f"it follows from {f.consequence_of}" for f in errors if f.id not in broken}
+        )
         return Report(
             package=package.name,
             spec=self.case.spec.title,

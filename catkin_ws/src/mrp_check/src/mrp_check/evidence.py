@@ -121,9 +121,7 @@ _OF_NODES = {
     "up": _when(lambda node: True, ""),
     "meets": _when(Node.meets, "was not seen on its topic"),
     "values": _values,
-    "rate": _of_publisher(
-        lambda role: role.period, Node.has_rate, "published too few messages"
-    ),
+    "rate": _of_publisher(lambda role: role.period, Node.has_rate, "published too few messages"),
     "messages": _of_publisher(lambda role: True, Node.published, "published no message"),
     "wrap": _of_publisher(
         lambda role: role.values and role.values.modulus,

@@ -258,7 +258,9 @@ class _Reader:
 
     def fields_of(self, kind, place):
         """Return field -> type of a message of this machine, such as std_msgs/UInt32."""
-        folders = {kind.split("/")[0]: [f"{share}/{kind.split('/')[0]}/msg" for share in uses.SHARES]}
+        folders = {
+            kind.split("/")[0]: [f"{share}/{kind.split('/')[0]}/msg" for share in uses.SHARES]
+        }
         try:
             found = genmsg.msg_loader.load_msg_by_type(
                 genmsg.MsgContext.create_default(), kind, folders

@@ -115,7 +115,8 @@ def _row(id_, report):
     why = _escaped(console.why_not(report, id_))
     return (
         f'<tr><td class="{verdict}">{_WORDS[verdict]}</td>'
-        f'<th scope="row">{_escaped(requirement.title)} <span class="faint">{id_}{why}</span></th></tr>'
+        f'<th scope="row">{_escaped(requirement.title)}'
+        f' <span class="faint">{id_}{why}</span></th></tr>'
     )
 
 

@@ -101,6 +101,19 @@ class Places:
             return next((s.lineno for s in body if not isinstance(s, skip)), 1)
         return self.package.find_line(file, " main(", 1)
 
+    def condition_of_publish(self, node):
+        """Return the place of the condition before publish() in the same function, or None."""
+        publish = self.facts_of(node, "publish")[:1]
+        functions = [
+            f for f in self.facts_of(node, "function") if publish and f.is_around(publish[0])
+        ]
+        for function in functions[-1:]:
+            lines = self.package.lines(function.file)[function.line - 1 : publish[0].line]
+            for number, text in reversed([*enumerate(lines, function.line)]):
+                if re.match(r"\s*\}?\s*(if|elif|else if)\b", text):
+                    return function.file, number
+        return None
+
     def of_log(self, node, log):
         """Return the place of a line that a node has logged: /rosout says it."""
         path = log["file"]

@@ -87,9 +87,7 @@ _OF_ERRORS = ("python-names", "python-syntax", "type", "node-start")
 RULES = (
     Rule(("starts",), ("nodes",), _problems),
     _rule(_no_executable, ("starts",), needs_up=False),
-    _rule(
-        lambda node: node.not_up, ("starts", "spin", "scripts", *_OF_ERRORS), needs_up=False
-    ),
+    _rule(lambda node: node.not_up, ("starts", "spin", "scripts", *_OF_ERRORS), needs_up=False),
     _rule(name_findings, ("node-name",), needs_up=False),
     _rule(raised_findings, ("callbacks", *_OF_ERRORS), needs_up=False),
     _rule(topic_findings, ("topic", "type", "namespace")),

@@ -65,7 +65,8 @@ def _line_findings(node, line):
     shown = [t for t in lines if _ratio(t, wanted) > 0.8 and not PREFIX.match(t)]
     yield node.finding(
         "console",
-        f"{node.name} does not log the line “{wanted}”." + (f" It prints “{shown[0]}”." if shown else ""),
+        f"{node.name} does not log the line “{wanted}”."
+        + (f" It prints “{shown[0]}”." if shown else ""),
         node.places.of(node.name, "print" if shown else "log", "init"),
         expected=wanted,
         seen=shown[0] if shown else "no such line",

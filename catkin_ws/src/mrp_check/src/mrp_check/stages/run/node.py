@@ -119,7 +119,10 @@ class Node:
 
     def meets(self):
         """Return whether it was seen on each topic that it is to be on."""
-        roles = (("publications", self.wanted.publishing), ("subscriptions", self.wanted.subscribing))
+        roles = (
+            ("publications", self.wanted.publishing),
+            ("subscriptions", self.wanted.subscribing),
+        )
         return all(
             resolved(topic, self.path) in self.topics(kind)
             or self.own_name
@@ -147,7 +150,9 @@ class Node:
         """Return whether it was seen what is published past the largest value: in Python when it
         ran, in C++ by the type of the counter."""
         if self.wrap:
-            return any(event["event"] in ("after", "error") for event in self.wrap.get("events", []))
+            return any(
+                event["event"] in ("after", "error") for event in self.wrap.get("events", [])
+            )
         return any(place.values.get("bits") for place in self.places.facts_of(self.name, "step"))
 
     def has_ended(self):

@@ -77,7 +77,8 @@ def _value_findings(node, values, role):
             place = file_line
         else:
             said = f"{node.name} publishes {shown}: after {before} came {after}."
-            place = file_line
+            skips = rule.step and (after - before) % rule.step == 0 and after > before
+            place = skips and node.places.condition_of_publish(node.name) or file_line
         yield node.finding("values", said, place, expected=expected, seen=shown)
     elif values[0] != rule.start:
         yield node.finding(

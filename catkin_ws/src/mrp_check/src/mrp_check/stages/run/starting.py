@@ -62,7 +62,7 @@ def start_findings(node):
             "spin",
             f"{node.name} ends by itself soon after it has started: nothing keeps it waiting"
             " for messages or for its timer.",
-            node.places.of(node.name, "init", "spin"),
+            node.places.facts.end_of_main(node.name) or node.places.of(node.name, "init", "spin"),
             expected=expected,
             seen="it ended with exit code 0",
             fix="Call rospy.spin() or ros::spin() at the end of main().",

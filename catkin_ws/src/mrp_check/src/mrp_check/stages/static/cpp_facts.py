@@ -565,9 +565,9 @@ class _Unit:
         text = owned[0].get_canonical().spelling
         return [text] if text in _HANDLES else self.handles_in(owned[0].get_declaration())
 
-    def handles_in(self, declaration, depth=0):
+    def handles_in(self, declaration):
         """Return the types of ROS handles among a class's own members."""
-        if declaration is None or not self.own_file(declaration) or depth > 3:
+        if declaration is None or not self.own_file(declaration):
             return []
         fields = [c for c in declaration.get_children() if c.kind == self.kinds.FIELD_DECL]
         return sorted({self.type_of(field) for field in fields} & set(_HANDLES))

@@ -64,6 +64,16 @@ class Facts:
         found = [p for p in self.places if p.file in files and (not kinds or p.kind in kinds)]
         return sorted(found, key=lambda place: (files.index(place.file), place.line))
 
+    def end_of_main(self, node):
+        """Return where the function ends that starts the node: there a call belongs that is
+        missing. None if it is no function."""
+        inits, functions = self.of(node, "init"), self.of(node, "function")
+        mains = [f for f in functions if (f.is_around(inits[0]) if inits else f.text == "main")]
+        ends = [p for p in self.of(node, "exit") if p.text == "return"]
+        if ends or not mains:
+            return (ends[-1].file, ends[-1].line) if ends else None
+        return mains[-1].file, mains[-1].values["end"]
+
     def absent(self, node=None):
         """Return module -> sentence, of what a node's sources import and this machine has not.
 

@@ -233,15 +233,6 @@ class _Node:
         if not called_back and not self.places("timer", "publisher"):
             return
         call = "rospy.spin()" if self.is_python else "ros::spin()"
-        ends = [p for p in self.places("exit") if p.text == "return"]
-        functions = [p for p in self.places("function") if p.text == "main"]
-        last = [p for p in self.places("init")]
-        if self.is_python and last:
-            # The end of the function in which the node is begun.
-            around = [f for f in self.places("function") if f.is_around(last[0])]
-            where = (last[0].file, around[-1].values["end"] if around else last[0].line)
-        else:
-            where = ends[-1] if ends else functions[-1] if functions else (self.main, 1)
         yield self.finding(
             "spin",
             f"{self.main} never calls {call}: "
@@ -250,11 +241,16 @@ class _Node:
                 if waits
                 else "the program comes to its end at once."
             ),
-            where,
+            self.facts.end_of_main(self.node.name) or (self.main, self._last_line()),
             expected=f"{call} at the end of main",
             seen="no such call",
             fix=f"Add {call}{'' if self.is_python else ';'} at the end of main.",
         )
+
+    def _last_line(self):
+        """Return the last line of the main source in which something stands."""
+        lines = self.package.lines(self.main)
+        return max((n for n, text in enumerate(lines, 1) if text.strip()), default=1)
 
     def _made_too_late(self, spins):
         """Yield a finding if the node's parts are made below a spin() of the same function."""
