@@ -11,10 +11,11 @@ import textwrap
 
 import check_rules
 import pytest
-from mrp_check import confine, spec
+from mrp_check import confine, evidence, spec
 from mrp_check.finding import ERROR, NOTE
 from mrp_check.package import Package
-from mrp_check.stages import run, stop
+from mrp_check.requirements import REQUIREMENTS
+from mrp_check.stages import observing, run, stop
 from mrp_check.stages.static.facts import Facts
 
 MAIN = """
@@ -295,6 +296,53 @@ def is_told(finding, folder, id_, line, message):
         return False
     lines = (folder / finding.file).read_text().splitlines()
     return bool(re.search(line, lines[finding.line - 1]))
+
+
+def test_texts_on_a_number_topic_are_found_and_no_fault_of_the_checker(tmp_path):
+    """Of what arrives, nothing is a number: its type is wrong, and its values were never seen."""
+    folder = make_package(tmp_path / "lab_pkg", {"right": ("", "")}, {})
+    path, topic = "/lab/publisher_right", "/lab/of_right"
+    sent = {"node": path, "topic": topic, "type": "std_msgs/String", "fields": {"data": "1"}}
+    seen = {
+        "publications": [{**sent, "time": 0}],
+        "messages": [{**sent, "time": time / 2} for time in range(8)],
+    }
+    launch = {"lines": [], "seen": seen, "asked": 5, "ending": "enough"}
+    observed = observing.Observed(launch=launch, executables={"publisher_right": folder})
+    case = check_rules.case_of(
+        Package(folder),
+        tmp_path / "scratch",
+        spec_of(["right"], []),
+        facts=Facts(),
+        observed=observed,
+    )
+    found = [finding.id for rule in run.RULES for finding in rule.findings(case)]
+    case.catkin.close()
+    assert "type" in found and "values" not in found
+    unseen = evidence.unseen(case, ["values", "rate", "latch", "exit", "type"])
+    assert unseen == {
+        "values": "publisher_right published no number",
+        "exit": "publisher_right was not seen to end",
+    }
+
+
+def test_what_a_dead_node_would_do_was_never_seen(tmp_path):
+    folder = make_package(tmp_path / "lab_pkg", {"right": ("", "")}, {})
+    observed = observing.Observed(executables={"publisher_right": folder})
+    observed.direct = {"nodes": {"publisher_right": {"name": None, "code": 1, "ended_after": 0.1}}}
+    case = check_rules.case_of(
+        Package(folder),
+        tmp_path / "scratch",
+        spec_of(["right"], []),
+        facts=Facts(),
+        observed=observed,
+    )
+    case.catkin.close()
+    of_run = [id_ for id_, one in REQUIREMENTS.items() if one.stage in ("run", "stop")]
+    unseen = evidence.unseen(case, of_run)
+    # Nobody asks it to hear anything.
+    assert {*of_run} - {*unseen} == {"received"}
+    assert {*unseen.values()} == {"publisher_right did not run"}
 
 
 COUNTERS = {
