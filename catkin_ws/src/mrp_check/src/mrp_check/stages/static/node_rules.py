@@ -6,7 +6,7 @@ from __future__ import annotations
 import os
 import re
 
-from mrp_check.finding import WARNING, Finding
+from mrp_check.finding import ERROR, WARNING, Finding
 from mrp_check.stages.static.python_source import GAP
 
 
@@ -332,6 +332,8 @@ class _Node:
             why.get((self.is_python, kind, queue))
             or f"The {kind}'s queue {rooms}; the contract asks for {asked}.",
             (place.file, place.values.get("queue_line", place.line)),
+            # A longer one loses nothing, and one that is little shorter hardly ever.
+            severity=ERROR if queue == 1 or (self.is_python, kind, queue) in why else WARNING,
             expected=f"queue_size={asked}" if self.is_python else f"a queue of {asked}",
             fix=f"Write {asked} for {queue}.",
             change=(f"queue_size={queue}", f"queue_size={asked}")
