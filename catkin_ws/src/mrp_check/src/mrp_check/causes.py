@@ -6,22 +6,12 @@ from __future__ import annotations
 from mrp_check.finding import ERROR, NOTE
 
 # What keeps a node from running at all, or from being itself.
-_FATAL = {
-    "manifest",
-    "package-name",
-    "cmake",
-    "targets",
-    "scripts",
-    "messages",
-    "text",
-    "launch-nodes",
-    "python-syntax",
-    "python-names",
-    "node-start",
-    "configure",
-    "compile",
-    "link",
-}
+_FATAL = set(
+    (
+        "manifest package-name cmake targets scripts messages text launch-nodes"
+        " python-syntax python-names node-start configure compile link"
+    ).split()
+)
 _PACKAGE_WIDE = {"manifest", "package-name", "cmake", "configure"}
 _OF_BUILDING = _PACKAGE_WIDE | {"launch-file", "dependencies", "messages", "targets", "scripts"}
 

@@ -389,16 +389,10 @@ def _sentence(error):
 def _shown(value):
     if value is None:
         return "nothing"
-    if isinstance(value, (dict, list)):
-        return (
-            "keys with values"
-            if isinstance(value, dict) and value
-            else "a list"
-            if value
-            else "nothing"
-        )
-    return (
-        {True: "true", False: "false"}.get(value, repr(value))
-        if isinstance(value, bool)
-        else repr(value)
-    )
+    if isinstance(value, (dict, list)) and not value:
+        return "nothing"
+    if isinstance(value, dict):
+        return "keys with values"
+    if isinstance(value, list):
+        return "a list"
+    return str(value).lower() if isinstance(value, bool) else repr(value)

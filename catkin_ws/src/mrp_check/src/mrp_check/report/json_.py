@@ -7,19 +7,7 @@ import json
 
 from mrp_check.requirements import REQUIREMENTS
 
-FIELDS = (
-    "id",
-    "stage",
-    "severity",
-    "file",
-    "line",
-    "message",
-    "expected",
-    "seen",
-    "fix",
-    "section",
-    "consequence_of",
-)
+FIELDS = ("id stage severity file line message expected seen fix section consequence_of").split()
 
 
 def data(report):

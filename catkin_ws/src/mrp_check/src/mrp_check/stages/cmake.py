@@ -231,13 +231,8 @@ class Model:
         if self.targets:
             self.late = next(iter(self.targets.values()))
         names = {
-            "INCLUDE_DIRS",
-            "LIBRARIES",
-            "CATKIN_DEPENDS",
-            "DEPENDS",
-            "CFG_EXTRAS",
-            "EXPORTED_TARGETS",
-            "SKIP_CMAKE_CONFIG_GENERATION",
+            *("INCLUDE_DIRS", "LIBRARIES", "CATKIN_DEPENDS", "DEPENDS", "CFG_EXTRAS"),
+            *("EXPORTED_TARGETS", "SKIP_CMAKE_CONFIG_GENERATION"),
         }
         self.depends = sections(call.arguments, names).get("CATKIN_DEPENDS", [])
 

@@ -17,26 +17,13 @@ _INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*[<"]([\w./+-]+)[>"]', re.MULT
 _COMMENT = re.compile(r"/\*.*?\*/|//[^\n]*", re.DOTALL)
 
 # They come with roscpp or rospy: whoever does not name them has them all the same.
-_LOOSE = {
-    "roslib",
-    "rosgraph",
-    "rosconsole",
-    "rostime",
-    "roscpp_serialization",
-    "genpy",
-    "roscpp_traits",
-    "rosnode",
-    "rostopic",
-    "rosservice",
-    "roslaunch",
-    "rosunit",
-    "rostest",
-    "rospkg",
-    "message_filters",
-    "xmlrpcpp",
-    "cpp_common",
-    "rosgraph_msgs",
-}
+_LOOSE = set(
+    (
+        "roslib rosgraph rosconsole rostime roscpp_serialization genpy roscpp_traits"
+        " rosnode rostopic rosservice roslaunch rosunit rostest rospkg message_filters"
+        " xmlrpcpp cpp_common rosgraph_msgs"
+    ).split()
+)
 
 
 class Use(typing.NamedTuple):

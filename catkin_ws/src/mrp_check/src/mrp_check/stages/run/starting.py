@@ -159,13 +159,7 @@ def _id_of_error(kind, text, otherwise):
     built_in = re.match(
         r"'(int|float|str|bytes|bool|list|tuple|dict|NoneType|function)' object", text
     )
-    names = (
-        "NameError",
-        "AttributeError",
-        "ImportError",
-        "ModuleNotFoundError",
-        "UnboundLocalError",
-    )
+    names = "NameError AttributeError ImportError ModuleNotFoundError UnboundLocalError".split()
     if kind in names and not built_in:
         return "python-names"
     if kind in ("SyntaxError", "IndentationError", "TabError"):

@@ -15,13 +15,10 @@ GAP = "{}"
 _LOG = re.compile(r"ROS_(DEBUG|INFO|WARN|ERROR|FATAL)(?:_STREAM)?(?:_\w+)?$")
 _LEVELS = {"DEBUG": "debug", "INFO": "info", "WARN": "warn", "ERROR": "error", "FATAL": "fatal"}
 _MESSAGE = re.compile(r"\b(\w+)::(\w+?)_<")
-_HANDLES = (
-    "ros::NodeHandle",
-    "ros::Publisher",
-    "ros::Subscriber",
-    "ros::Timer",
-    "ros::WallTimer",
-    "ros::SteadyTimer",
+_HANDLES = tuple(
+    (
+        "ros::NodeHandle ros::Publisher ros::Subscriber ros::Timer ros::WallTimer ros::SteadyTimer"
+    ).split()
 )
 _KEPT = ("subscribe", "createTimer", "createWallTimer", "createSteadyTimer", "advertise")
 _SPINS = {"spin", "spinOnce", "waitForShutdown", "callAvailable", "callOne", "start"}
