@@ -12,7 +12,7 @@ import textwrap
 import check_rules
 import pytest
 from mrp_check import confine, evidence, spec
-from mrp_check.finding import ERROR, NOTE
+from mrp_check.finding import ERROR, NOTE, CannotCheck
 from mrp_check.package import Package
 from mrp_check.requirements import REQUIREMENTS
 from mrp_check.stages import observing, run, stop
@@ -324,6 +324,15 @@ def test_texts_on_a_number_topic_are_found_and_no_fault_of_the_checker(tmp_path)
         "values": "publisher_right published no number",
         "exit": "publisher_right was not seen to end",
     }
+
+
+def test_a_fault_of_the_observer_is_no_finding(tmp_path, monkeypatch):
+    folder = make_package(tmp_path / "lab_pkg", {"right": ("", "")}, {})
+    for name in ("launch_plan", "direct_plan"):
+        plan = {"kind": "none", "most": 60, "stop_seconds": 1}
+        monkeypatch.setattr(observing._Run, name, lambda self, plan=plan: plan)
+    with pytest.raises(CannotCheck, match="The observer itself failed: KeyError: 'none'"):
+        findings_of(folder, spec_of(["right"], []), tmp_path / "scratch")
 
 
 def test_what_a_dead_node_would_do_was_never_seen(tmp_path):

@@ -23,7 +23,7 @@ EXERCISES = sorted(CHECK.glob("exercises/*/solution.patch"))
 def run_check(tmp_path):
     """Return a function that checks the package at a folder, and returns the report's data."""
 
-    def run(folder, spec):
+    def run(folder, spec, *options):
         report = tmp_path / "report.json"
         CACHE.mkdir(parents=True, exist_ok=True)
         env = scratch.environment()
@@ -36,7 +36,16 @@ def run_check(tmp_path):
         )
         command = ["/usr/bin/python3", CHECK / "scripts" / "check", folder]
         done = subprocess.run(
-            [*command, "--spec", CHECK / "specs" / spec, "--json", report, "--timeout", "900"],
+            [
+                *command,
+                "--spec",
+                CHECK / "specs" / spec,
+                "--json",
+                report,
+                "--timeout",
+                "900",
+                *options,
+            ],
             env=env,
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
@@ -115,6 +124,18 @@ def test_exercise_fails_for_its_own_reason_and_its_solution_passes(solution, tmp
     check_sets.break_(folder, solution)
     check_sets.lay_out("mrp", tmp_path / "tutorial")
     assert contents(folder) == contents(tmp_path / "tutorial")
+
+
+@pytest.mark.parametrize(
+    ("defect", "id_"), [("launch_type", "launch-nodes"), ("cpp_uint16_counter", "wrap")]
+)
+def test_one_requirement_alone_is_found_broken_too(defect, id_, tmp_path, run_check):
+    folder = tmp_path / "package"
+    (patch,) = [path for path in check_sets.PATCHES if path.stem == defect]
+    check_sets.lay_out("mrp", folder)
+    check_sets.break_(folder, patch)
+    report = run_check(folder, "pub_sub.yaml", "--only", id_)
+    assert report["requirements"] == {id_: "broken"}
 
 
 def contents(folder):

@@ -75,7 +75,7 @@ class _Run:
         self.executables = _executables(case)  # by now there is what was built
         self.result = Observed()
         self.launch_file = None
-        self.too_busy = False
+        self.too_busy, self.fault = False, ""
 
     def observe(self):
         self.read_launch_file()
@@ -91,6 +91,8 @@ class _Run:
         for thread in threads:
             thread.join()
         launch = self.result.launch
+        if self.fault:
+            raise CannotCheck(f"The observer itself failed: {self.fault}. Please report it.")
         if self.too_busy or launch and launch["ending"] == "most":
             # Not the package's fault: one that never comes up is idle, or uses up its time.
             raise CannotCheck(
@@ -305,6 +307,8 @@ class _Run:
         except (OSError, ValueError):
             said = (done.errors.strip().splitlines() or [f"it ended with {done.code}"])[-1]
             why = done.limit_text(limits) or said
+            if why is said and "Traceback" in done.errors:
+                self.fault = said
             self.result.problems.append(f"the nodes could not be observed: {why}")
 
 
