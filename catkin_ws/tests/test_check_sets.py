@@ -126,15 +126,21 @@ def test_exercise_fails_for_its_own_reason_and_its_solution_passes(solution, tmp
     assert contents(folder) == contents(tmp_path / "tutorial")
 
 
+ALONE = [
+    ("mrp", "launch/pub_sub.launch", 'type="subscriber_py', 'type="publisher_py', "launch-nodes"),
+    ("scripts_folder", "src/even.cpp", "unsigned int", "unsigned short", "wrap"),
+]
+
+
 @pytest.mark.parametrize(
-    ("defect", "id_"), [("launch_type", "launch-nodes"), ("cpp_uint16_counter", "wrap")]
+    ("style", "file", "old", "new", "id_"), ALONE, ids=["launch-nodes", "wrap"]
 )
-def test_one_requirement_alone_is_found_broken_too(defect, id_, tmp_path, run_check):
-    folder = tmp_path / "package"
-    (patch,) = [path for path in check_sets.PATCHES if path.stem == defect]
-    check_sets.lay_out("mrp", folder)
-    check_sets.break_(folder, patch)
-    report = run_check(folder, "pub_sub.yaml", "--only", id_)
+def test_one_requirement_alone_is_found_broken_too(style, file, old, new, id_, tmp_path, run_check):
+    check_sets.lay_out(style, tmp_path / "package")
+    broken = tmp_path / "package" / file
+    assert old in broken.read_text()
+    broken.write_text(broken.read_text().replace(old, new))
+    report = run_check(tmp_path / "package", check_sets.spec_of(style), "--only", id_)
     assert report["requirements"] == {id_: "broken"}
 
 
