@@ -3,10 +3,9 @@
 
 import pathlib
 
-from mrp_check import check, spec
+from mrp_check import case, spec
 from mrp_check.package import Package
 from mrp_check.stages import cmake, uses
-from mrp_check.stages.catkin import Catkin
 from mrp_check.stages.static import facts, python_facts, python_read, python_rules
 
 MANIFEST = """<?xml version="1.0"?>
@@ -45,12 +44,15 @@ def make(folder, **files):
     return Package(folder)
 
 
-def workspace_of(package, folder):
-    """Return a Workspace for a package in a new folder; close its `catkin` in the end."""
+def case_of(package, folder, contract=PUB_SUB, **known):
+    """Return a Case for a package in a new folder; close its `catkin` in the end.
+
+    known: what it is to be taken to know already, such as facts
+    """
     folder.mkdir()
-    workspace = check._workspace(package, folder, 120, lambda sentence: None)
-    workspace.catkin = Catkin(workspace)
-    return workspace
+    one = case.Case(package, contract, folder, 120, lambda sentence: None)
+    vars(one).update(known)
+    return one
 
 
 def model_of(package):

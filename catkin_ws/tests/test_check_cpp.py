@@ -91,6 +91,13 @@ BROKEN = {
         PUBLISHER,
     ),
     "no_spin": (PUBLISHER, [("  ros::spin();\n", "")], "spin", "return 0", "end"),
+    "no_spin_no_return": (
+        PUBLISHER,
+        [("  ros::spin();\n", ""), ("  return 0;\n", "")],
+        "spin",
+        "}",
+        "end of main",
+    ),
     "spin_once": (SUBSCRIBER, [("ros::spin()", "ros::spinOnce()")], "spin", "spinOnce", "at once"),
     "local": (
         PUBLISHER,
@@ -170,6 +177,8 @@ BROKEN = {
         "% 256",
         "when it comes to 256",
     ),
+    "short_publisher": (PUBLISHER, [('_topic", 10', '_topic", 1')], "queue", ", 1)", "asks for 10"),
+    "long_queue": (SUBSCRIBER, [('_topic", 10', '_topic", 11')], "queue", ", 11,", "asks for 10"),
     "short_queue": (SUBSCRIBER, [('"great_topic", 10', '"great_topic", 1')], "queue", "1,", "one"),
 }
 

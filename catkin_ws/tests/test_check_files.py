@@ -4,7 +4,7 @@
 import check_rules
 import pytest
 from check_rules import CMAKE, MANIFEST, PUB_SUB, told
-from mrp_check.stages import cmake, compiler
+from mrp_check.stages import cmake, compiler, configuring
 from mrp_check.stages.files import cmake_rules, dependencies, manifest, names, scripts, text
 
 pytestmark = pytest.mark.quick
@@ -282,3 +282,46 @@ def test_error_in_a_header_of_ros_is_where_the_package_uses_it(tmp_path):
     )
     (problem,) = compiler.problems(output, package.root)
     assert (problem.file, problem.line) == ("src/a.cpp", 6)
+
+
+@pytest.mark.parametrize("name", ["odd.py.save.1", "odd.py~", "odd.py.bak", "#odd.py#"])
+def test_what_an_editor_keeps_is_no_script(name, tmp_path):
+    package = check_rules.make(
+        tmp_path, **{f"src__{name}": "#!/usr/bin/env python\nimport rospi\n"}
+    )
+    assert package.files == ["CMakeLists.txt", "package.xml", f"src/{name}"]
+    assert package.of_kind("python") == []
+
+
+@pytest.mark.parametrize(
+    ("generator", "severities"),
+    [("message_generation", []), ("genmsg", ["warning"]), ("roslib", ["error", "error"])],
+)
+def test_what_makes_messages(generator, severities, tmp_path):
+    text_ = CMAKE.replace(
+        "catkin_package", "add_message_files(FILES A.msg)\ngenerate_messages()\n#"
+    )
+    package = check_rules.make(
+        tmp_path,
+        package_DOT_xml=MANIFEST.replace(
+            "</package>", f"<depend>{generator}</depend><depend>message_runtime</depend></package>"
+        ),
+        CMakeLists_DOT_txt=text_.replace("roscpp rospy", f"{generator} roscpp rospy"),
+        msg__A_DOT_msg="int32 a\n",
+    )
+    parsed, _ = manifest.parse(package)
+    model = check_rules.model_of(package)
+    found = cmake_rules.own_messages(package, PUB_SUB, model, parsed)
+    assert [finding.severity for finding in found] == severities
+
+
+def test_package_that_this_machine_has_not_is_not_the_students_fault(tmp_path):
+    package = check_rules.make(
+        tmp_path,
+        package_DOT_xml=MANIFEST.replace("</package>", "<depend>cv_bridge</depend></package>"),
+    )
+    said = 'Could not find a package configuration file provided by "{}" with any of'
+    assert configuring.absent(package, said.format("cv_bridge")) == "cv_bridge"
+    # Nobody asks for this one, and that one is misspelt.
+    assert configuring.absent(package, said.format("tf2")) is None
+    assert configuring.absent(package, said.format("rospyy")) is None

@@ -45,9 +45,9 @@ def findings(folder, text, **files):
     file, problems = launch_rules.readable(package, PUB_SUB)
     if problems:
         return problems
-    workspace = check_rules.workspace_of(package, folder / "scratch")
-    launch = launching.load(package, workspace, file)
-    workspace.catkin.close()
+    case = check_rules.case_of(package, folder / "scratch")
+    launch = launching.load(package, case, file)
+    case.catkin.close()
     model = check_rules.model_of(package)
     return list(launch_rules.findings(package, PUB_SUB, model, launch))
 

@@ -6,6 +6,7 @@ import re
 import check_rules
 import pytest
 from check_rules import told
+from mrp_check.stages.static import node_rules
 
 pytestmark = pytest.mark.quick
 
@@ -178,3 +179,58 @@ def test_plain_texts_are_read(expression, value, tmp_path):
     _, facts = check_rules.python_facts_of(tmp_path, text)
     (init,) = [place for place in facts.places if place.kind == "init"]
     assert init.text == value
+
+
+@pytest.mark.parametrize(
+    ("queue", "severity"), [(0, "warning"), (1, "error"), (9, "warning"), (11, "warning")]
+)
+def test_queue_is_as_long_as_the_contract_says(queue, severity, tmp_path):
+    text = replaced("queue_size=10", f"queue_size={queue}")
+    package, facts = check_rules.python_facts_of(tmp_path, text)
+    model = check_rules.model_of(package)
+    found = node_rules.findings(package, check_rules.PUB_SUB, model, None, facts)
+    assert told(found, severity) == [("queue", 9)]
+
+
+def test_module_that_this_machine_has_not_is_not_the_students_fault(tmp_path):
+    text = replaced("import rospy\n", "import rospy\nimport no_such_camera\n")
+    (finding,) = check_rules.python_findings(tmp_path, text)
+    assert (finding.severity, finding.line) == ("note", 3)
+    assert "Debian package python3-no-such-camera" in finding.message
+    text = replaced("import rospy\n", "import rospy\nimport cv3\n")
+    (finding,) = check_rules.python_findings(tmp_path, text)
+    assert "csv" not in f"{finding.message} {finding.fix}"
+
+
+@pytest.mark.parametrize(
+    ("indent", "line"), [("    ", "    node = Node()"), ("", "    main()")], ids=["main", "module"]
+)
+def test_missing_spin_belongs_to_the_end(indent, line, tmp_path):
+    text = replaced("    rospy.spin()\n", "")
+    if not indent:
+        # The node is begun outside of all functions.
+        text = text.replace("    rospy.init_node", "    pass\n\n\nrospy.init_node")
+        text = text.replace("    rospy.loginfo", "rospy.loginfo").replace("    node =", "node =")
+    package, facts = check_rules.python_facts_of(tmp_path, text)
+    model = check_rules.model_of(package)
+    (finding,) = node_rules.findings(package, check_rules.PUB_SUB, model, None, facts)
+    assert (finding.id, text.splitlines()[finding.line - 1]) == ("spin", line)
+
+
+@pytest.mark.parametrize(
+    ("new", "line"),
+    [
+        (
+            "        if self.counter != 5:\n            self.publisher.publish(msg)",
+            "if self.counter",
+        ),
+        ("        self.publisher.publish(msg)", None),
+    ],
+)
+def test_condition_before_publish(new, line, tmp_path):
+    text = replaced("        self.publisher.publish(msg)", new)
+    package, facts = check_rules.python_facts_of(tmp_path, text)
+    one = check_rules.case_of(package, tmp_path / "scratch", facts=facts, observed=None)
+    place = one.places.condition_of_publish("publisher_py_node")
+    one.catkin.close()
+    assert (text.splitlines()[place[1] - 1].strip().startswith(line)) if line else place is None

@@ -4,17 +4,21 @@
 import html.parser
 import json
 import os
+import re
 import subprocess
 import xml.etree.ElementTree as ElementTree
 
+import check_rules
 import jsonschema
 import pytest
 import scratch
-from mrp_check import causes, check, resources
-from mrp_check.finding import Finding
+from mrp_check import causes, check, classroom, resources
+from mrp_check.case import Case
+from mrp_check.finding import CannotCheck, Finding
 from mrp_check.report import console, json_, junit
 from mrp_check.report import html as html_report
-from mrp_check.requirements import REQUIREMENTS
+from mrp_check.requirements import REQUIREMENTS, Rule
+from mrp_check.stages import files, static
 from mrp_check.stages.static.facts import Facts
 
 pytestmark = pytest.mark.quick
@@ -46,14 +50,17 @@ def report(*findings, reason=""):
 REPORTS = [report(), report(CAUSE, RESULT, NOTE), report(reason="There is no folder x.")]
 
 
+def report_schema():
+    return json.loads((resources.folder("schema") / "report.json").read_text())
+
+
 @pytest.mark.parametrize("one", REPORTS, ids=lambda one: one.verdict)
 def test_json_is_as_its_schema_says(one):
-    schema = json.loads((resources.folder("schema") / "report.json").read_text())
-    jsonschema.validate(json.loads(json_.text(one)), schema)
+    jsonschema.validate(json.loads(json_.text(one)), report_schema())
 
 
 def test_schema_refuses_what_is_no_report():
-    schema = json.loads((resources.folder("schema") / "report.json").read_text())
+    schema = report_schema()
     data = json.loads(json_.text(report(CAUSE)))
     data["findings"][0]["line"] = 0
     with pytest.raises(jsonschema.ValidationError):
@@ -145,7 +152,7 @@ def findings(*entries):
 @pytest.mark.parametrize(
     ("entries", "expected"),
     [
-        # What one node does wrong, it does wrong when it runs, and others notice.
+        # What one node does wrong, it does wrong when it runs; another is sent values all the same.
         ([("spin", "src/a.py", 1, "static", "a"), ("starts", "src/a.py", 1, "run", "a")], ["spin"]),
         (
             [
@@ -159,7 +166,7 @@ def findings(*entries):
                 ("python-syntax", "src/a.py", 1, "static", None),
                 ("received", "src/b.py", 5, "run", "b"),
             ],
-            ["python-syntax"],
+            [None],
         ),
         (
             [
@@ -191,12 +198,166 @@ def findings(*entries):
             ],
             [None],
         ),
+        # Without the launch file, the checker starts the nodes by its own.
+        ([("launch-file", None, None, "files", None), ("rate", "src/a.py", 5, "run", "a")], [None]),
+        # A script that is no node of the exercise keeps no node from anything.
+        (
+            [
+                ("python-names", "src/c.py", 5, "static", None),
+                ("rate", "src/a.py", 5, "run", "a"),
+            ],
+            [None],
+        ),
+        # A second instance of a defect is another defect.
+        ([("wrap", "src/a.py", 5, "static", "a"), ("wrap", "src/a.py", 9, "static", "a")], [None]),
+        (
+            [
+                ("targets", "CMakeLists.txt", 4, "static", "a"),
+                ("launch-nodes", "a.launch", 9, "static", "b"),
+            ],
+            [None],
+        ),
     ],
-    ids=range(9),
+    ids=range(13),
 )
 def test_consequences(entries, expected):
     told = causes.told_once(findings(*entries), facts())
     assert [finding.consequence_of for finding in told] == [None, *expected]
+
+
+SOUND = check_rules.CMAKE
+RUNNING = """#!/usr/bin/env python
+import rospy
+rospy.init_node("publisher_py_node")
+rospy.spin()
+"""
+
+
+def examined(folder, rules, monkeypatch, only=(), **files):
+    """Return the Report of a package of Python nodes, by these rules of each stage alone."""
+    monkeypatch.setattr(check, "RULES", {name: rules.get(name, ()) for name in check.RULES})
+    package = check_rules.make(folder / "some_pkg", **files)
+    return check.check(package.root, check_rules.PUB_SUB, only, timeout=300)
+
+
+def rule(*found, ids=("text",), fails=None):
+    def findings(case):
+        yield from found
+        if fails:
+            raise fails
+
+    return Rule(ids, (), findings)
+
+
+@pytest.mark.parametrize(
+    ("fails", "says"),
+    [
+        (TypeError("no number"), "The checker itself failed, in findings().*TypeError: no number"),
+        (CannotCheck("The machine is too busy."), "The machine is too busy."),
+    ],
+    ids=["fault", "busy"],
+)
+def test_a_rule_that_fails_costs_its_own_requirements_alone(fails, says, tmp_path, monkeypatch):
+    wrong = Finding("cmake", "It is wrong.", "CMakeLists.txt", 1)
+    rules = {
+        "files": (rule(fails=fails), rule(wrong, ids=("cmake",))),
+        "static": (rule(ids=("manifest",)),),
+    }
+    one = examined(tmp_path, rules, monkeypatch, only=("text", "cmake", "manifest"))
+    assert one.verdict == check.UNCHECKED
+    assert one.requirements == {
+        "manifest": check.MET,
+        "cmake": check.BROKEN,
+        "text": check.UNCHECKED,
+    }
+    assert [finding.message for finding in one.findings] == ["It is wrong."]
+    assert re.search(says, one.reason) and re.search(says, one.unseen["text"])
+    jsonschema.validate(json.loads(json_.text(one)), report_schema())
+    for text in (console.text(one), junit.text(one), html_report.text(one)):
+        assert str(fails) in text
+
+
+def test_a_rule_reports_no_other_requirement_than_it_says(tmp_path, monkeypatch):
+    other = rule(Finding("spin", "It never spins."), ids=("text",))
+    one = examined(tmp_path, {"files": (other,)}, monkeypatch, only=("text",))
+    assert (one.verdict, one.findings) == (check.UNCHECKED, [])
+    assert "a rule reports spin, and does not say so" in one.reason
+
+
+def test_what_failed_once_is_not_tried_again(tmp_path, monkeypatch):
+    tried = []
+
+    def model(case):
+        tried.append(case)
+        raise CannotCheck("CMake did not end.")
+
+    monkeypatch.setattr(Case, "model", property(model))
+    rules = {"files": [Rule(("text",), ("model",), list), Rule(("cmake",), ("facts",), list)]}
+    one = examined(tmp_path, rules, monkeypatch, only=("text", "cmake"))
+    assert (one.reason, len(tried)) == ("CMake did not end.", 1)
+    assert {*one.requirements.values()} == {check.UNCHECKED}
+
+
+STATIC = {"files": files.RULES, "static": static.RULES}
+STATIC_IDS = [id_ for id_, one in REQUIREMENTS.items() if one.stage in STATIC]
+
+
+@pytest.mark.parametrize("id_", ["wrap", "launch-nodes"])
+def test_one_requirement_alone_is_checked_as_among_all(id_):
+    """--only runs what the rules need that can report the requirement, in whichever stage."""
+    rules = [rule for rules in check.RULES.values() for rule in rules if id_ in rule.ids]
+    assert len(rules) > 1
+    needs = check._needs([id_])
+    assert "launch" in needs and "facts" in needs
+    assert all(needs >= {*rule.needs} for rule in rules)
+
+
+def test_what_was_never_seen_is_neither_met_nor_paid(tmp_path, monkeypatch):
+    """A package without sources: nobody can say anything of its nodes."""
+    one = examined(tmp_path, STATIC, monkeypatch, only=STATIC_IDS)
+    never = {"dependencies", "python-syntax", "node-start", "spin", "lifetime", "queue"}
+    assert {id_ for id_ in never if one.requirements[id_] != check.UNCHECKED} == set()
+    assert one.unseen["spin"] == "no source of publisher_cpp_node was found"
+    assert "[--]   Each node waits for callbacks (spin): no source of" in console.text(one)
+    assert "no source of publisher_cpp_node" in html_report.text(one)
+    assert "no source of publisher_cpp_node" in junit.text(one)
+    assert json.loads(json_.text(one))["unseen"] == one.unseen
+    assert one.requirements["manifest"] == check.MET
+    submission = classroom.Submission("anna", json_.data(one))
+    met = [id_ for id_, verdict in one.requirements.items() if verdict == check.MET]
+    assert submission.points(check_rules.PUB_SUB) == len(met) < 8
+
+
+def test_many_findings_outside_the_exercise_are_one_line(tmp_path, monkeypatch):
+    files = {f"scripts__tool{n}_DOT_py": "#!/usr/bin/python3\nfoo()\n" for n in range(9)}
+    files["src__publisher_py_node_DOT_py"] = RUNNING + "bar()\n"
+    one = examined(tmp_path, STATIC, monkeypatch, only=STATIC_IDS, **files)
+    names = [finding for finding in one.findings if finding.id == "python-names"]
+    assert [finding.file for finding in names] == ["scripts/tool0.py", "src/publisher_py_node.py"]
+    assert names[0].message.startswith("9 such faults in files that are no node of the exercise")
+
+
+class Ran:
+    """What was seen of a node that runs."""
+
+    is_up = True
+
+    def has_rate(self):
+        return True
+
+
+@pytest.mark.parametrize(
+    ("cause", "result"),
+    [
+        (("configure", "CMakeLists.txt", 1, "build", None), ("rate", "src/a.py", 5, "run", "a")),
+        (("python-names", "src/a.py", 5, "static", None), ("rate", "src/a.py", 5, "run", "a")),
+    ],
+    ids=range(2),
+)
+def test_what_was_seen_all_the_same_is_no_consequence(cause, result):
+    assert causes.told_once(findings(cause, result), facts())[1].consequence_of == cause[0]
+    seen = causes.told_once(findings(cause, result), facts(), {"a": Ran()})
+    assert seen[1].consequence_of is None
 
 
 def test_the_same_is_told_once():

@@ -11,10 +11,12 @@ import textwrap
 
 import check_rules
 import pytest
-from mrp_check import confine, spec
-from mrp_check.finding import ERROR, NOTE
+from mrp_check import confine, evidence, spec
+from mrp_check.finding import ERROR, NOTE, CannotCheck
 from mrp_check.package import Package
-from mrp_check.stages import run, stop
+from mrp_check.requirements import REQUIREMENTS
+from mrp_check.stages import observing, run, stop
+from mrp_check.stages.static.facts import Facts
 
 pytestmark = pytest.mark.slow
 
@@ -253,12 +255,13 @@ def make_package(folder, publishers, subscribers):
 
 def findings_of(folder, contract, scratch):
     """Return what the stages run and stop find, without building anything."""
-    package = Package(folder)
-    workspace = check_rules.workspace_of(package, scratch)
-    workspace.catkin.__dict__["built"] = None
-    found = list(run.findings(package, contract, workspace))
-    found += stop.findings(package, contract, workspace)
-    workspace.catkin.close()
+    case = check_rules.case_of(Package(folder), scratch, contract, built=None, facts=Facts())
+    found = []
+    for rule in (*run.RULES, *stop.RULES):
+        of_rule = list(rule.findings(case))
+        assert {finding.id for finding in of_rule} <= {*rule.ids}
+        found += of_rule
+    case.catkin.close()
     return found
 
 
@@ -296,6 +299,62 @@ def is_told(finding, folder, id_, line, message):
         return False
     lines = (folder / finding.file).read_text().splitlines()
     return bool(re.search(line, lines[finding.line - 1]))
+
+
+def test_texts_on_a_number_topic_are_found_and_no_fault_of_the_checker(tmp_path):
+    """Of what arrives, nothing is a number: its type is wrong, and its values were never seen."""
+    folder = make_package(tmp_path / "lab_pkg", {"right": ("", "")}, {})
+    path, topic = "/lab/publisher_right", "/lab/of_right"
+    sent = {"node": path, "topic": topic, "type": "std_msgs/String", "fields": {"data": "1"}}
+    seen = {
+        "publications": [{**sent, "time": 0}],
+        "messages": [{**sent, "time": time / 2} for time in range(8)],
+    }
+    launch = {"lines": [], "seen": seen, "asked": 5, "ending": "enough"}
+    observed = observing.Observed(launch=launch, executables={"publisher_right": folder})
+    case = check_rules.case_of(
+        Package(folder),
+        tmp_path / "scratch",
+        spec_of(["right"], []),
+        facts=Facts(),
+        observed=observed,
+    )
+    found = [finding.id for rule in run.RULES for finding in rule.findings(case)]
+    case.catkin.close()
+    assert "type" in found and "values" not in found
+    unseen = evidence.unseen(case, ["values", "rate", "latch", "exit", "type"])
+    assert unseen == {
+        "values": "publisher_right published no number",
+        "exit": "publisher_right was not seen to end",
+    }
+
+
+def test_a_fault_of_the_observer_is_no_finding(tmp_path, monkeypatch):
+    folder = make_package(tmp_path / "lab_pkg", {"right": ("", "")}, {})
+    for name in ("launch_plan", "direct_plan"):
+        plan = {"kind": "none", "most": 60, "stop_seconds": 1}
+        monkeypatch.setattr(observing._Run, name, lambda self, plan=plan: plan)
+    with pytest.raises(CannotCheck, match="The observer itself failed: KeyError: 'none'"):
+        findings_of(folder, spec_of(["right"], []), tmp_path / "scratch")
+
+
+def test_what_a_dead_node_would_do_was_never_seen(tmp_path):
+    folder = make_package(tmp_path / "lab_pkg", {"right": ("", "")}, {})
+    observed = observing.Observed(executables={"publisher_right": folder})
+    observed.direct = {"nodes": {"publisher_right": {"name": None, "code": 1, "ended_after": 0.1}}}
+    case = check_rules.case_of(
+        Package(folder),
+        tmp_path / "scratch",
+        spec_of(["right"], []),
+        facts=Facts(),
+        observed=observed,
+    )
+    case.catkin.close()
+    of_run = [id_ for id_, one in REQUIREMENTS.items() if one.stage in ("run", "stop")]
+    unseen = evidence.unseen(case, of_run)
+    # Nobody asks it to hear anything.
+    assert {*of_run} - {*unseen} == {"received"}
+    assert {*unseen.values()} == {"publisher_right did not run"}
 
 
 COUNTERS = {

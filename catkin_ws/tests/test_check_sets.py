@@ -36,7 +36,7 @@ EXERCISES = sorted(CHECK.glob("exercises/*/solution.patch"))
 def run_check(tmp_path):
     """Return a function that checks the package at a folder, and returns the report's data."""
 
-    def run(folder, spec):
+    def run(folder, spec, *options):
         report = tmp_path / "report.json"
         compiler_cache.FOLDER.mkdir(parents=True, exist_ok=True)
         env = scratch.environment()
@@ -49,7 +49,16 @@ def run_check(tmp_path):
         )
         command = ["/usr/bin/python3", CHECK / "scripts" / "check", folder]
         done = subprocess.run(
-            [*command, "--spec", CHECK / "specs" / spec, "--json", report, "--timeout", "900"],
+            [
+                *command,
+                "--spec",
+                CHECK / "specs" / spec,
+                "--json",
+                report,
+                "--timeout",
+                "900",
+                *options,
+            ],
             env=env,
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
@@ -132,6 +141,24 @@ def test_exercise_fails_for_its_own_reason_and_its_solution_passes(solution, tmp
     check_sets.break_(folder, solution)
     check_sets.lay_out("mrp", tmp_path / "tutorial")
     assert contents(folder) == contents(tmp_path / "tutorial")
+
+
+ALONE = [
+    ("mrp", "launch/pub_sub.launch", 'type="subscriber_py', 'type="publisher_py', "launch-nodes"),
+    ("scripts_folder", "src/even.cpp", "unsigned int", "unsigned short", "wrap"),
+]
+
+
+@pytest.mark.parametrize(
+    ("style", "file", "old", "new", "id_"), ALONE, ids=["launch-nodes", "wrap"]
+)
+def test_one_requirement_alone_is_found_broken_too(style, file, old, new, id_, tmp_path, run_check):
+    check_sets.lay_out(style, tmp_path / "package")
+    broken = tmp_path / "package" / file
+    assert old in broken.read_text()
+    broken.write_text(broken.read_text().replace(old, new))
+    report = run_check(tmp_path / "package", check_sets.spec_of(style), "--only", id_)
+    assert report["requirements"] == {id_: "broken"}
 
 
 def contents(folder):

@@ -62,8 +62,26 @@ def test_line_pattern():
         ("launch:", "topics: {}\nlaunch:", r":9: .*the key 'topics' stands twice"),
         ("title: An", "title: [An", r":\d+: .*no valid YAML"),
         ("    type: std", "\ttype: std", r":4: .*no valid YAML"),
+        ("std_msgs/UInt32", "std_msgs/UInt23", r":4: .*no message 'std_msgs/UInt23'.*mean"),
+        ("std_msgs/UInt32", "no_msgs/UInt32", r":4: .*no message 'no_msgs/UInt32'"),
+        (
+            "type: std_msgs/UInt32",
+            "type: std_msgs/UInt32\n    field: dta",
+            r":5: .*found 'dta'; std_msgs/UInt32 has: data\. Did you mean 'data'\?",
+        ),
+        (
+            "type: std_msgs/UInt32",
+            "type: std_msgs/Header\n    field: stamp.secs.x",
+            r":5: .*time has no fields",
+        ),
+        ("type: std_msgs/UInt32", "type: std_msgs/Header", r":3: .*seq, stamp, frame_id"),
+        (
+            "launch:",
+            "messages: {Count: {count: uint23}}\nlaunch:",
+            r":9: messages\.Count\.count: there is no message 'uint23'",
+        ),
     ],
-    ids=range(12),
+    ids=range(18),
 )
 def test_wrong_spec_is_told_in_one_sentence(old, new, says, tmp_path):
     path = tmp_path / "wrong.yaml"
@@ -74,6 +92,8 @@ def test_wrong_spec_is_told_in_one_sentence(old, new, says, tmp_path):
     assert str(error.value).startswith(str(path))
     assert re.search(says, str(error.value)), error.value
     assert "\n" not in str(error.value)
+    if "YAML" not in str(error.value):
+        assert str(error.value).endswith(str(spec.SCHEMA))
 
 
 def test_minimal_spec_can_be_read(tmp_path):

@@ -5,7 +5,10 @@ set -uo pipefail
 cd "$(dirname "$0")/../.." || exit 1
 
 ruff_version=0.17.5
-ruff=catkin_ws/build/lint/bin/ruff
+vulture_version=2.16
+tools=catkin_ws/build/lint/bin
+ruff=$tools/ruff
+vulture=$tools/vulture
 
 status=0
 check() {
@@ -19,10 +22,11 @@ check() {
   fi
 }
 
-# Debian has no ruff.
-if [ "$("$ruff" --version 2> /dev/null)" != "ruff $ruff_version" ]; then
+# Debian has no ruff, and another vulture on each platform.
+if [ "$("$ruff" --version 2> /dev/null)" != "ruff $ruff_version" ] ||
+  [ "$("$vulture" --version 2> /dev/null)" != "vulture $vulture_version" ]; then
   /usr/bin/python3 -m venv catkin_ws/build/lint &&
-    catkin_ws/build/lint/bin/pip --quiet install "ruff==$ruff_version" || exit 1
+    "$tools/pip" --quiet install "ruff==$ruff_version" "vulture==$vulture_version" || exit 1
 fi
 
 # Of what git knows or would know, the files with these endings.
@@ -40,6 +44,9 @@ check "catkin_lint" env -C catkin_ws tools/with_rosdep.sh catkin_lint --rosdistr
 check "clang-format" clang-format --dry-run --Werror "${cpp[@]}"
 check "ruff check" "$ruff" check --no-cache --config catkin_ws/ruff.toml catkin_ws docker
 check "ruff format" "$ruff" format --check --no-cache --config catkin_ws/ruff.toml catkin_ws docker
+# What another program looks at by its name: expat, roslaunch, and the confinement's watcher.
+check "vulture" "$vulture" catkin_ws/src/mrp_check/{src,scripts} \
+  --ignore-names '*ElementHandler,ignore_unset_args,cpu,open_files,file_size'
 check "shellcheck" shellcheck "${shell[@]}"
 check "xmllint" xmllint --noout "${xml[@]}"
 exit $status

@@ -6,24 +6,14 @@ from __future__ import annotations
 from mrp_check.finding import ERROR, NOTE
 
 # What keeps a node from running at all, or from being itself.
-_FATAL = {
-    "manifest",
-    "package-name",
-    "cmake",
-    "targets",
-    "scripts",
-    "messages",
-    "text",
-    "launch-file",
-    "launch-nodes",
-    "python-syntax",
-    "python-names",
-    "node-start",
-    "configure",
-    "compile",
-    "link",
-}
-_PACKAGE_WIDE = {"manifest", "package-name", "cmake", "launch-file", "configure"}
+_FATAL = set(
+    (
+        "manifest package-name cmake targets scripts messages text launch-nodes"
+        " python-syntax python-names node-start configure compile link"
+    ).split()
+)
+_PACKAGE_WIDE = {"manifest", "package-name", "cmake", "configure"}
+_OF_BUILDING = _PACKAGE_WIDE | {"launch-file", "dependencies", "messages", "targets", "scripts"}
 
 # What a node does not do if it does not work.
 _WORK = {"values", "rate", "wrap", "received", "console", "topic"}
@@ -49,7 +39,7 @@ _FOLLOWS = {
     "topic": {"values", "rate", "wrap", "received", "console", "namespace", "type", "warnings"},
     "type": _WORK | {"warnings", "starts", "exit"},
     "queue": {"received", "starts", "console", "topic", "exit", "warnings"},
-    "wrap": {"wrap", "values"},
+    "wrap": {"values"},
     # A name that is misspelt is not found where it is looked for.
     "python-names": {"node-start", "spin", "topic", "callbacks", "type"},
     "node-name": {"starts", "topic", "console"},
@@ -61,77 +51,74 @@ _FOLLOWS = {
     "starts": _WORK | {"type", "exit", "leftovers"},
 }
 
-# What one node fails to do, another one notices.
-_NOTICED_BY_OTHERS = {"received", "console", "topic", "values", "rate"}
-
 _LATER = {"run", "stop"}
 
+# Files that are about the package as a whole.
+_OF_ALL = ("CMakeLists.txt", ".cmake", ".xml", ".launch", ".msg")
 
-def told_once(findings, facts=None):
+
+def told_once(findings, facts=None, nodes=None):
     """Return the findings without repetitions, with consequences marked.
 
     facts: a stages.static.facts.Facts, which says which files a node is made of; or None
+    nodes: name -> what was seen of a node of the spec, a run.node.Node; None if nothing has run
     """
     kept, seen = [], {}
     for finding in findings:
         what = (finding.id, finding.file, finding.line, finding.severity)
-        nodes = seen.setdefault(what, set())
+        of_nodes = seen.setdefault(what, set())
         # A rule about a source knows no node; one about the node that it makes says the same again.
-        same = finding.node in nodes or finding.file and None in nodes
+        same = finding.node in of_nodes or finding.file and None in of_nodes
         if same and finding.severity != NOTE:
             continue
-        nodes.add(finding.node)
+        of_nodes.add(finding.node)
         kept.append(finding)
     for index, finding in enumerate(kept):
         if finding.consequence_of or finding.severity == NOTE:
             continue
-        for cause in kept:
-            if cause is not finding and _causes(cause, finding, facts, kept.index(cause) < index):
+        for number, cause in enumerate(kept):
+            if cause is not finding and _causes(cause, finding, number < index, facts, nodes or {}):
                 finding.consequence_of = cause.consequence_of or cause.id
                 break
     return kept
 
 
-def _causes(cause, finding, facts, earlier):
+def _causes(cause, finding, earlier, facts, nodes):
     """Return whether a finding follows from a cause."""
     # What cannot be built cannot run, whatever keeps it from being built.
     passed_on = _PACKAGE_WIDE | {"compile", "link"}
     if cause.severity != ERROR or cause.consequence_of and cause.id not in passed_on:
         return False
-    if cause.stage in _LATER and finding.stage not in _LATER:
+    of_cause, of_finding = _nodes(cause, facts), _nodes(finding, facts)
+    together = bool(of_cause & of_finding)
+    if of_cause and of_finding and not together:
         return False
-    same_place = (cause.file, cause.line) == (finding.file, finding.line)
     follows = finding.id in _FOLLOWS.get(cause.id, ())
     if finding.stage not in _LATER:
-        if not follows:
-            return False
-        together = _nodes(cause, facts) & _nodes(finding, facts)
-        return (
-            same_place
-            or cause.id in _PACKAGE_WIDE | {"dependencies", "messages", "targets", "scripts"}
-            or bool(together)
-        )
-    # The same requirement, found broken twice: first in the source, then when it ran.
-    if finding.id == cause.id and earlier and cause.stage not in _LATER:
-        nodes = _nodes(cause, facts)
-        return finding.node is None or not nodes or finding.node in nodes
-    if cause.id in _PACKAGE_WIDE:
-        return True
+        near = together or (cause.file, cause.line) == (finding.file, finding.line)
+        return follows and cause.stage not in _LATER and (near or cause.id in _OF_BUILDING)
     if cause.stage in _LATER:
         # The stages run and stop tell of each node in the order of causes.
-        same_node = finding.node is not None and finding.node == cause.node
-        return earlier and same_node and (follows or cause.id in _FATAL)
-    if cause.id not in _FATAL and not follows:
-        return False
-    if not _nodes(cause, facts) or finding.node is None or finding.node in _nodes(cause, facts):
+        return earlier and together and (follows or cause.id in _FATAL)
+    # The same requirement, found broken twice: first in the source, then when it ran.
+    if finding.id == cause.id:
         return True
-    return finding.id in _NOTICED_BY_OTHERS and cause.id != "queue"
+    node = nodes.get(finding.node)
+    if node is None or not node.is_up:
+        return follows or cause.id in _FATAL
+    if cause.id in _PACKAGE_WIDE or finding.id == "rate" and node.has_rate():
+        return follows and together  # it ran all the same, and this was seen of it
+    return follows or cause.id in _FATAL and together
 
 
 def _nodes(finding, facts):
-    """Return the nodes of the spec that a finding is about; none means that it may be any."""
+    """Return the nodes of the spec that a finding is about; none means that it may be any.
+
+    A source that no node is made of stands for itself: it is about none of them."""
     if finding.node:
         return {finding.node}
-    if facts is None or finding.file is None:
+    if facts is None or finding.file is None or finding.file.endswith(_OF_ALL):
         return set()
-    return {name for name, files in facts.sources.items() if finding.file in files}
+    return {name for name, files in facts.sources.items() if finding.file in files} or {
+        finding.file
+    }

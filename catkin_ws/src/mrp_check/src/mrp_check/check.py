@@ -1,54 +1,36 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""One package through all stages: used by the command, for a class and for the exercises."""
+"""One package through all rules: used by the command, for a class and for the exercises."""
 
 from __future__ import annotations
 
 import dataclasses
-import importlib
 import pathlib
-import shutil
 import tempfile
+import traceback
 import typing
 
-from mrp_check import causes, confine, diff, requirements
+from mrp_check import causes, confine, diff, evidence
+from mrp_check.case import Case
 from mrp_check.finding import ERROR, CannotCheck, Finding
 from mrp_check.package import Package
+from mrp_check.requirements import REQUIREMENTS, closure
 from mrp_check.spec import Spec
-from mrp_check.stages.catkin import Catkin, missing_tool
-from mrp_check.stages.static import cpp_headers
+from mrp_check.stages import build, files, run, static, stop
+from mrp_check.stages.catkin import missing_tool
 
 MET, FINDINGS, UNCHECKED = "met", "findings", "unchecked"
 BROKEN = "broken"
 
+RULES = {
+    "files": files.RULES,
+    "static": static.RULES,
+    "build": build.RULES,
+    "run": run.RULES,
+    "stop": stop.RULES,
+}
 
-@dataclasses.dataclass
-class Workspace:
-    """Where one check works, and what its stages tell one another.
 
-    folder: a scratch folder, deleted in the end; a catkin workspace
-    package_folder: the copy of the package in it
-    timeout: seconds that the whole check may take
-    progress: called with a sentence that says what is being done
-    catkin: a stages.catkin.Catkin, which configures and builds the copy
-    headers: a future, whose result is the file of ROS's headers (stages.static.cpp_headers)
-    built: whether catkin_make succeeded
-    executables: name of each executable that there is after building -> its path
-    launch: what roslaunch makes of the launch file, a stages.launching.Launch; None if it cannot
-    facts: what the sources say, from stages.static (a facts.Facts); None before
-    notes: anything that a stage wants to hand to a later one
-    """
-
-    folder: pathlib.Path
-    package_folder: pathlib.Path
-    timeout: float
-    progress: typing.Callable[[str], None]
-    catkin: typing.Any = None
-    headers: typing.Any = None
-    built: bool = False
-    executables: dict[str, pathlib.Path] = dataclasses.field(default_factory=dict)
-    launch: typing.Any = None
-    facts: typing.Any = None
-    notes: dict = dataclasses.field(default_factory=dict)
+_FOLD = 3  # findings about files outside the exercise: more are folded into one
 
 
 @dataclasses.dataclass
@@ -59,6 +41,7 @@ class Report:
     findings: in the order in which the stages found them
     requirements: id -> MET, BROKEN or UNCHECKED
     reason: why it is UNCHECKED, in one sentence
+    unseen: id -> why nobody can say whether it is met, of those that are UNCHECKED
     """
 
     package: str
@@ -67,6 +50,7 @@ class Report:
     findings: list[Finding]
     requirements: dict[str, str]
     reason: str = ""
+    unseen: dict[str, str] = dataclasses.field(default_factory=dict)
 
 
 def check(
@@ -75,78 +59,154 @@ def check(
     only=(),
     timeout: float = 600,
     progress: typing.Callable[[str], None] = lambda sentence: None,
-    stages=None,
 ) -> Report:
     """Check one package.
 
     path: its folder
     only: ids of the only requirements to check; all if empty
     timeout: seconds that all of it may take
-    stages: the only stages to run; all that are needed if None
 
-    Raises PackageError if there is no package, CannotCheck if something else is missing.
+    Raises PackageError if there is no package, CannotCheck if a tool is missing. What else keeps
+    something from being checked is in the report, with what could be checked.
     """
     package = Package(path)
     missing = missing_tool()
     if missing:
         raise CannotCheck(missing)
-    needed = requirements.stages_for(only or requirements.REQUIREMENTS)
+    ids = [id_ for id_ in REQUIREMENTS if id_ in only or not only]
     folder = pathlib.Path(tempfile.mkdtemp(prefix="mrp_check_"))
     try:
-        workspace = _workspace(package, folder, timeout, progress)
-        workspace.catkin = Catkin(workspace)
-        chosen = needed if stages is None else [stage for stage in needed if stage in stages]
-        findings, done = [], set()
+        case = Case(package, spec, folder, timeout, progress)
         try:
-            if "static" in chosen:
-                workspace.headers = workspace.catkin.submit(cpp_headers.make, folder / "ros.pch")
-            for stage in chosen:
-                progress(f"stage {stage}")
-                module = importlib.import_module(f"mrp_check.stages.{stage}")
-                for finding in module.findings(package, spec, workspace):
-                    finding.stage = finding.stage or stage
-                    findings.append(finding)
-                done.add(stage)
+            examination = _Examination(case, ids)
         finally:
-            workspace.catkin.close()
-    except confine.ConfineError as error:
-        raise CannotCheck(f"A command could not be run confined: {error}.") from None
+            case.catkin.close()
     finally:
         confine.remove(folder)
-    findings = causes.told_once(findings, workspace.facts)
+    return examination.report()
+
+
+class _Examination:
+    """The findings of all rules that are needed, and the ids of what they could not check."""
+
+    def __init__(self, case, ids):
+        self.case, self.ids = case, ids
+        self.findings, self.failed, self.reasons, self.lost = [], {}, [], {}
+        needs = _needs(ids)
+        if "facts" in needs:
+            case.read_headers()  # while CMake configures
+        for stage, rules in RULES.items():
+            # Others that need no more are asked, too: they may know the cause.
+            chosen = [rule for rule in rules if needs.issuperset(rule.needs)]
+            if chosen:
+                case.progress(f"stage {stage}")
+            for rule in chosen:
+                self._ask(stage, rule)
+        for said in self._absent():
+            self._lose(("python-names",), said)
+        self._guarded(ids, lambda: self.failed.update(evidence.unseen(case, self._open())))
+
+    def _ask(self, stage, rule):
+        def findings():
+            for need in rule.needs:
+                self._provide(need)
+            for finding in rule.findings(self.case):
+                assert finding.id in rule.ids, f"a rule reports {finding.id}, and does not say so"
+                finding.stage = stage
+                self.findings.append(finding)
+
+        self._guarded(rule.ids, findings)
+
+    def _provide(self, need):
+        """Have the case know what is needed. What once failed is not tried again."""
+        for one in closure({need}) & {*self.lost}:
+            raise self.lost[one]
+        try:
+            getattr(self.case, need)
+        except Exception as error:
+            self.lost[need] = error
+            raise
+
+    def _guarded(self, ids, function):
+        """Call a function; if it fails, these ids could not be checked."""
+        try:
+            function()
+            return
+        except CannotCheck as error:
+            reason = str(error)
+        except confine.ConfineError as error:
+            reason = f"A command could not be run confined: {error}."
+        except Exception as error:  # the checker's own fault: no finding, and no end of it all
+            place = traceback.extract_tb(error.__traceback__)[-1]
+            file = pathlib.Path(place.filename).name
+            reason = (
+                f"The checker itself failed, in {place.name}() of {file}:{place.lineno}:"
+                f" {type(error).__name__}: {error}. Please report it."
+            )
+        self._lose(ids, reason)
+
+    def _lose(self, ids, reason):
+        self.failed.update({id_: reason for id_ in ids if id_ in self.ids})
+        if reason not in self.reasons:
+            self.reasons.append(reason)
+
+    def _absent(self):
+        """Return a sentence on each module that this machine has not, and a node needs."""
+        facts = vars(self.case).get("facts")
+        return facts.absent().values() if facts else ()
+
+    def _open(self):
+        return [id_ for id_ in self.ids if id_ not in self.failed]
+
+    def report(self):
+        package, known = self.case.package, vars(self.case)
+        findings = causes.told_once(self.findings, known.get("facts"), known.get("nodes"))
+        for finding in findings:
+            if finding.change and finding.file and finding.line:
+                patch = diff.of_change(package, finding.file, finding.line, finding.change)
+                finding.fix = "\n".join(part for part in (finding.fix, patch) if part)
+        findings = _folded([f for f in findings if f.id in self.ids], known.get("facts"))
+        errors = [finding for finding in findings if finding.severity == ERROR]
+        broken = {f.id for f in errors if not f.consequence_of}
+        unseen = {id_: why for id_, why in self.failed.items() if id_ not in broken}
+        unseen.update(
+            {f.id: f"it follows from {f.consequence_of}" for f in errors if f.id not in broken}
+        )
+        return Report(
+            package=package.name,
+            spec=self.case.spec.title,
+            verdict=UNCHECKED if self.reasons else FINDINGS if errors else MET,
+            findings=findings,
+            requirements={
+                id_: BROKEN if id_ in broken else UNCHECKED if id_ in unseen else MET
+                for id_ in self.ids
+            },
+            reason=" ".join(self.reasons),
+            unseen={id_: unseen[id_] for id_ in self.ids if id_ in unseen},
+        )
+
+
+def _folded(findings, facts):
+    """Return the findings; of many about scripts that are no node of the exercise, one for each id
+    and severity tells of them all."""
+    of_nodes = {file for files in facts.sources.values() for file in files} if facts else set()
+    outside = facts.python.keys() - of_nodes if facts else ()
+    groups = {}
     for finding in findings:
-        if finding.change and finding.file and finding.line:
-            patch = diff.of_change(package, finding.file, finding.line, finding.change)
-            finding.fix = "\n".join(part for part in (finding.fix, patch) if part)
-    if only:
-        findings = [finding for finding in findings if finding.id in only]
-    return Report(
-        package=package.name,
-        spec=spec.title,
-        verdict=FINDINGS if any(f.severity == ERROR for f in findings) else MET,
-        findings=findings,
-        requirements=_verdicts(findings, done, only),
-    )
+        alone = finding.file not in outside
+        key = id(finding) if alone else (finding.id, finding.severity, finding.consequence_of)
+        groups.setdefault(key, []).append(finding)
+    for first, *more in groups.values():
+        if len(more) >= _FOLD:
+            files = list(dict.fromkeys(f.file for f in (first, *more)))
+            first.message = (
+                f"{len(more) + 1} such faults in files that are no node of the exercise:"
+                f" {', '.join(files[:5])}{', ...' if files[5:] else ''}. The first: {first.message}"
+            )
+    return [f for group in groups.values() for f in (group[:1] if len(group) > _FOLD else group)]
 
 
-def _workspace(package, folder, timeout, progress):
-    """Return a Workspace with a copy of the package, without what was built or is no plain file."""
-    copy = folder / "src" / package.root.resolve().name
-    for path in package.files:
-        target = copy / path
-        target.parent.mkdir(parents=True, exist_ok=True)
-        shutil.copy2(package.root / path, target)
-    return Workspace(folder, copy, timeout, progress)
-
-
-def _verdicts(findings, done, only):
-    """Return id -> MET, BROKEN or UNCHECKED."""
-    broken = {f.id for f in findings if f.severity == ERROR and not f.consequence_of}
-    unchecked = {f.id for f in findings if f.severity == ERROR and f.consequence_of} - broken
-    verdicts = {}
-    for id_, requirement in requirements.REQUIREMENTS.items():
-        if only and id_ not in only:
-            continue
-        checked = requirement.stage in done and id_ not in unchecked
-        verdicts[id_] = BROKEN if id_ in broken else MET if checked else UNCHECKED
-    return verdicts
+def _needs(ids):
+    """Return all that must be known to check these requirements."""
+    rules = [rule for rules in RULES.values() for rule in rules]
+    return closure({need for rule in rules if {*rule.ids} & {*ids} for need in rule.needs})

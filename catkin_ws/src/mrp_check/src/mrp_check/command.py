@@ -152,8 +152,8 @@ def run_package(options):
             file=sys.stderr,
         )
         return UNCHECKED
-    if report.verdict == check.UNCHECKED:
+    if report.requirements:
+        print(console.text(report, colours=console.has_colours(sys.stdout)))
+    if report.reason:
         print(f"check: {report.reason}", file=sys.stderr)
-        return UNCHECKED
-    print(console.text(report, colours=console.has_colours(sys.stdout)))
-    return FINDINGS if report.verdict == check.FINDINGS else MET
+    return {check.MET: MET, check.FINDINGS: FINDINGS}.get(report.verdict, UNCHECKED)

@@ -34,7 +34,7 @@ import sys
 import tempfile
 import time
 import uuid
-from typing import Callable, List, Optional, Sequence
+from typing import List, Optional, Sequence
 
 _WARDEN = pathlib.Path(__file__).resolve().with_name("warden.py")
 _MARK = "MRP_CHECK_RUN"  # the environment variable that marks the processes of one run
@@ -137,7 +137,6 @@ def run(
     env: Optional[dict] = None,
     cwd=None,
     writable: Sequence[str] = (),
-    on_line: Optional[Callable[[str], None]] = None,
     namespaces: Optional[bool] = None,
 ) -> Result:
     """Run a command to its end, or to the first limit that it breaks.
@@ -146,7 +145,6 @@ def run(
     env: its whole environment, if not that of environment(scratch)
     cwd: where it starts, if not in scratch
     writable: more folders that it may write to, such as a compiler's cache
-    on_line: called with each line of standard output as it comes, for progress
     namespaces: False takes the plain way also where namespaces could be made
 
     Raises ConfineError.
@@ -169,7 +167,7 @@ def run(
     # What its /tmp is goes with the run.
     with tempfile.TemporaryDirectory(prefix="tmp_", dir=scratch) as tmp:
         task.update(namespaces=wants_namespaces, tmp=tmp)
-        return _run_warden(task, limits, mark, on_line)
+        return _run_warden(task, limits, mark)
 
 
 @functools.lru_cache(maxsize=None)
@@ -189,7 +187,7 @@ def isolation():
         }
         os.mkdir(task["tmp"])
         try:
-            done = _run_warden(task, Limits(time=20), "probe", None)
+            done = _run_warden(task, Limits(time=20), "probe")
         except ConfineError:
             return "plain"
         return "namespaces" if done.code == 0 else "plain"
@@ -202,7 +200,7 @@ def _needed_folders(env):
     return sorted({os.path.realpath(folder) for folder in [*folders, str(_WARDEN.parent)]})
 
 
-def _run_warden(task, limits, mark, on_line):
+def _run_warden(task, limits, mark):
     task_read, task_write = os.pipe()
     report_read, report_write = os.pipe()
     # Debian's own Python, without the user's settings: the checker's may be anything.
@@ -222,7 +220,7 @@ def _run_warden(task, limits, mark, on_line):
         os.close(task_read)
         os.close(report_write)
     # When the watcher has ended, so has all that it watched over; or else it is ended now.
-    reader = _Reader(limits.output, on_line, on_report=lambda: _kill_marked(mark))
+    reader = _Reader(limits.output, on_report=lambda: _kill_marked(mark))
     try:
         try:
             with os.fdopen(task_write, "w") as file:
@@ -237,7 +235,6 @@ def _run_warden(task, limits, mark, on_line):
             # The end of its standard input tells it to kill all. What it writes goes on to be
             # read, so that it does not stand still at a full pipe.
             warden.stdin.close()
-            reader.on_line = None
             reader.read(
                 {warden.stdout: "output", warden.stderr: "errors", report_read: "report"},
                 time.monotonic() + _GRACE,
@@ -309,14 +306,12 @@ def _has_mark(pid, needle):
 class _Reader:
     """Reads pipes to their end; keeps of each the first `limit` bytes."""
 
-    def __init__(self, limit, on_line, on_report):
+    def __init__(self, limit, on_report):
         self.limit = limit
-        self.on_line = on_line
         self.on_report = on_report
         self.cut = False
         self._kept = {"output": bytearray(), "errors": bytearray(), "report": bytearray()}
         self._seen = {"output": 0, "errors": 0, "report": 0}
-        self._line = bytearray()
         self._ended = set()
 
     def text(self, name):
@@ -352,12 +347,6 @@ class _Reader:
         room = self.limit - len(kept)
         kept += data[: max(0, room)]
         self.cut = self.cut or len(data) > room
-        if name == "output" and self.on_line:
-            self._line += data
-            *lines, self._line = self._line.split(b"\n")
-            for line in lines:
-                self.on_line(line.decode("utf-8", errors="replace"))
-            del self._line[: -self.limit]
 
 
 def remove(folder):

@@ -149,6 +149,8 @@ def run(folder, hint=False, reset=False):
     report = check.check(place, spec.read(spec.find("pub_sub")), progress=shown.show)
     shown.clear()
     found = faults(report)
+    if report.reason and not found:
+        raise check.CannotCheck(report.reason)
     if found:
         print(f"Exercise {number} of {len(everything)}, {exercise.name}: not yet.")
         print("\n".join(lines_of(found)))

@@ -99,7 +99,7 @@ class Observer:
     def __init__(self):
         self.publications, self.subscriptions = [], []
         self.messages, self.logs, self.counts = [], [], {}
-        self._subscribers, self._connected, self._types = {}, set(), {}
+        self._subscribers, self._types = {}, {}
         self._lock = threading.Lock()
         self._lag = []
         os.environ.setdefault("ROS_HOSTNAME", "localhost")
@@ -119,7 +119,7 @@ class Observer:
     def __enter__(self):
         return self
 
-    def __exit__(self, *exception):
+    def __exit__(self, *_):
         rospy.signal_shutdown("the observation has ended")
         self._handler._shutdown("the observation has ended")
         self._server.shutdown("the observation has ended")

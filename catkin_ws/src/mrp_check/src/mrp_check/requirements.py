@@ -9,97 +9,137 @@ STAGES = ("files", "static", "build", "run", "stop")
 
 
 class Requirement(typing.NamedTuple):
-    stage: str  # in whose group it is shown, and which must have run to call it met
+    stage: str  # in whose group it is shown
     title: str  # a sentence that is true of a package which meets it
     section: str  # page of the tutorial, and the anchor on it
-    also: tuple = ()  # the other stages that may find it broken
+    seen: str  # what must have been seen to call it met: a key of evidence.py
+
+
+class Rule(typing.NamedTuple):
+    """A rule, which can find requirements not met.
+
+    ids: the requirements that it can report
+    needs: what it looks at, names in NEEDS
+    findings: called with a case.Case, yields a Finding for each thing that is wrong
+    """
+
+    ids: tuple
+    needs: tuple
+    findings: typing.Callable
+
+
+# What a rule may need, a member of case.Case -> what that needs in turn.
+NEEDS = {
+    "manifest": (),
+    "model": ("manifest",),
+    "launch": ("manifest",),
+    "facts": ("model", "launch"),
+    "built": ("model",),
+    "nodes": ("facts", "built"),
+}
+
+
+def closure(needs):
+    """Return all that must be known for what is needed."""
+    return {one for need in needs for one in (need, *closure(NEEDS[need]))}
 
 
 REQUIREMENTS = {
     # files
-    "manifest": Requirement("files", "package.xml is complete and valid", "building#package-xml"),
+    "manifest": Requirement(
+        "files", "package.xml is complete and valid", "building#package-xml", "always"
+    ),
     "dependencies": Requirement(
         "files",
         "Each package that the code uses is declared in package.xml and CMakeLists.txt",
         "building#package-xml",
-        ("static", "build"),
+        "code",
     ),
     "package-name": Requirement(
-        "files", "The package has one name, in package.xml, CMake and launch file", "package"
+        "files",
+        "The package has one name, in package.xml, CMake and launch file",
+        "package",
+        "manifest",
     ),
     "cmake": Requirement(
-        "files", "CMakeLists.txt is a catkin package's", "building#cmakelists-txt", ("build",)
+        "files", "CMakeLists.txt is a catkin package's", "building#cmakelists-txt", "always"
     ),
     "targets": Requirement(
         "files",
         "Each executable is built of its own sources",
         "wrong#a-target-is-made-of-another-node-s-source",
-        ("static", "build"),
+        "cpp",
     ),
-    "messages": Requirement("files", "The package's own messages are generated", "message_types"),
+    "messages": Requirement(
+        "files", "The package's own messages are generated", "message_types", "cmake"
+    ),
     "scripts": Requirement(
         "files",
         "Each script is there, executable, and can be started",
         "wrong#the-script-is-not-executable",
-        ("build", "run"),
+        "python",
     ),
-    "text": Requirement("files", "Each file is plain UTF-8 text with Unix line ends", "wrong"),
+    "text": Requirement(
+        "files", "Each file is plain UTF-8 text with Unix line ends", "wrong", "always"
+    ),
     "launch-file": Requirement(
-        "files", "The launch file is there and roslaunch can read it", "launching", ("run",)
+        "files", "The launch file is there and roslaunch can read it", "launching", "always"
     ),
     "launch-nodes": Requirement(
-        "files", "The launch file starts each node under its name", "launching", ("run",)
+        "files", "The launch file starts each node under its name", "launching", "launch"
     ),
     "launch-group": Requirement(
-        "files", "The launch file puts the nodes into the group", "namespaces", ("run",)
+        "files", "The launch file puts the nodes into the group", "namespaces", "launch"
     ),
-    "launch-output": Requirement("files", "The nodes' lines come to the screen", "launching"),
-    "install": Requirement("files", "What is needed to run is installed", "building"),
+    "launch-output": Requirement(
+        "files", "The nodes' lines come to the screen", "launching", "launch"
+    ),
+    "install": Requirement("files", "What is needed to run is installed", "building", "cmake"),
     # static
-    "python-syntax": Requirement("static", "Python can read each script", "wrong", ("files",)),
+    "python-syntax": Requirement("static", "Python can read each script", "wrong", "python"),
     "python-names": Requirement(
-        "static", "Each name in Python code exists", "wrong", ("files", "run")
+        "static", "Each name in Python code exists", "wrong", "python-read"
     ),
-    "node-start": Requirement("static", "Each node starts ROS first", "publisher", ("run",)),
+    "node-start": Requirement("static", "Each node starts ROS first", "publisher", "read"),
     "node-name": Requirement(
-        "static", "Each node gives itself its own name", "publisher#start-the-node", ("run",)
+        "static", "Each node gives itself its own name", "publisher#start-the-node", "read"
     ),
-    "spin": Requirement("static", "Each node waits for callbacks", "publisher", ("run",)),
+    "spin": Requirement("static", "Each node waits for callbacks", "publisher", "read"),
     "callbacks": Requirement(
-        "static", "Each callback is handed over and takes what it gets", "subscriber", ("run",)
+        "static", "Each callback is handed over and takes what it gets", "subscriber", "read"
     ),
     "lifetime": Requirement(
         "static",
         "Publishers, subscribers and timers live as long as the node, and no longer",
         "subscriber",
-        ("run", "stop"),
+        "read",
     ),
-    "queue": Requirement("static", "Queues are long enough", "queues", ("run",)),
+    "queue": Requirement("static", "Queues are long enough", "queues", "read"),
     # build
-    "configure": Requirement("build", "CMake can configure the package", "building"),
-    "compile": Requirement("build", "The C++ code compiles", "building#catkin-make"),
-    "link": Requirement("build", "The executables can be linked", "building"),
+    "configure": Requirement("build", "CMake can configure the package", "building", "cmake"),
+    "compile": Requirement("build", "The C++ code compiles", "building#catkin-make", "compiled"),
+    "link": Requirement("build", "The executables can be linked", "building", "built"),
     # run
-    "starts": Requirement("run", "Each node starts and stays up", "launching"),
+    "starts": Requirement("run", "Each node starts and stays up", "launching", "up"),
     "topic": Requirement(
-        "run", "Publishers and subscribers meet on the topic", "publisher", ("static",)
+        "run", "Publishers and subscribers meet on the topic", "publisher", "meets"
     ),
-    "type": Requirement("run", "The messages have the right type", "publisher", ("static",)),
-    "values": Requirement("run", "Publishers publish the right values", "publisher", ("static",)),
-    "wrap": Requirement(
-        "run", "The values wrap round past the largest one", "publisher", ("static",)
-    ),
-    "rate": Requirement("run", "The rate is right", "publisher", ("static",)),
-    "latch": Requirement("run", "Nothing is latched that should not be", "latch", ("static",)),
-    "received": Requirement("run", "Subscribers hear every value", "subscriber", ("static",)),
-    "console": Requirement("run", "The console shows the right lines", "launching", ("static",)),
+    "type": Requirement("run", "The messages have the right type", "publisher", "meets"),
+    "values": Requirement("run", "Publishers publish the right values", "publisher", "values"),
+    "wrap": Requirement("run", "The values wrap round past the largest one", "publisher", "wrap"),
+    "rate": Requirement("run", "The rate is right", "publisher", "rate"),
+    "latch": Requirement("run", "Nothing is latched that should not be", "latch", "messages"),
+    "received": Requirement("run", "Subscribers hear every value", "subscriber", "received"),
+    "console": Requirement("run", "The console shows the right lines", "launching", "up"),
     "namespace": Requirement(
-        "run", "The nodes can be moved to another namespace", "namespaces", ("static",)
+        "run", "The nodes can be moved to another namespace", "namespaces", "alone"
     ),
-    "warnings": Requirement("run", "ROS prints no warnings", "wrong"),
+    "warnings": Requirement("run", "ROS prints no warnings", "wrong", "alone"),
     # stop
-    "exit": Requirement("stop", "Each node ends cleanly on Ctrl-C", "launching", ("static",)),
-    "leftovers": Requirement("stop", "Nothing is left when the nodes have ended", "launching"),
+    "exit": Requirement("stop", "Each node ends cleanly on Ctrl-C", "launching", "asked"),
+    "leftovers": Requirement(
+        "stop", "Nothing is left when the nodes have ended", "launching", "up"
+    ),
 }
 
 
@@ -112,11 +152,3 @@ def page_of(id_):
     """Return where a requirement is explained: a file of the built pages, and the place in it."""
     page, _, anchor = REQUIREMENTS[id_].section.partition("#")
     return f"pages/{page}.html" + (f"#{anchor}" if anchor else "")
-
-
-def stages_for(ids):
-    """Return the stages that must run to check these requirements, in their order."""
-    needed = {stage for id_ in ids for stage in (REQUIREMENTS[id_].stage, *REQUIREMENTS[id_].also)}
-    if "stop" in needed or "run" in needed:
-        needed |= {"build"}
-    return [stage for stage in STAGES if stage in needed]

@@ -526,7 +526,6 @@ def run_direct(plan, observer):
         if node in stuck:
             node.program.kill()
             results[node.key]["ended_by"] = "kill"
-        results[node.key]["pid"] = node.program.pid
     left = left_behind()
     for node in nodes:
         if node.program:
@@ -543,7 +542,6 @@ def main():
     ctypes.CDLL(None).prctl(warden.PR_SET_CHILD_SUBREAPER, 1, 0, 0, 0)
     with Observer() as observer:
         result = {"launch": run_launch, "direct": run_direct}[plan["kind"]](plan, observer)
-    result["was_killed"] = False
     with open(result_file + ".new", "w") as file:
         json.dump(result, file, default=str)
     os.rename(result_file + ".new", result_file)

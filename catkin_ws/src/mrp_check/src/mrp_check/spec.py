@@ -9,12 +9,15 @@ import json
 import pathlib
 import re
 
+import genmsg
 import jsonschema
 import yaml
 
 from mrp_check import resources
 from mrp_check.requirements import REQUIREMENTS
+from mrp_check.stages import uses
 
+SCHEMA = resources.folder("schema") / "spec.json"
 PACKAGE = "PACKAGE"  # in a type: the package's own name
 
 
@@ -197,7 +200,7 @@ class _Reader:
         """Raise SpecError about the entry at `place`, a list of keys and indices."""
         line = self.line(place)
         name = ".".join(map(str, place)) or "the spec"
-        raise SpecError(f"{self.path}:{line}: {name}: {sentence}")
+        raise SpecError(f"{self.path}:{line}: {name}: {sentence} What can be said: {SCHEMA}")
 
     def line(self, place):
         """Return the line of the entry at `place`, or of the nearest one above it."""
@@ -216,7 +219,7 @@ class _Reader:
         return line
 
     def spec(self, data):
-        schema = json.loads((resources.folder("schema") / "spec.json").read_text())
+        schema = json.loads(SCHEMA.read_text())
         errors = list(jsonschema.Draft7Validator(schema).iter_errors(data))
         if errors:
             error = min(
@@ -236,14 +239,61 @@ class _Reader:
             install=data.get("install", False),
             points=data.get("points", {}),
         )
-        for name, topic in topics.items():
-            package, message = topic.type.split("/")
-            if package == PACKAGE and message not in spec.messages:
-                self.fail(["topics", name, "type"], f"'messages' has no message '{message}'.")
+        self.own_messages(spec.messages)
+        for topic in topics.values():
+            self.field(topic, spec.messages)
         for id_ in spec.points:
             if id_ not in REQUIREMENTS:
                 self.fail(["points", id_], _no_such("requirement", id_, REQUIREMENTS))
         return spec
+
+    def own_messages(self, messages):
+        """See that each field's type is one that there is."""
+        for name, fields in messages.items():
+            for field, kind in fields.items():
+                plain = kind.split("[")[0]
+                own = plain in messages or plain.partition("/")[::2][1] in messages
+                if not (own or plain == "Header" or genmsg.msgs.is_builtin(plain)):
+                    self.fields_of(plain, ["messages", name, field])
+
+    def fields_of(self, kind, place):
+        """Return field -> type of a message of this machine, such as std_msgs/UInt32."""
+        folders = {
+            kind.split("/")[0]: [f"{share}/{kind.split('/')[0]}/msg" for share in uses.SHARES]
+        }
+        try:
+            found = genmsg.msg_loader.load_msg_by_type(
+                genmsg.MsgContext.create_default(), kind, folders
+            )
+        except (genmsg.MsgNotFound, genmsg.InvalidMsgSpec, ValueError):
+            names = [
+                f"{path.parents[1].name}/{path.stem}"
+                for share in uses.SHARES
+                for path in pathlib.Path(share).glob("*/msg/*.msg")
+            ]
+            self.fail(place, f"there is no message '{kind}' on this machine." + _near(kind, names))
+        return dict(zip(found.names, found.types))
+
+    def field(self, topic, messages):
+        """See that a topic's type is one that there is, and has the topic's field."""
+        kind, place = topic.type, ["topics", topic.name, "type"]
+        for part in topic.field.split("."):
+            package, _, message = kind.partition("/")
+            if package == PACKAGE or not message and package in messages:
+                message = message or package
+                if message not in messages:
+                    self.fail(place, f"'messages' has no message '{message}'.")
+                fields = messages[message]
+            else:
+                fields = self.fields_of(kind, place) if message or kind == "Header" else {}
+            if part not in fields:
+                there = f"{kind} has: {', '.join(fields)}" if fields else f"{kind} has no fields"
+                self.fail(
+                    place[:-1] + ["field"],
+                    f"expected a field of {topic.type}; found '{topic.field}'; {there}."
+                    + _near(part, fields),
+                )
+            kind = fields[part]
 
     def node(self, name, entry, topics):
         def topic(role, key):
@@ -290,9 +340,12 @@ class _Reader:
 
 
 def _no_such(kind, name, names):
+    return f"there is no {kind} '{name}'; there are: {', '.join(names)}." + _near(name, names)
+
+
+def _near(name, names):
     near = difflib.get_close_matches(name, list(names), 1)
-    hint = f" Did you mean '{near[0]}'?" if near else ""
-    return f"there is no {kind} '{name}'; there are: {', '.join(names)}.{hint}"
+    return f" Did you mean '{near[0]}'?" if near else ""
 
 
 def _sentence(error):
@@ -336,16 +389,10 @@ def _sentence(error):
 def _shown(value):
     if value is None:
         return "nothing"
-    if isinstance(value, (dict, list)):
-        return (
-            "keys with values"
-            if isinstance(value, dict) and value
-            else "a list"
-            if value
-            else "nothing"
-        )
-    return (
-        {True: "true", False: "false"}.get(value, repr(value))
-        if isinstance(value, bool)
-        else repr(value)
-    )
+    if isinstance(value, (dict, list)) and not value:
+        return "nothing"
+    if isinstance(value, dict):
+        return "keys with values"
+    if isinstance(value, list):
+        return "a list"
+    return str(value).lower() if isinstance(value, bool) else repr(value)

@@ -97,20 +97,12 @@ def _tell_calls(rospy):
     def first(arguments, keywords, name, index):
         return arguments[index] if len(arguments) > index else keywords.get(name)
 
-    def callback_of(arguments, keywords):
-        function = first(arguments, keywords, "callback", 3)
-        code = getattr(getattr(function, "__func__", function), "__code__", None)
-        path = os.path.realpath(code.co_filename) if code else ""
-        own = path.startswith(_SOURCES)
-        return {
-            "topic": first(arguments, keywords, "name", 1),
-            "callback_file": path[len(_SOURCES) :] if own else None,
-            "callback_line": code.co_firstlineno if own else None,
-        }
+    def topic(arguments, keywords):
+        return {"topic": first(arguments, keywords, "name", 1)}
 
     before(rospy, "init_node", "init", lambda a, k: {"name": first(a, k, "name", 0)})
-    before(rospy.Publisher, "__init__", "publisher", lambda a, k: {"topic": first(a, k, "name", 1)})
-    before(rospy.Subscriber, "__init__", "subscriber", callback_of)
+    before(rospy.Publisher, "__init__", "publisher", topic)
+    before(rospy.Subscriber, "__init__", "subscriber", topic)
     before(rospy.Timer, "__init__", "timer", lambda a, k: {})
     before(rospy.Rate, "__init__", "timer", lambda a, k: {})
     _watch_publish(rospy, tell_once)

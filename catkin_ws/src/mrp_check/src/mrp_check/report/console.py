@@ -62,12 +62,17 @@ def text(report, colours=False):
         for id_ in ids:
             verdict = report.requirements[id_]
             title = f"{REQUIREMENTS[id_].title} ({id_})"
-            lines.append(f"  {paint(MARKS[verdict], verdict)} {title}")
+            lines.append(f"  {paint(MARKS[verdict], verdict)} {title}{why_not(report, id_)}")
     for finding in in_order(report.findings):
         first, *rest = finding_lines(finding, report)
         head, _, message = first.partition(f" {finding.severity}: ")
         lines += ["", f"{head} {paint(finding.severity + ':', finding.severity)} {message}", *rest]
     return "\n".join([*lines, "", summary(report)])
+
+
+def why_not(report, id_):
+    """Return why nobody can say whether a requirement is met, or an empty text."""
+    return f": {report.unseen[id_]}" if id_ in report.unseen else ""
 
 
 def in_order(findings):
@@ -130,12 +135,14 @@ def _wrapped(head, text, indent):
 
 def summary(report):
     """Return one sentence: how many requirements are met, and how many are not."""
+    if not report.requirements:
+        return "Nothing could be checked."
     verdicts = list(report.requirements.values())
     met, broken = verdicts.count(check.MET), verdicts.count(check.BROKEN)
     unchecked = verdicts.count(check.UNCHECKED)
     rest = f"; {unchecked} could not be checked" if unchecked else ""
     warnings = sum(f.severity == WARNING and not f.consequence_of for f in report.findings)
     rest += f"; warnings: {warnings}" if warnings else ""
-    if broken or report.verdict == check.FINDINGS:
+    if broken or unchecked:
         return f"{broken} of {len(verdicts)} requirements are not met{rest}."
     return f"All requirements are met: {met} of {len(verdicts)}{rest}."

@@ -58,7 +58,7 @@ details article { margin: .8rem 0 0; background: var(--back); }
 
 def text(report):
     name = _escaped(report.package or "no package")
-    body = _body(report) if report.verdict != check.UNCHECKED else _unchecked(report)
+    body = _body(report)
     return f"""<!DOCTYPE html>
 <html lang="en">
 <head>
@@ -78,20 +78,14 @@ def text(report):
 """
 
 
-def _unchecked(report):
-    return (
-        '<p class="verdict unchecked">could not be checked</p>\n</header>\n<main>\n'
-        f"<p>{_escaped(report.reason)}</p>"
-    )
-
-
 def _body(report):
-    verdict = "met" if report.verdict == check.MET else "broken"
+    classes = {check.MET: "met", check.FINDINGS: "broken", check.UNCHECKED: "unchecked"}
     parts = [
         f'<p class="faint">{_escaped(report.spec)}</p>',
-        f'<p class="verdict {verdict}">{_escaped(console.summary(report))}</p>',
+        f'<p class="verdict {classes[report.verdict]}">{_escaped(console.summary(report))}</p>',
         "</header>",
         "<main>",
+        f"<p>{_escaped(report.reason)}</p>",
     ]
     ordered = console.in_order(report.findings)
     ids = {cause.id for cause in ordered if not cause.consequence_of and cause.severity == ERROR}
@@ -106,21 +100,23 @@ def _body(report):
             told.add(finding.id)
             following = [f for f in ordered if f.consequence_of == finding.id]
         parts.append(_article(finding, report, following))
-    parts.append("<h2>All requirements</h2>")
+    parts.append("<h2>All requirements</h2>" if report.requirements else "")
     for stage in STAGES:
         rows = [id_ for id_ in report.requirements if REQUIREMENTS[id_].stage == stage]
         if rows:
             parts.append(f"<table><caption>{stage}</caption>")
-            parts += [_row(id_, report.requirements[id_]) for id_ in rows]
+            parts += [_row(id_, report) for id_ in rows]
             parts.append("</table>")
     return "\n".join(parts)
 
 
-def _row(id_, verdict):
-    requirement = REQUIREMENTS[id_]
+def _row(id_, report):
+    requirement, verdict = REQUIREMENTS[id_], report.requirements[id_]
+    why = _escaped(console.why_not(report, id_))
     return (
         f'<tr><td class="{verdict}">{_WORDS[verdict]}</td>'
-        f'<th scope="row">{_escaped(requirement.title)} <span class="faint">{id_}</span></th></tr>'
+        f'<th scope="row">{_escaped(requirement.title)}'
+        f' <span class="faint">{id_}{why}</span></th></tr>'
     )
 
 

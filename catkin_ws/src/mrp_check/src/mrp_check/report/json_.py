@@ -7,19 +7,7 @@ import json
 
 from mrp_check.requirements import REQUIREMENTS
 
-FIELDS = (
-    "id",
-    "stage",
-    "severity",
-    "file",
-    "line",
-    "message",
-    "expected",
-    "seen",
-    "fix",
-    "section",
-    "consequence_of",
-)
+FIELDS = ("id stage severity file line message expected seen fix section consequence_of").split()
 
 
 def data(report):
@@ -29,6 +17,7 @@ def data(report):
         "package": report.package,
         "spec": report.spec,
         "requirements": report.requirements,
+        "unseen": report.unseen,
         "findings": [finding_data(finding) for finding in report.findings],
     }
     if report.reason:

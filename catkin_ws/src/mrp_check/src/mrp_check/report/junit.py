@@ -32,9 +32,8 @@ def text(report):
             failure.text = _xml(told)
         elif verdict == check.UNCHECKED:
             counts["skipped"] += 1
-            causes = sorted({f.consequence_of for f in findings if f.consequence_of})
-            reason = f"follows from: {', '.join(causes)}" if causes else "could not be checked"
-            ElementTree.SubElement(case, "skipped", message=reason)
+            reason = report.unseen.get(id_, "could not be checked")
+            ElementTree.SubElement(case, "skipped", message=_xml(reason))
         elif told:
             ElementTree.SubElement(case, "system-out").text = _xml(told)
     if report.verdict == check.UNCHECKED:

@@ -3,29 +3,32 @@
 
 from __future__ import annotations
 
-import os
+from mrp_check.finding import CannotCheck, Finding
+from mrp_check.requirements import Rule
+from mrp_check.stages import compiler, configuring, linker, uses
 
-from mrp_check.finding import Finding
-from mrp_check.stages import compiler, configuring, linker
+
+def _configure(case):
+    """Yield the Finding about CMake, if it failed."""
+    if case.built is None:
+        yield _not_configured(case.package, case.catkin, case.package_folder)
 
 
-def findings(package, spec, workspace):
+def _build(case):
     """Yield a Finding for each source that does not compile and each target that does not link."""
-    catkin = workspace.catkin
-    built = catkin.built if catkin.configured.ok else None
-    copy = workspace.package_folder
-    if built is None:
-        yield _not_configured(package, catkin, copy)
-    elif not built.ok:
-        found = [compiler.finding(package, p) for p in compiler.problems(built.output, copy)]
-        found += linker.findings(package, built.output, catkin.model)
-        yield from found or [_unknown(package, built, "compile")]
-    workspace.built = built is not None and built.ok
-    workspace.executables = _executables(workspace, package)
+    if case.built and not case.built.ok:
+        output, package = case.built.output, case.package
+        problems = compiler.problems(output, case.package_folder)
+        found = [compiler.finding(package, problem) for problem in problems]
+        found += linker.findings(package, output, case.model)
+        yield from found or [_unknown(package, case.built, "compile")]
 
 
 def _not_configured(package, catkin, copy):
     step = catkin.configured
+    missing = configuring.absent(package, step.output)
+    if missing:
+        raise CannotCheck(uses.absent(missing, "cpp"))
     finding = (
         None if step.why_ended else configuring.finding(package, step.output, copy, catkin.model)
     )
@@ -53,14 +56,7 @@ def _unknown(package, step, id_):
     )
 
 
-def _executables(workspace, package):
-    """Return name -> path of what roslaunch can start: built executables, and scripts."""
-    found = {}
-    for path in package.of_kind("python"):
-        if package.is_executable(path):
-            found[path.rsplit("/", 1)[-1]] = workspace.package_folder / path
-    folder = workspace.folder / "devel" / "lib" / package.name
-    for path in sorted(folder.glob("*")) if folder.is_dir() else ():
-        if path.is_file() and os.access(path, os.X_OK):
-            found[path.name] = path
-    return found
+RULES = (
+    Rule(("configure",), ("built",), _configure),
+    Rule(("compile", "link"), ("built",), _build),
+)

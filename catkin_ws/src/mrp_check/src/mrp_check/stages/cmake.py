@@ -173,7 +173,6 @@ class Model:
         self.project = self.catkin = self.catkin_package = self.late = self.generate = None
         self.components, self.depends, self.targets = {}, [], {}
         self.scripts, self.message_files, self.installs = [], {}, []
-        self.python_setup = None
         self.add_message_files = None
         for call in self.calls:
             if call.arguments or call.command in _MAY_BE_EMPTY:
@@ -232,18 +231,10 @@ class Model:
         if self.targets:
             self.late = next(iter(self.targets.values()))
         names = {
-            "INCLUDE_DIRS",
-            "LIBRARIES",
-            "CATKIN_DEPENDS",
-            "DEPENDS",
-            "CFG_EXTRAS",
-            "EXPORTED_TARGETS",
-            "SKIP_CMAKE_CONFIG_GENERATION",
+            *("INCLUDE_DIRS", "LIBRARIES", "CATKIN_DEPENDS", "DEPENDS", "CFG_EXTRAS"),
+            *("EXPORTED_TARGETS", "SKIP_CMAKE_CONFIG_GENERATION"),
         }
         self.depends = sections(call.arguments, names).get("CATKIN_DEPENDS", [])
-
-    def _catkin_python_setup(self, call):
-        self.python_setup = call
 
     def _add_executable(self, call, is_library=False):
         name, *sources = call.arguments
@@ -333,22 +324,18 @@ class Model:
 
 
 _UNDERSTOOD = {
-    name: getattr(Model, f"_{name}")
-    for name in (
-        "project",
-        "find_package",
-        "catkin_package",
-        "catkin_python_setup",
-        "add_executable",
-        "add_library",
-        "target_sources",
-        "target_link_libraries",
-        "add_dependencies",
-        "set_target_properties",
-        "catkin_install_python",
-        "install",
-        "add_message_files",
-        "generate_messages",
-    )
+    "project": Model._project,
+    "find_package": Model._find_package,
+    "catkin_package": Model._catkin_package,
+    "add_executable": Model._add_executable,
+    "add_library": Model._add_library,
+    "target_sources": Model._target_sources,
+    "target_link_libraries": Model._target_link_libraries,
+    "add_dependencies": Model._add_dependencies,
+    "set_target_properties": Model._set_target_properties,
+    "catkin_install_python": Model._catkin_install_python,
+    "install": Model._install,
+    "add_message_files": Model._add_message_files,
+    "generate_messages": Model._generate_messages,
 }
-_MAY_BE_EMPTY = {"catkin_package", "catkin_python_setup", "generate_messages"}
+_MAY_BE_EMPTY = {"catkin_package", "generate_messages"}

@@ -326,10 +326,6 @@ def _many_arguments(package, problem, lines, match):
     )
 
 
-def _no_type(package, problem, lines, match):
-    return _undeclared(package, problem, lines, match)
-
-
 def _string(package, problem, lines, match):
     return (
         "a text is begun with a quotation mark and not ended with one.",
@@ -373,7 +369,7 @@ _WORDS = (
     (r"(\S+): No such file or directory", _missing_header),
     (r"'([\w:]+)' was not declared in this scope", _undeclared),
     (r"'([\w:]+)' has not been declared", _undeclared),
-    (r"'([\w:]+)' does not name a type", _no_type),
+    (r"'([\w:]+)' does not name a type", _undeclared),
     (r"'([\w:]+)' is not a (?:class|namespace)", _undeclared),
     (r"'([^']+)' (?:\{aka '[^']*'\} )?has no member named '(\w+)'", _no_member),
     # What roscpp asks of each message.

@@ -92,6 +92,27 @@ _COMMANDS = (
 ).split()
 
 
+_PACKAGES = ["roscpp", "rospy", "std_msgs", "catkin", "message_generation", "roslib"]
+
+
+def _not_found(text):
+    """Return the match whose group is the name of a package that CMake did not find, or None."""
+    return (
+        re.search(r'Could not find a package configuration file provided by "(\w+)"', text)
+        or re.search(r"catkin_package\(\).*?on the catkin package '(\w+)'", text)
+        or re.search(r"Could NOT find (\w+)", text)
+    )
+
+
+def absent(package, output):
+    """Return the package that CMake did not find though package.xml asks for it, and that looks
+    like no other's misspelt name; or None."""
+    match = _not_found(output)
+    name = match and match.group(1)
+    asked = name and package.find_line("package.xml", f">{name}<")
+    return name if asked and not difflib.get_close_matches(name, _PACKAGES, 1, 0.6) else None
+
+
 def _in_words(package, text, command, model):
     """Return (what it means, what to do)."""
     match = re.search(r'Unknown CMake command "(\w+)"', text)
@@ -111,16 +132,10 @@ def _in_words(package, text, command, model):
         near = difflib.get_close_matches(name.lower(), _COMMANDS, 1, 0.6)
         hint = f" Perhaps {near[0]} is meant." if near else ""
         return f"there is no command {name}().{hint}", f"Write {near[0]}." if near else "Mend it."
-    match = (
-        re.search(r'Could not find a package configuration file provided by "(\w+)"', text)
-        or re.search(r"catkin_package\(\).*?on the catkin package '(\w+)'", text)
-        or re.search(r"Could NOT find (\w+)", text)
-    )
+    match = _not_found(text)
     if match and command == "find_package":
         name = match.group(1)
-        near = difflib.get_close_matches(
-            name, ["roscpp", "rospy", "std_msgs", "catkin", "message_generation", "roslib"], 1, 0.6
-        )
+        near = difflib.get_close_matches(name, _PACKAGES, 1, 0.6)
         hint = f" Perhaps {near[0]} is meant." if near else ""
         return (
             f"there is no package {name} on this machine.{hint}",

@@ -64,8 +64,6 @@ def node(one):
         "remaps": [list(pair) for pair in one.remap_args],
         "file": os.path.realpath(one.filename) if one.filename else None,
         "env": [list(pair) for pair in one.env_args],
-        "required": bool(one.required),
-        "respawn": bool(one.respawn),
         "prefix": one.launch_prefix or "",
         "arguments": one.args or "",
     }

@@ -102,21 +102,7 @@ def load(package, workspace, file, *arguments):
     for entry in data["nodes"]:
         path = _relative(entry["file"], copy)
         node = Started(
-            **{
-                key: entry[key]
-                for key in (
-                    "package",
-                    "type",
-                    "name",
-                    "namespace",
-                    "output",
-                    "env",
-                    "arguments",
-                    "prefix",
-                )
-            },
-            remaps=[tuple(pair) for pair in entry["remaps"]],
-            file=path,
+            **{**entry, "remaps": [tuple(pair) for pair in entry["remaps"]], "file": path}
         )
         nodes.append(node)
     _find_lines(package, nodes)

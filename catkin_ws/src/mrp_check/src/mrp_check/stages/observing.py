@@ -64,23 +64,20 @@ class Observed:
         return self.direct["nodes"].get(key) if self.direct else None
 
 
-def observed(package, spec, workspace):
-    """Return the Observed of a check; runs the nodes when it is first asked for."""
-    if "observed" not in workspace.notes:
-        workspace.notes["observed"] = _Run(package, spec, workspace).observe()
-    return workspace.notes["observed"]
+def observe(case):
+    """Return the Observed of a case.Case; runs the nodes."""
+    return _Run(case).observe()
 
 
 class _Run:
-    def __init__(self, package, spec, workspace):
-        self.package, self.spec, self.workspace = package, spec, workspace
+    def __init__(self, case):
+        self.package, self.spec, self.workspace = case.package, case.spec, case
+        self.executables = _executables(case)  # by now there is what was built
         self.result = Observed()
         self.launch_file = None
-        self.too_busy = False
+        self.too_busy, self.fault = False, ""
 
     def observe(self):
-        built = self.workspace.catkin.built  # as far as it can be; the stage build says more
-        self.workspace.built = bool(built and built.ok)
         self.read_launch_file()
         self.find_executables()
         if not self.result.executables:
@@ -94,6 +91,8 @@ class _Run:
         for thread in threads:
             thread.join()
         launch = self.result.launch
+        if self.fault:
+            raise CannotCheck(f"The observer itself failed: {self.fault}. Please report it.")
         if self.too_busy or launch and launch["ending"] == "most":
             # Not the package's fault: one that never comes up is idle, or uses up its time.
             raise CannotCheck(
@@ -105,17 +104,13 @@ class _Run:
     # --- What there is to run
 
     def read_launch_file(self):
-        file = launching.find(self.package, self.spec)
-        self.launch = None
-        if file:
-            launch = launching.load(self.package, self.workspace, file)
-            of_spec = [n for n in launch.nodes if n.name in self.spec.nodes]
-            if not launch.error and of_spec:
-                self.launch = launch
-                self.result.own_launch = True
-                self.launch_file = self.workspace.package_folder / file
-                self.result.started = {node.name: node for node in of_spec}
-                self.result.moved = self.read_moved(file)
+        self.launch = launch = self.workspace.launch
+        of_spec = [n for n in launch.nodes if n.name in self.spec.nodes] if launch else []
+        if of_spec and not launch.error:
+            self.result.own_launch = True
+            self.launch_file = self.workspace.package_folder / launch.file
+            self.result.started = {node.name: node for node in of_spec}
+            self.result.moved = self.read_moved(launch.file)
 
     def read_moved(self, file):
         """Return what roslaunch makes of the launch file inside another group."""
@@ -135,7 +130,7 @@ class _Run:
                 wanted.append(started.type)
             if node.executable:
                 wanted.append(node.executable)
-            files = self.workspace.facts.sources.get(name, []) if self.workspace.facts else []
+            files = self.workspace.facts.sources.get(name, [])
             wanted += [file.rsplit("/", 1)[-1] for file in files if file.endswith(".py")]
             wanted += [name, name + ".py"]
             found = next((self.executable(w) for w in wanted if self.executable(w)), None)
@@ -144,7 +139,7 @@ class _Run:
 
     def executable(self, name):
         """Return the path of an executable as rosrun finds it, or None."""
-        path = self.workspace.executables.get(name)
+        path = self.executables.get(name)
         if path is None:
             path = self.workspace.folder / "devel" / "lib" / self.package.name / name
         if os.path.isfile(path) and os.access(path, os.X_OK):
@@ -312,7 +307,22 @@ class _Run:
         except (OSError, ValueError):
             said = (done.errors.strip().splitlines() or [f"it ended with {done.code}"])[-1]
             why = done.limit_text(limits) or said
+            if why is said and "Traceback" in done.errors:
+                self.fault = said
             self.result.problems.append(f"the nodes could not be observed: {why}")
+
+
+def _executables(case):
+    """Return name -> path of what roslaunch can start: built executables, and scripts."""
+    found = {}
+    for path in case.package.of_kind("python"):
+        if case.package.is_executable(path):
+            found[path.rsplit("/", 1)[-1]] = case.package_folder / path
+    folder = case.folder / "devel" / "lib" / case.package.name
+    for path in sorted(folder.glob("*")) if folder.is_dir() else ():
+        if path.is_file() and os.access(path, os.X_OK):
+            found[path.name] = path
+    return found
 
 
 def is_python(path):

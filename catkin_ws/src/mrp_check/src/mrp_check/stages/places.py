@@ -23,14 +23,14 @@ class Places:
     of the sources.
     """
 
-    def __init__(self, package, spec, workspace, observed):
-        self.package, self.spec, self.observed = package, spec, observed
-        self.copy = str(workspace.package_folder.resolve()) + "/"
-        self.facts = workspace.facts
+    def __init__(self, case):
+        self.package, self.spec, self.observed = case.package, case.spec, case.observed
+        self.copy = str(case.package_folder.resolve()) + "/"
+        self.facts = case.facts
 
     def sources(self, node):
         """Return the source files of a node of the spec, the main one first."""
-        found = list(self.facts.sources.get(node, [])) if self.facts else []
+        found = list(self.facts.sources.get(node, []))
         executable = self.observed.executables.get(node)
         stems = {node} | ({executable.stem, executable.name} if executable else set())
         for file in self.package.of_kind("python", "cpp"):
@@ -46,17 +46,17 @@ class Places:
             for event in self.events(node):
                 if event["event"] == kind and event.get("file"):
                     return event["file"], event["line"]
-            for place in self.facts.of(node, kind) if self.facts else []:
+            for place in self.facts.of(node, kind):
                 return place.file, place.line
         for kind in ("main", "init", "handle"):
-            for place in self.facts.of(node, kind) if self.facts else []:
+            for place in self.facts.of(node, kind):
                 return place.file, place.line
         for file in self.sources(node):
             return file, self.first_statement(file)
         return self.in_launch_file(node)
 
     def facts_of(self, node, *kinds):
-        return self.facts.of(node, *kinds) if self.facts else []
+        return self.facts.of(node, *kinds)
 
     def sleep_beside(self, node, *kinds):
         """Return the place of a sleep in the same function as a place of these kinds, or None."""
@@ -82,9 +82,7 @@ class Places:
         started = self.observed.started.get(node)
         if started and started.file:
             return started.file, started.line
-        if self.facts and node in self.facts.launch:
-            return tuple(self.facts.launch[node])
-        return None, None
+        return self.facts.launch.get(node, (None, None))
 
     def events(self, node):
         """Return what the node told while it ran by itself."""
@@ -102,6 +100,19 @@ class Places:
             skip = (ast.Import, ast.ImportFrom, ast.Expr)
             return next((s.lineno for s in body if not isinstance(s, skip)), 1)
         return self.package.find_line(file, " main(", 1)
+
+    def condition_of_publish(self, node):
+        """Return the place of the condition before publish() in the same function, or None."""
+        publish = self.facts_of(node, "publish")[:1]
+        functions = [
+            f for f in self.facts_of(node, "function") if publish and f.is_around(publish[0])
+        ]
+        for function in functions[-1:]:
+            lines = self.package.lines(function.file)[function.line - 1 : publish[0].line]
+            for number, text in reversed([*enumerate(lines, function.line)]):
+                if re.match(r"\s*\}?\s*(if|elif|else if)\b", text):
+                    return function.file, number
+        return None
 
     def of_log(self, node, log):
         """Return the place of a line that a node has logged: /rosout says it."""

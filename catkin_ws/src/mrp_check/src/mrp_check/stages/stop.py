@@ -7,25 +7,23 @@ import re
 import signal
 
 from mrp_check.finding import Finding
-from mrp_check.stages.observing import observed
-from mrp_check.stages.places import Places
+from mrp_check.requirements import Rule
 from mrp_check.stages.run.words import code_text, last_words
 
 # What rospy itself may say when a message is published at the very moment of the end.
 _AT_THE_END = ("closed topic", "ROSInterruptException: rospy shutdown")
 
 
-def findings(package, spec, workspace):
+def _exit(case):
     """Yield a Finding for each node that does not end as the spec says."""
-    seen = observed(package, spec, workspace)
-    places = Places(package, spec, workspace, seen)
-    found = []
-    for name in spec.nodes:
-        direct = seen.alone(name)
+    for name in case.spec.nodes:
+        direct = case.observed.alone(name)
         if direct and direct.get("asked") is not None:
-            found += _exit_findings(name, direct, spec, package, places)
-    yield from found
-    yield from _left_findings(seen, spec, package, places)
+            yield from _exit_findings(name, direct, case.spec, case.package, case.places)
+
+
+def _left(case):
+    return _left_findings(case.observed, case.spec, case.package, case.places)
 
 
 def _exit_findings(name, direct, spec, package, places):
@@ -170,3 +168,9 @@ def _starts_program(name, package, places):
     starts = r"\b(Popen|fork|system|popen|Process)\s*\(|subprocess\.\w+\("
     place = _first_line(package, files, starts)
     return place or (places.of(name, "init") if name else (None, None))
+
+
+RULES = (
+    Rule(("exit",), ("nodes",), _exit),
+    Rule(("leftovers",), ("nodes",), _left),
+)

@@ -17,26 +17,13 @@ _INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*[<"]([\w./+-]+)[>"]', re.MULT
 _COMMENT = re.compile(r"/\*.*?\*/|//[^\n]*", re.DOTALL)
 
 # They come with roscpp or rospy: whoever does not name them has them all the same.
-_LOOSE = {
-    "roslib",
-    "rosgraph",
-    "rosconsole",
-    "rostime",
-    "roscpp_serialization",
-    "genpy",
-    "roscpp_traits",
-    "rosnode",
-    "rostopic",
-    "rosservice",
-    "roslaunch",
-    "rosunit",
-    "rostest",
-    "rospkg",
-    "message_filters",
-    "xmlrpcpp",
-    "cpp_common",
-    "rosgraph_msgs",
-}
+_LOOSE = set(
+    (
+        "roslib rosgraph rosconsole rostime roscpp_serialization genpy roscpp_traits"
+        " rosnode rostopic rosservice roslaunch rosunit rostest rospkg message_filters"
+        " xmlrpcpp cpp_common rosgraph_msgs"
+    ).split()
+)
 
 
 class Use(typing.NamedTuple):
@@ -44,6 +31,20 @@ class Use(typing.NamedTuple):
     line: int
     language: str
     firm: bool  # whether not to declare it is an error: of some, others bring them along
+
+
+# Python modules whose Debian package is called otherwise.
+_DEBIAN = {"cv2": "python3-opencv", "PIL": "python3-pil", "OpenGL": "python3-opengl"}
+
+
+def absent(name, language):
+    """Return the sentence about a package or a module that this machine has not."""
+    plain = name.lower().replace("_", "-")
+    guess = _DEBIAN.get(name, f"python3-{plain}") if language == "python" else f"lib{plain}-dev"
+    return (
+        f"{name} is not on this machine (Debian package {guess}): what needs it could not be"
+        " checked. Install it, and check again."
+    )
 
 
 @functools.lru_cache(maxsize=None)

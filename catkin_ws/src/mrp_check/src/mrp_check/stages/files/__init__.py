@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from mrp_check.stages import launching
+from mrp_check.requirements import Rule
 from mrp_check.stages.files import (
     cmake_rules,
     dependencies,
@@ -16,41 +16,67 @@ from mrp_check.stages.files import (
 )
 
 
-def findings(package, spec, workspace):
-    """Yield a Finding for each thing that is wrong with the package's files as such."""
-    parsed, problem = manifest.parse(package)
-    if problem:
-        yield problem
-        manifest.replace(workspace, package.name)
-    launch_file, problems = launch_rules.readable(package, spec)
-    yield from problems
-    if "CMakeLists.txt" not in package.files:
-        yield cmake_rules.missing()
-    catkin = workspace.catkin
-    loading = None
-    if launch_file and not problems:
-        loading = catkin.submit(launching.load, package, workspace, launch_file)
-    model = catkin.model
-    catkin.start_building()
-    workspace.launch = loading.result() if loading else None
-    relayed = {script.path for script in model.scripts if script.by == "catkin_install_python"}
-    yield from text.findings(package, relayed)
-    if parsed is not None:
-        yield from names.findings(package, model, workspace.launch)
-        yield from manifest.findings(package, parsed)
-    if "CMakeLists.txt" in package.files:
-        yield from cmake_rules.findings(package, model)
-    yield from dependencies.findings(package, spec, parsed, model)
-    yield from cmake_rules.own_messages(package, spec, model, parsed)
-    nodes = workspace.launch.nodes if workspace.launch else []
-    started = {
-        path: node
-        for node in nodes
-        for path in package.of_kind("python")
-        if node.package == package.name and path.rsplit("/", 1)[-1] == node.type
-    }
-    yield from scripts.findings(package, model, started)
-    if workspace.launch:
-        yield from launch_rules.findings(package, spec, model, workspace.launch)
-    if spec.install:
-        yield from install.findings(package, spec, model, launch_file, started)
+def _text(case):
+    scripts_ = case.model.scripts
+    relayed = {script.path for script in scripts_ if script.by == "catkin_install_python"}
+    return text.findings(case.package, relayed)
+
+
+def _name(case):
+    readable = case.manifest[0] is not None
+    return names.findings(case.package, case.model, case.launch) if readable else ()
+
+
+def _manifest(case):
+    parsed, problem = case.manifest
+    return [problem] if problem else manifest.findings(case.package, parsed)
+
+
+def _cmake(case):
+    there = cmake_rules.FILE in case.package.files
+    return cmake_rules.findings(case.package, case.model) if there else [cmake_rules.missing()]
+
+
+def _launch(case):
+    arguments = case.package, case.spec, case.model, case.launch
+    return launch_rules.findings(*arguments) if case.launch else ()
+
+
+def _install(case):
+    if case.spec.install:
+        yield from install.findings(
+            case.package, case.spec, case.model, case.launch_file[0], case.started
+        )
+
+
+RULES = (
+    Rule(("launch-file",), ("launch",), lambda case: case.launch_file[1]),
+    Rule(("text",), ("model",), _text),
+    Rule(("package-name",), ("manifest", "model", "launch"), _name),
+    Rule(("manifest",), ("manifest",), _manifest),
+    Rule(("cmake", "targets"), ("model",), _cmake),
+    Rule(
+        ("dependencies",),
+        ("manifest", "model"),
+        lambda case: dependencies.findings(case.package, case.spec, case.manifest[0], case.model),
+    ),
+    Rule(
+        ("messages", "dependencies"),
+        ("manifest", "model"),
+        lambda case: cmake_rules.own_messages(
+            case.package, case.spec, case.model, case.manifest[0]
+        ),
+    ),
+    Rule(
+        ("scripts",),
+        ("model", "launch"),
+        lambda case: scripts.findings(case.package, case.model, case.started),
+    ),
+    Rule(
+        ("launch-file", "launch-nodes", "launch-group", "launch-output")
+        + ("package-name", "targets", "topic"),
+        ("model", "launch"),
+        _launch,
+    ),
+    Rule(("install",), ("model", "launch"), _install),
+)

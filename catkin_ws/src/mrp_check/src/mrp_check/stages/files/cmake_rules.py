@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import difflib
 
-from mrp_check.finding import Finding
+from mrp_check.finding import ERROR, WARNING, Finding
 from mrp_check.spec import PACKAGE
 from mrp_check.stages import uses
 from mrp_check.stages.files.dependencies import last_dependency
@@ -93,7 +93,8 @@ def own_messages(package, spec, model, manifest):
     if not model.complete and model.catkin is None:
         return
     catkin_line = model.catkin.line if model.catkin else 1
-    if "message_generation" not in model.components and files and model.catkin:
+    brings = {"message_generation", "genmsg"}  # the first is all of it; the second builds, too
+    if not brings & {*model.components} and files and model.catkin:
         yield _message_finding(
             "find_package(catkin ...) does not name message_generation, which makes code of the"
             " package's own messages.",
@@ -127,6 +128,7 @@ def own_messages(package, spec, model, manifest):
             ("message_generation", "build", "build_depend"),
             ("message_runtime", "exec", "exec_depend"),
         ):
+            builds = kind == "build" and "genmsg" in known[kind]
             if name not in known[kind]:
                 yield Finding(
                     "dependencies",
@@ -134,6 +136,7 @@ def own_messages(package, spec, model, manifest):
                     " its own, and needs it.",
                     "package.xml",
                     last_dependency(package),
+                    severity=WARNING if builds else ERROR,
                     expected=f"<{tag}>{name}</{tag}>",
                     seen=f"no <{tag}> with {name}",
                     fix=f"Add the line <{tag}>{name}</{tag}>.",

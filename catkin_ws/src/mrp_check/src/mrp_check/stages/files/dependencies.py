@@ -36,10 +36,7 @@ def findings(package, spec, manifest, model):
         if not in_manifest:
             yield _not_in_manifest(package, name, use, manifest, used)
         if not in_cmake:
-            finding = _not_in_cmake(package, name, use, model)
-            if not in_manifest:
-                finding.consequence_of = "dependencies"
-            yield finding
+            yield _not_in_cmake(package, name, use, model)
     if manifest is not None:
         yield from _passed_on(used, manifest, model)
 

@@ -74,20 +74,7 @@ def _all_elements(package, launch):
     return found
 
 
-_TAGS = [
-    "launch",
-    "node",
-    "group",
-    "arg",
-    "param",
-    "rosparam",
-    "remap",
-    "include",
-    "env",
-    "machine",
-    "test",
-    "master",
-]
+_TAGS = ("launch node group arg param rosparam remap include env machine test master").split()
 
 
 def _unknown(tags):

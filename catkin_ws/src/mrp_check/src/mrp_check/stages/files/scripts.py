@@ -37,7 +37,6 @@ def findings(package, model, started):
     started: file -> the launch.Started node that it is, for the scripts that the launch file starts
     """
     relayed = {s.path for s in model.scripts if s.by == "catkin_install_python"}
-    unrelayed = None
     yield from _listed(package, model)
     for path in package.of_kind("python"):
         if is_test(path) or path == "setup.py":
@@ -45,11 +44,7 @@ def findings(package, model, started):
         shebang = package.shebang(path) or ""
         is_node = path in started or path in {s.path for s in model.scripts}
         if is_node or shebang and _is_node(package, path):
-            for finding in _of(package, model, path, shebang, path in relayed):
-                if finding.expected.startswith("catkin_install_python"):
-                    # One call mends it for all scripts.
-                    finding.consequence_of, unrelayed = unrelayed, "scripts"
-                yield finding
+            yield from _of(package, model, path, shebang, path in relayed)
             yield from _shadowing(path)
 
 

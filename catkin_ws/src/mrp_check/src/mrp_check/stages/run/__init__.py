@@ -5,33 +5,25 @@ from __future__ import annotations
 
 import re
 
-from mrp_check.finding import ERROR, Finding
-from mrp_check.stages.observing import observed
-from mrp_check.stages.places import Places
+from mrp_check.finding import Finding
+from mrp_check.requirements import Rule
 from mrp_check.stages.run.console import console_findings
-from mrp_check.stages.run.node import Node
 from mrp_check.stages.run.publishing import publisher_findings, relay_findings
-from mrp_check.stages.run.starting import name_findings, raised_findings, start_findings
+from mrp_check.stages.run.starting import name_findings, raised_findings
 from mrp_check.stages.run.subscribing import subscriber_findings
 from mrp_check.stages.run.topics import moved_findings, topic_findings, warning_findings
 from mrp_check.stages.run.wrapping import wrap_findings
 
 
-def findings(package, spec, workspace):
-    """Yield a Finding for each thing that running the nodes shows to be wrong."""
-    seen = observed(package, spec, workspace)
-    places = Places(package, spec, workspace, seen)
-    for problem in seen.problems:
+def _problems(case):
+    for problem in case.observed.problems:
         yield Finding(
             "starts",
             f"The nodes could not be run: {problem}.",
-            *_launch_place(package, spec, seen),
+            *_launch_place(case.package, case.spec, case.observed),
             expected="nodes that can be started",
         )
-    yield from _launch_findings(package, spec, seen)
-    for node in spec.nodes.values():
-        yield from _node_findings(Node(node, package, spec, seen, places))
-    yield from moved_findings(spec, seen)
+    yield from _launch_findings(case.package, case.spec, case.observed)
 
 
 def _launch_findings(package, spec, seen):
@@ -69,7 +61,7 @@ def _launch_place(package, spec, seen):
     return ("CMakeLists.txt" if "CMakeLists.txt" in package.files else "package.xml"), 1
 
 
-def _node_findings(node):
+def _no_executable(node):
     if not node.has_executable:
         yield node.finding(
             "starts",
@@ -77,18 +69,33 @@ def _node_findings(node):
             node.places.in_launch_file(node.name),
             expected=f"an executable for {node.name}",
         )
-        return
-    not_up = list(start_findings(node))
-    yield from not_up
-    yield from name_findings(node)
-    raised = list(raised_findings(node)) if not not_up else []
-    yield from raised
-    if any(f.severity == ERROR for f in not_up):
-        return
-    yield from topic_findings(node)
-    yield from publisher_findings(node)
-    yield from wrap_findings(node)
-    yield from subscriber_findings(node)
-    yield from relay_findings(node)
-    yield from console_findings(node)
-    yield from warning_findings(node)
+
+
+def _rule(findings, ids, needs_up=True):
+    """Return the Rule that a function of one Node makes, for all that it can be asked of."""
+
+    def of_all(case):
+        for node in case.nodes.values():
+            if node.is_up or not needs_up:
+                yield from findings(node)
+
+    return Rule(ids, ("nodes",), of_all)
+
+
+_OF_ERRORS = ("python-names", "python-syntax", "type", "node-start")
+
+RULES = (
+    Rule(("starts",), ("nodes",), _problems),
+    _rule(_no_executable, ("starts",), needs_up=False),
+    _rule(lambda node: node.not_up, ("starts", "spin", "scripts", *_OF_ERRORS), needs_up=False),
+    _rule(name_findings, ("node-name",), needs_up=False),
+    _rule(raised_findings, ("callbacks", *_OF_ERRORS), needs_up=False),
+    _rule(topic_findings, ("topic", "type", "namespace")),
+    _rule(publisher_findings, ("values", "latch", "rate")),
+    _rule(wrap_findings, ("wrap",)),
+    _rule(subscriber_findings, ("received", "console", "queue", "callbacks")),
+    _rule(relay_findings, ("values",)),
+    _rule(console_findings, ("console",)),
+    _rule(warning_findings, ("warnings",)),
+    Rule(("namespace",), ("nodes",), lambda case: moved_findings(case.spec, case.observed)),
+)

@@ -65,7 +65,8 @@ def _line_findings(node, line):
     shown = [t for t in lines if _ratio(t, wanted) > 0.8 and not PREFIX.match(t)]
     yield node.finding(
         "console",
-        f"{node.name} does not log “{wanted}”." + (f" It prints “{shown[0]}”." if shown else ""),
+        f"{node.name} does not log the line “{wanted}”."
+        + (f" It prints “{shown[0]}”." if shown else ""),
         node.places.of(node.name, "print" if shown else "log", "init"),
         expected=wanted,
         seen=shown[0] if shown else "no such line",
@@ -88,7 +89,7 @@ def other_words(node, log, wanted, fix=""):
     """Return the finding about a line that is logged in other words than the contract's."""
     return node.finding(
         "console",
-        f"{node.name} logs “{log['text']}”, where the contract says “{wanted}”.",
+        f"{node.name} logs “{log['text']}”, where the contract says “{wanted}”, as the whole line.",
         node.places.of_log(node.name, log),
         expected=wanted,
         seen=log["text"],

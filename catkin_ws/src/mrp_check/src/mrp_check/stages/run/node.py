@@ -3,15 +3,18 @@
 
 from __future__ import annotations
 
+import functools
 import re
 
 from mrp_check.finding import ERROR, Finding
 from mrp_check.stages.observing import WRAP, resolved
+from mrp_check.stages.run.starting import start_findings
 
 _DIED = re.compile(
     r"\[(?P<name>\S+)-\d+\] process has "
     r"(?:died \[pid \d+, exit code (?P<code>-?\d+)|finished cleanly)"
 )
+FEW = 4  # messages without which nothing is said of a rate
 # Topics that belong to ROS itself.
 _ROS_TOPICS = {"/rosout", "/rosout_agg", "/clock", "/tf", "/tf_static", "/diagnostics"}
 
@@ -23,9 +26,10 @@ class Node:
     all, direct_all: what was seen of all nodes, under the launch file and each by itself
     """
 
-    def __init__(self, node, package, spec, seen, places):
+    def __init__(self, node, case):
         self.wanted, self.name = node, node.name
-        self.package, self.spec, self.places = package, spec, places
+        self.package, self.spec, self.places = case.package, case.spec, case.places
+        seen, spec = case.observed, case.spec
         started = seen.started.get(self.name)
         self.path = started.path if started else spec.node_path(self.name)
         self.started = started
@@ -86,11 +90,71 @@ class Node:
         return [m for m in self.of("messages") if m["topic"] == name]
 
     def value(self, message, topic):
-        fields = message["fields"] or {}
-        return fields.get(topic.field)
+        """Return the number in a message, or None: it may be of any type."""
+        value = (message["fields"] or {}).get(topic.field)
+        return value if isinstance(value, (int, float)) else None
 
     def counter_names(self):
         for event in (self.wrap or {}).get("events", []):
             if event["event"] == "set":
                 return tuple(event["names"])
         return ()
+
+    # What was seen of it, for evidence.py
+
+    @functools.cached_property
+    def not_up(self):
+        """The Findings that say why the node was not up soon after it was started."""
+        return list(start_findings(self)) if self.has_executable else []
+
+    @property
+    def own_name(self):
+        """The name that it had when it ran by itself, or None."""
+        return self.direct and self.direct.get("name")
+
+    @property
+    def is_up(self):
+        registered = self.of("publications") or self.of("subscriptions") or self.own_name
+        return bool(self.has_executable and registered and not self.not_up)
+
+    def meets(self):
+        """Return whether it was seen on each topic that it is to be on."""
+        roles = (
+            ("publications", self.wanted.publishing),
+            ("subscriptions", self.wanted.subscribing),
+        )
+        return all(
+            resolved(topic, self.path) in self.topics(kind)
+            or self.own_name
+            and resolved(topic, self.own_name) in self.topics(kind, direct=True)
+            for kind, topic in roles
+            if topic
+        )
+
+    def sent(self):
+        """Return the values that it was sent when it ran by itself."""
+        return [value for value in (self.direct or {}).get("sent", []) if value is not None]
+
+    def published(self):
+        return self.own_messages(self.wanted.publishing) if self.wanted.publishing else []
+
+    def has_rate(self):
+        """Return whether it has published enough to tell its rate."""
+        return len(self.published()) >= FEW
+
+    def published_numbers(self):
+        values = [self.value(message, self.wanted.publishing) for message in self.published()]
+        return [value for value in values if value is not None]
+
+    def has_wrapped(self):
+        """Return whether it was seen what is published past the largest value: in Python when it
+        ran, in C++ by the type of the counter."""
+        if self.wrap:
+            return any(
+                event["event"] in ("after", "error") for event in self.wrap.get("events", [])
+            )
+        return any(place.values.get("bits") for place in self.places.facts_of(self.name, "step"))
+
+    def has_ended(self):
+        """Return whether it was asked to end when it ran by itself, and then ended."""
+        return (self.direct or {}).get("stopped_in") is not None

@@ -8,8 +8,6 @@ import statistics
 from mrp_check.stages.observing import resolved
 from mrp_check.stages.run.words import few
 
-_FEW = 4  # messages without which nothing is said of a rate
-
 
 def publisher_findings(node):
     """Yield a Finding for what the node publishes: nothing, latched, its values, its rate."""
@@ -79,7 +77,8 @@ def _value_findings(node, values, role):
             place = file_line
         else:
             said = f"{node.name} publishes {shown}: after {before} came {after}."
-            place = file_line
+            skips = rule.step and (after - before) % rule.step == 0 and after > before
+            place = skips and node.places.condition_of_publish(node.name) or file_line
         yield node.finding("values", said, place, expected=expected, seen=shown)
     elif values[0] != rule.start:
         yield node.finding(
@@ -108,7 +107,7 @@ def _rate_findings(node, messages, role):
     place = node.places.of(node.name, "rate", "timer", "publish")
     expected = f"a message every {role.period:g} s"
     times = [m["time"] for m in messages]
-    if len(times) < _FEW:
+    if not node.has_rate():
         waited = node.asked - times[-1]
         if waited > 3 * role.period + 10 * node.all.get("lag", 0):
             count = "once" if len(times) == 1 else f"{len(times)} messages"

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import re
 
+from mrp_check.finding import ERROR, NOTE, WARNING
 from mrp_check.stages.run.words import code_text, last_words
 
 
@@ -31,10 +32,13 @@ def start_findings(node):
             found = None
     if found and code != 0:
         place, kind, text = found
+        module = re.match(r"No module named '(\w+)", text)
+        is_absent = module and module.group(1) in node.places.facts.absent(node.name)
         yield node.finding(
             _id_of_error(kind, text, "starts"),
             f"{node.name} ends as soon as it is started: {kind}: {text}",
             place,
+            NOTE if is_absent else ERROR,
             expected="a node that goes on until Ctrl-C",
             seen=f"{kind}: {text}",
         )
@@ -58,7 +62,7 @@ def start_findings(node):
             "spin",
             f"{node.name} ends by itself soon after it has started: nothing keeps it waiting"
             " for messages or for its timer.",
-            node.places.of(node.name, "init", "spin"),
+            node.places.facts.end_of_main(node.name) or node.places.of(node.name, "init", "spin"),
             expected=expected,
             seen="it ended with exit code 0",
             fix="Call rospy.spin() or ros::spin() at the end of main().",
@@ -100,7 +104,17 @@ def name_findings(node):
     if not own:
         return
     name = own.rsplit("/", 1)[-1]
-    if name != node.name:
+    if re.fullmatch(rf"{re.escape(node.name)}_\d+(_\d+)?", name):
+        yield node.finding(
+            "node-name",
+            "The node asks for an anonymous name: rosrun starts it under another name each time;"
+            " the launch file gives it its own.",
+            node.places.of(node.name, "init"),
+            WARNING,
+            expected=node.name,
+            seen=name,
+        )
+    elif name != node.name:
         yield node.finding(
             "node-name",
             f"Started by itself, {node.name} calls itself {name}: the launch file hides it, but"
@@ -113,6 +127,8 @@ def name_findings(node):
 
 def raised_findings(node):
     """Yield a Finding for an error that was raised while the node went on."""
+    if node.not_up:
+        return
     found = node.places.traceback(node.errors())
     if found:
         place, kind, text = found
@@ -143,13 +159,7 @@ def _id_of_error(kind, text, otherwise):
     built_in = re.match(
         r"'(int|float|str|bytes|bool|list|tuple|dict|NoneType|function)' object", text
     )
-    names = (
-        "NameError",
-        "AttributeError",
-        "ImportError",
-        "ModuleNotFoundError",
-        "UnboundLocalError",
-    )
+    names = "NameError AttributeError ImportError ModuleNotFoundError UnboundLocalError".split()
     if kind in names and not built_in:
         return "python-names"
     if kind in ("SyntaxError", "IndentationError", "TabError"):

@@ -9,6 +9,7 @@ import pathlib
 
 from mrp_check import confine
 from mrp_check.finding import WARNING, CannotCheck
+from mrp_check.requirements import Rule
 from mrp_check.stages import uses
 from mrp_check.stages.static import (
     cpp_headers,
@@ -23,52 +24,59 @@ from mrp_check.stages.static import facts as facts_
 _CPP_FACTS = pathlib.Path(__file__).resolve().with_name("cpp_facts.py")
 
 
-def findings(package, spec, workspace):
-    """Yield a Finding for each thing that the sources prove to be wrong."""
-    model = workspace.catkin.model
-    workspace.catkin.start_building()
+def read(case):
+    """Return the Facts of a case.Case: what its sources say."""
+    package, model = case.package, case.model
     if package.of_kind("message"):
-        workspace.catkin.wait_until_built()  # before, there are no headers of its messages
+        case.catkin.wait_until_built()  # before, there are no headers of its messages
     reading = [
-        workspace.catkin.submit(_read_cpp, package, workspace, unit)
-        for unit in _units(package, workspace, model)
+        case.catkin.submit(_read_cpp, package, case, unit) for unit in _units(package, case, model)
     ]
-    facts = workspace.facts = facts_.Facts()
-    sources, problems = {}, []
-    for file in _python_files(package, model, workspace.launch):
+    facts = facts_.Facts()
+    for file in _python_files(package):
         source, problem = python_read.read(package, file)
         if source is None:
             facts.unread.add(file)
             if problem and _is_code(package, file):
-                problems.append(problem)
+                facts.problems.append(problem)
             continue
-        sources[file] = source
+        facts.python[file] = source
         facts.places += python_facts.places(source)
-    workspace.progress("reading the C++ sources")
-    _used_elsewhere(facts, sources)
+    case.progress("reading the C++ sources")
+    _used_elsewhere(facts, facts.python)
     named = set()
     for result in reading:
         named |= _take(package, facts, *result.result())
     _mark_unused(facts, named)
     facts.launch = {
         node.name: (node.file, node.line or 1)
-        for node in (workspace.launch.nodes if workspace.launch else [])
+        for node in (case.launch.nodes if case.launch else [])
         if node.file
     }
-    facts.sources = roles.sources(package, spec, model, workspace.launch, sources)
-    relevant = _relevant(package, model, workspace.launch, facts, sources)
-    for problem in problems:
-        if problem.file not in relevant:
+    facts.sources = roles.sources(package, case.spec, model, case.launch, facts.python)
+    facts.relevant = _relevant(package, model, case.launch, facts, facts.python)
+    return facts
+
+
+def _unreadable(case):
+    for problem in case.facts.problems:
+        if problem.file not in case.facts.relevant:
             problem.severity = WARNING
             problem.message += " Nothing uses the file."
         yield problem
-    for file in relevant:
-        if file in sources:
-            yield from python_rules.findings(package, sources[file])
-    yield from node_rules.findings(package, spec, model, workspace.launch, facts)
 
 
-def _python_files(package, model, launch):
+def _python(case):
+    for file in case.facts.relevant:
+        if file in case.facts.python:
+            yield from python_rules.findings(case.package, case.facts.python[file])
+
+
+def _nodes(case):
+    return node_rules.findings(case.package, case.spec, case.model, case.launch, case.facts)
+
+
+def _python_files(package):
     """Return the Python files to read: all but those of tests and of setup."""
     return [
         path
@@ -200,3 +208,19 @@ def _take(package, facts, file, said):
         if (place.file, place.line, place.kind, place.text) not in seen:
             facts.places.append(place)
     return set((said or {}).get("named", ()))
+
+
+RULES = (
+    Rule(("python-syntax",), ("facts",), _unreadable),
+    Rule(
+        ("python-names", "type", "node-start", "spin", "callbacks", "lifetime"),
+        ("facts",),
+        _python,
+    ),
+    Rule(
+        ("targets", "launch-nodes", "topic", "node-start", "node-name", "spin")
+        + ("callbacks", "lifetime", "queue", "wrap"),
+        ("facts",),
+        _nodes,
+    ),
+)

@@ -15,13 +15,10 @@ GAP = "{}"
 _LOG = re.compile(r"ROS_(DEBUG|INFO|WARN|ERROR|FATAL)(?:_STREAM)?(?:_\w+)?$")
 _LEVELS = {"DEBUG": "debug", "INFO": "info", "WARN": "warn", "ERROR": "error", "FATAL": "fatal"}
 _MESSAGE = re.compile(r"\b(\w+)::(\w+?)_<")
-_HANDLES = (
-    "ros::NodeHandle",
-    "ros::Publisher",
-    "ros::Subscriber",
-    "ros::Timer",
-    "ros::WallTimer",
-    "ros::SteadyTimer",
+_HANDLES = tuple(
+    (
+        "ros::NodeHandle ros::Publisher ros::Subscriber ros::Timer ros::WallTimer ros::SteadyTimer"
+    ).split()
 )
 _KEPT = ("subscribe", "createTimer", "createWallTimer", "createSteadyTimer", "advertise")
 _SPINS = {"spin", "spinOnce", "waitForShutdown", "callAvailable", "callOne", "start"}
@@ -565,9 +562,9 @@ class _Unit:
         text = owned[0].get_canonical().spelling
         return [text] if text in _HANDLES else self.handles_in(owned[0].get_declaration())
 
-    def handles_in(self, declaration, depth=0):
+    def handles_in(self, declaration):
         """Return the types of ROS handles among a class's own members."""
-        if declaration is None or not self.own_file(declaration) or depth > 3:
+        if declaration is None or not self.own_file(declaration):
             return []
         fields = [c for c in declaration.get_children() if c.kind == self.kinds.FIELD_DECL]
         return sorted({self.type_of(field) for field in fields} & set(_HANDLES))

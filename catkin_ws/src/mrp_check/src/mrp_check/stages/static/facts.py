@@ -45,12 +45,18 @@ class Facts:
     sources: name of a node of the spec -> the files it is made of, the main one first
     launch: name of a node of the launch file -> (file, line of its <node>)
     unread: the files that could not be read to their end: what they lack proves nothing
+    problems: the Findings that say why not, of those in Python
+    python: file -> python_source.Source
+    relevant: the Python files that are nodes, or that nodes are made of
     """
 
     places: list[Place] = dataclasses.field(default_factory=list)
     sources: dict[str, list[str]] = dataclasses.field(default_factory=dict)
     launch: dict[str, tuple[str, int]] = dataclasses.field(default_factory=dict)
     unread: set[str] = dataclasses.field(default_factory=set)
+    problems: list = dataclasses.field(default_factory=list)
+    python: dict = dataclasses.field(default_factory=dict)
+    relevant: list[str] = dataclasses.field(default_factory=list)
 
     def of(self, node, *kinds):
         """Return the places of these kinds in the sources of a node of the spec, in order."""
@@ -58,15 +64,21 @@ class Facts:
         found = [p for p in self.places if p.file in files and (not kinds or p.kind in kinds)]
         return sorted(found, key=lambda place: (files.index(place.file), place.line))
 
-    def place_of(self, node, *kinds):
-        """Return (file, line) of the first place of the first kind that there is.
+    def end_of_main(self, node):
+        """Return where the function ends that starts the node: there a call belongs that is
+        missing. None if it is no function."""
+        inits, functions = self.of(node, "init"), self.of(node, "function")
+        mains = [f for f in functions if (f.is_around(inits[0]) if inits else f.text == "main")]
+        ends = [p for p in self.of(node, "exit") if p.text == "return"]
+        if ends or not mains:
+            return (ends[-1].file, ends[-1].line) if ends else None
+        return mains[-1].file, mains[-1].values["end"]
 
-        Without any, it is the node's <node> in the launch file, or its source's first line; without
-        these, (None, None).
+    def absent(self, node=None):
+        """Return module -> sentence, of what a node's sources import and this machine has not.
+
+        node: all nodes of the spec if None
         """
-        for kind in kinds:
-            for place in self.of(node, kind):
-                return place.file, place.line
-        if self.sources.get(node):
-            return self.sources[node][0], 1
-        return self.launch.get(node, (None, None))
+        names = [node] if node else self.sources
+        sources = [self.python.get(file) for name in names for file in self.sources.get(name, ())]
+        return {module: said for one in sources if one for module, said in one.absent.items()}

@@ -6,7 +6,7 @@ from __future__ import annotations
 import os
 import re
 
-from mrp_check.finding import WARNING, Finding
+from mrp_check.finding import ERROR, WARNING, Finding
 from mrp_check.stages.static.python_source import GAP
 
 
@@ -233,15 +233,6 @@ class _Node:
         if not called_back and not self.places("timer", "publisher"):
             return
         call = "rospy.spin()" if self.is_python else "ros::spin()"
-        ends = [p for p in self.places("exit") if p.text == "return"]
-        functions = [p for p in self.places("function") if p.text == "main"]
-        last = [p for p in self.places("init")]
-        if self.is_python and last:
-            # The end of the function in which the node is begun.
-            around = [f for f in self.places("function") if f.is_around(last[0])]
-            where = (last[0].file, around[-1].values["end"] if around else last[0].line)
-        else:
-            where = ends[-1] if ends else functions[-1] if functions else (self.main, 1)
         yield self.finding(
             "spin",
             f"{self.main} never calls {call}: "
@@ -250,11 +241,16 @@ class _Node:
                 if waits
                 else "the program comes to its end at once."
             ),
-            where,
+            self.facts.end_of_main(self.node.name) or (self.main, self._last_line()),
             expected=f"{call} at the end of main",
             seen="no such call",
             fix=f"Add {call}{'' if self.is_python else ';'} at the end of main.",
         )
+
+    def _last_line(self):
+        """Return the last line of the main source in which something stands."""
+        lines = self.package.lines(self.main)
+        return max((n for n, text in enumerate(lines, 1) if text.strip()), default=1)
 
     def _made_too_late(self, spins):
         """Yield a finding if the node's parts are made below a spin() of the same function."""
@@ -297,58 +293,53 @@ class _Node:
         ]
 
     def queues(self):
+        """Each queue is as long as the contract says, as far as the source says it plainly."""
         node = self.node
-        asked = getattr(node.subscribes or node.relays, "queue", None)
-        for place in self._on("subscriber", node.subscribing):
-            queue = place.values.get("queue")
-            line = place.file, place.values.get("queue_line", place.line)
-            if not isinstance(queue, int) or isinstance(queue, bool) or asked is None:
-                continue
-            if queue == 0 and self.is_python:
-                yield self.finding(
-                    "queue",
-                    "rospy.Subscriber() takes no queue_size of 0: it raises an error.",
-                    line,
-                    expected=f"queue_size={asked}",
-                    fix=f"Write queue_size={asked}.",
-                    change=self._queue_change(queue, asked),
-                )
-            elif queue == 1 and asked > 1:
-                yield self.finding(
-                    "queue",
-                    "The subscriber's queue has room for one message. "
-                    + (
-                        "In rospy each publisher has a queue of its own; a callback that is late"
-                        " loses messages all the same."
-                        if self.is_python
-                        else "All publishers of the topic share it: two that publish at the same"
-                        " moment push out each other's values."
-                    ),
-                    line,
-                    expected=f"a queue of {asked}",
-                    fix=f"Write {asked} for 1.",
-                    change=self._queue_change(queue, asked),
-                )
-            elif 0 < queue < asked:
-                yield self._short(line, queue, asked)
-        asked = node.publishes.queue if node.publishes else node.relays and node.relays.queue
-        for place in self._on("publisher", node.publishing):
-            queue = place.values.get("queue")
-            line = place.file, place.values.get("queue_line", place.line)
-            if asked and isinstance(queue, int) and 0 < queue < asked:
-                yield self._short(line, queue, asked)
-            elif (
-                self.is_python and asked and "queue" not in place.values and self._says_none(place)
-            ):
-                yield self.finding(
-                    "queue",
-                    "rospy.Publisher() is given no queue_size: it then sends each message before it"
-                    " returns, and warns of it.",
-                    place,
-                    severity=WARNING,
-                    expected=f"queue_size={asked}",
-                    fix=f"Add queue_size={asked}.",
-                )
+        for kind, topic, role in (
+            ("subscriber", node.subscribing, node.subscribes or node.relays),
+            ("publisher", node.publishing, node.publishes or node.relays),
+        ):
+            asked = role and role.queue
+            for place in self._on(kind, topic) if asked else ():
+                queue = place.values.get("queue")
+                if isinstance(queue, int) and queue is not True and queue != asked:
+                    yield self._other_queue(place, kind, queue, asked)
+                elif self.is_python and kind == "publisher" and self._says_none(place):
+                    yield self.finding(
+                        "queue",
+                        "rospy.Publisher() is given no queue_size: it then sends each message"
+                        " before it returns, and warns of it.",
+                        place,
+                        severity=WARNING,
+                        expected=f"queue_size={asked}",
+                        fix=f"Add queue_size={asked}.",
+                    )
+
+    def _other_queue(self, place, kind, queue, asked):
+        why = {
+            (True, "subscriber", 0): "rospy.Subscriber() takes no queue_size of 0: it raises an"
+            " error.",
+            (True, "subscriber", 1): "The subscriber's queue has room for one message. In rospy"
+            " each publisher has a queue of its own; a callback that is late loses messages all"
+            " the same.",
+            (False, "subscriber", 1): "The subscriber's queue has room for one message. All"
+            " publishers of the topic share it: two that publish at the same moment push out each"
+            " other's values.",
+        }
+        rooms = f"has room for {queue} messages" if queue else "has no limit"
+        return self.finding(
+            "queue",
+            why.get((self.is_python, kind, queue))
+            or f"The {kind}'s queue {rooms}; the contract asks for {asked}.",
+            (place.file, place.values.get("queue_line", place.line)),
+            # A longer one loses nothing, and one that is little shorter hardly ever.
+            severity=ERROR if queue == 1 or (self.is_python, kind, queue) in why else WARNING,
+            expected=f"queue_size={asked}" if self.is_python else f"a queue of {asked}",
+            fix=f"Write {asked} for {queue}.",
+            change=(f"queue_size={queue}", f"queue_size={asked}")
+            if self.is_python
+            else (f", {queue}", f", {asked}"),
+        )
 
     def _says_none(self, place):
         """Return whether a call that begins in a line has no queue_size in its lines."""
@@ -359,23 +350,9 @@ class _Node:
             depth += line.count("(") - line.count(")")
             if depth <= 0:
                 break
+        if "queue" in place.values:
+            return False
         return "queue_size" not in text and "**" not in text and text.count(",") < 6
-
-    def _short(self, place, queue, asked):
-        return self.finding(
-            "queue",
-            f"The queue has room for {queue} messages: it may be too short on a busy machine.",
-            place,
-            severity=WARNING,
-            expected=f"a queue of {asked}",
-            fix=f"Write {asked} for {queue}.",
-            change=self._queue_change(queue, asked),
-        )
-
-    def _queue_change(self, queue, asked):
-        if self.is_python:
-            return f"queue_size={queue}", f"queue_size={asked}"
-        return f", {queue},", f", {asked},"
 
     def lifetime(self):
         """roscpp: what is not kept ends. (rospy keeps it.)"""

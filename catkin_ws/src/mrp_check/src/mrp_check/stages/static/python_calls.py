@@ -84,9 +84,8 @@ class Calls(Rules):
                 fix="Compare the call with the one on the page.",
             )
             return
-        check = getattr(self, "_" + name.split(".")[-1].lower(), None)
-        if check:
-            yield from check(node)
+        if name in _CHECKED:
+            yield from _CHECKED[name](self, node)
 
     def _init_node(self, node):
         given = argument(node, 0, "name")
@@ -242,6 +241,14 @@ class Calls(Rules):
                 + (" besides self" if gets > count else ""),
                 fix=f"Give {name} the parameter{'s' if count > 1 else ''} that it is called with.",
             )
+
+
+_CHECKED = {
+    "rospy.init_node": Calls._init_node,
+    "rospy.Publisher": Calls._publisher,
+    "rospy.Subscriber": Calls._subscriber,
+    "rospy.Timer": Calls._timer,
+}
 
 
 def _count(number):

@@ -9,6 +9,7 @@ import sys
 
 from pyflakes import checker, messages
 
+from mrp_check.finding import NOTE
 from mrp_check.stages import uses
 from mrp_check.stages.static.python_facts import last_line
 from mrp_check.stages.static.python_modules import is_module, is_ros, load, resolve, ros_modules
@@ -55,7 +56,11 @@ class Names(Rules):
         self.not_imported.append(name.split(".")[-1])
         if parent is None:
             known = set(sys.modules) | ros_modules()
-            near, hint = nearest(missing, {n for n in known if "." not in n})
+            # Of short names many are alike: cv2 is no misspelt csv.
+            near, hint = nearest(missing, {n for n in known if "." not in n}, 0.75)
+            if not near:
+                yield self._absent(node, missing)
+                return
         else:
             near, hint = nearest(missing.rsplit(".", 1)[-1], {"msg", "srv", "exceptions"})
         yield self.finding(
@@ -65,6 +70,10 @@ class Names(Rules):
             expected="a module that is installed",
             fix=f"Write {near}." if near else "Mend the name of the module.",
         )
+
+    def _absent(self, node, module):
+        self.source.absent[module] = said = uses.absent(module, "python")
+        return self.finding("python-names", said, node, severity=NOTE)
 
     def _imported(self, node):
         if node.module == f"{self.package.name}.msg":

@@ -47,9 +47,9 @@ class Rules:
         return ast.get_source_segment(self.package.text(self.file), node)
 
 
-def nearest(name, names):
+def nearest(name, names, alike=0.6):
     """Return (the name that is most like it, a hint that says so), or (None, "")."""
-    found = difflib.get_close_matches(name, list(names), 1, 0.6)
+    found = difflib.get_close_matches(name, list(names), 1, alike)
     return (found[0], f" Perhaps {found[0]} is meant.") if found else (None, "")
 
 

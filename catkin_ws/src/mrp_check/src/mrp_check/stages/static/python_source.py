@@ -22,6 +22,7 @@ class Source:
     imports: local name -> dotted name of what it stands for ("rospy", "std_msgs.msg.UInt32")
     has_star: whether it has `from ... import *`
     parents: each node's parent in the tree
+    absent: module that it imports and this machine has not -> a sentence that says so
 
     Raises SyntaxError (or ValueError) as Python itself does.
     """
@@ -31,7 +32,7 @@ class Source:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
             self.tree = ast.parse(text, file)
-        self.parents = {}
+        self.parents, self.absent = {}, {}
         for node in ast.walk(self.tree):
             for child in ast.iter_child_nodes(node):
                 self.parents[child] = node
