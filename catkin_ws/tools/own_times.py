@@ -4,9 +4,9 @@
 
 Usage: own_times.py check|record
 
-tools/timed.py has kept how long each stage of the last `make test-all` took. `record` appends that to
-own_times.csv, with the number of tests. `check` compares it with the last rows there that are of the
-same Debian, and fails if a stage takes more than half as long again, or if tests are fewer.
+tools/timed.py has kept how long each stage of the last `make test-all` took. `record` appends that
+to own_times.csv, with the number of tests. `check` compares it with the last rows there that are of
+the same Debian, and fails if a stage takes more than half as long again, or if tests are fewer.
 
 Another machine is faster or slower: so a stage's processor time counts in times of compiling one
 node. What a stage waits for is as long on any machine: so its seconds must have grown both as they
@@ -101,7 +101,7 @@ def measured():
 def main(action):
     rows = measured()
     for row in rows:
-        print("{stage:18} {seconds:6} s, {processor:6} s of processor time, {tests} tests".format(**row))
+        print("{stage:18} {seconds:6} s, {processor:6} s of work, {tests} tests".format(**row))
     if action == "record":
         history.append(HISTORY, rows)
         return 0
