@@ -106,7 +106,8 @@ esac
 """
     (tmp_path / "apt-get").write_text(script)
     (tmp_path / "apt-get").chmod(0o755)
-    (tmp_path / "apt-cache").symlink_to("/bin/true")
+    (tmp_path / "apt-cache").write_text("#!/bin/sh\necho Package: no-such-package\n")
+    (tmp_path / "apt-cache").chmod(0o755)
     path = tmp_path / "list.txt"
     path.write_text("# to see it\nno-such-package\nbash\n")
     done = install([str(path)], tmp_path)
@@ -119,7 +120,8 @@ def test_installer_shows_why_apt_get_failed(tmp_path):
     script = "#!/bin/sh\necho 'E: no space left'\ncase \"$*\" in *install*) exit 1 ;; esac\n"
     (tmp_path / "apt-get").write_text(script)
     (tmp_path / "apt-get").chmod(0o755)
-    (tmp_path / "apt-cache").symlink_to("/bin/true")
+    (tmp_path / "apt-cache").write_text("#!/bin/sh\necho Package: no-such-package\n")
+    (tmp_path / "apt-cache").chmod(0o755)
     path = tmp_path / "list.txt"
     path.write_text("no-such-package\n")
     done = install([str(path)], tmp_path)

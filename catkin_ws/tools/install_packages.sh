@@ -67,10 +67,14 @@ apt_get update -qq > "$log" 2>&1 || {
 }
 [ ! -t 1 ] || printf '\r\e[K'
 
+declare -A archived
+while read -r package; do
+  archived[$package]=yes
+done < <(printf '%s\n' "${lines[@]}" | xargs apt-cache show 2> /dev/null | sed -n 's/^Package: //p')
 packages=()
 for line in "${lines[@]}"; do
   for package in $line; do
-    if apt-cache show "$package" > /dev/null 2>&1; then
+    if [ -n "${archived[$package]:-}" ]; then
       packages+=("$package")
       continue 2
     fi
@@ -78,30 +82,31 @@ for line in "${lines[@]}"; do
   fail "no package archive of this system has '${line// / or }'. $container"
 done
 
-install=(install --no-install-recommends "${packages[@]}")
-apt_get -y --print-uris "${install[@]}" > "$log" 2>&1 || true  # it only says what it would do
+packages=(install --no-install-recommends "${packages[@]}")
+apt_get -y --print-uris "${packages[@]}" > "$log" 2>&1 || true  # it only says what it would do
 count=$(sed -n 's/.*, \([0-9]*\) newly installed.*/\1/p' "$log")
 fetch=$(sed -n 's/^Need to get \([^/]*B\)[/ ].*/\1/p' "$log")
 disk=$(sed -n 's/^After this operation, \(.*B\) of .*/\1/p' "$log")
 echo "Installing Debian packages${purposes:+ $purposes}: ${count:-some} of them," \
   "${fetch:-nothing} to fetch, ${disk:-nothing} on disk"
 
-# What apt-get says of its progress becomes one line that moves, on a terminal; the rest is kept for
-# an error.
-show() {
-  local line what of percent
-  while IFS= read -r line; do
-    case $line in
-      dlstatus:*) what=fetched ;;
-      pmstatus:*) what=installed ;;
-      *) echo "$line" >> "$log" && continue ;;
-    esac
-    IFS=: read -r _ of percent _ <<< "$line"
-    [ ! -t 1 ] || printf '\r\e[K  %3.0f %% %s: %s' "$percent" "$what" "${of:0:40}"
+# On a terminal, what apt-get says of its progress becomes one line that moves.
+progress() {
+  local what of percent
+  grep --line-buffered -E '^(dl|pm)status:' | while IFS=: read -r what of percent _; do
+    [ "$what" = dlstatus ] && what=fetched || what=installed
+    printf '\r\e[K  %3.0f %% %s: %s' "$percent" "$what" "${of:0:40}"
   done
-  [ ! -t 1 ] || printf '\r\e[K'
+  printf '\r\e[K'
 }
-apt_get -y -o APT::Status-Fd=3 -o Dpkg::Use-Pty=0 "${install[@]}" 2>&1 < /dev/null | show || {
-  tail -n 30 "$log" >&2
+install() {
+  if [ -t 1 ]; then
+    apt_get -y -o APT::Status-Fd=3 -o Dpkg::Use-Pty=0 "$@" 2>&1 < /dev/null | tee "$log" | progress
+  else
+    apt_get -y -o Dpkg::Use-Pty=0 "$@" > "$log" 2>&1 < /dev/null
+  fi
+}
+install "${packages[@]}" || {
+  grep -vE '^(dl|pm)status:' "$log" | tail -n 30 >&2
   fail "apt-get could not install the packages; its own message is above"
 }
