@@ -203,10 +203,10 @@ def processes_of(folder):
     """Return the ids of the processes that the workspace's rostests have started."""
     sign = f"ROS_LOG_DIR={folder / 'logs'}".encode()
     found = []
-    for environ in pathlib.Path("/proc").glob("[0-9]*/environ"):
+    for process in pathlib.Path("/proc").glob("[0-9]*"):
         try:
-            if sign in environ.read_bytes().split(b"\0"):
-                found.append(int(environ.parent.name))
+            if sign in (process / "environ").read_bytes().split(b"\0"):
+                found.append(int(process.name))
         except OSError:  # it has ended, or belongs to another user
             pass
     return found
@@ -249,6 +249,8 @@ def main(text=""):
     for mutation in MUTATIONS:
         mutated(mutation, (package / mutation.file).read_text())
     mutations = [mutation for mutation in MUTATIONS if text in line(mutation)]
+    if not mutations:
+        sys.exit(f"error: expected a part of a mutation's line; {text!r} is in none")
     survived = 0
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)

@@ -8,6 +8,7 @@ import unittest
 import contract
 import rospkg
 import rostest
+from catkin.find_in_workspaces import find_in_workspaces
 from console import check_console
 
 LAUNCH = ("roslaunch", contract.PACKAGE, contract.LAUNCH_FILE)
@@ -21,6 +22,12 @@ class TestLaunch(unittest.TestCase):
         """By the file's path, which is the other way to name it."""
         path = rospkg.RosPack().get_path(contract.PACKAGE) + "/launch/" + contract.LAUNCH_FILE
         check_console("/robot1", "roslaunch", path, "group:=robot1")
+
+    def test_cmake_names_every_node(self):
+        """rosrun would find a script in the sources, too, but not in an install space."""
+        for node in contract.NODES:
+            found = find_in_workspaces(["libexec"], contract.PACKAGE, node.executable)
+            self.assertTrue(found, f"CMakeLists.txt makes no {node.executable}")
 
     def test_group_is_documented(self):
         arguments = subprocess.check_output([*LAUNCH, "--ros-args"], universal_newlines=True)
