@@ -80,8 +80,7 @@ def test_list_says_first_what_it_is_for(stage):
 def test_installer_has_nothing_to_do_where_the_tests_run(tmp_path):
     """As nothing is missing, neither apt-get nor sudo is called: here they would fail."""
     for name in ("apt-get", "sudo"):
-        (tmp_path / name).write_text("#!/bin/sh\nexit 1\n")
-        (tmp_path / name).chmod(0o755)
+        stand_in(tmp_path, name, "exit 1\n")
     lists = [str(LISTS[stage]) for stage in TEST]
     done = install(lists, tmp_path)
     assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
@@ -96,18 +95,15 @@ def test_installer_takes_any_alternative(tmp_path):
 
 def test_installer_says_what_it_installs_what_for_and_how_much(tmp_path):
     """apt-get stands in: it says how much it would be, then that it fetches and installs."""
-    script = """#!/bin/sh
-case "$*" in
+    script = """case "$*" in
   *--print-uris*) echo '0 upgraded, 3 newly installed, 0 to remove'
     echo 'Need to get 1,234 kB/5 MB of archives.'
     echo 'After this operation, 6 MB of additional disk space will be used.' ;;
   *install*) echo dlstatus:1:50:one; echo pmstatus:two:100:done; echo 'Setting up two' ;;
 esac
 """
-    (tmp_path / "apt-get").write_text(script)
-    (tmp_path / "apt-get").chmod(0o755)
-    (tmp_path / "apt-cache").write_text("#!/bin/sh\necho Package: no-such-package\n")
-    (tmp_path / "apt-cache").chmod(0o755)
+    stand_in(tmp_path, "apt-get", script)
+    stand_in(tmp_path, "apt-cache", "echo Package: no-such-package\n")
     path = tmp_path / "list.txt"
     path.write_text("# to see it\nno-such-package\nbash\n")
     done = install([str(path)], tmp_path)
@@ -117,11 +113,9 @@ esac
 
 
 def test_installer_shows_why_apt_get_failed(tmp_path):
-    script = "#!/bin/sh\necho 'E: no space left'\ncase \"$*\" in *install*) exit 1 ;; esac\n"
-    (tmp_path / "apt-get").write_text(script)
-    (tmp_path / "apt-get").chmod(0o755)
-    (tmp_path / "apt-cache").write_text("#!/bin/sh\necho Package: no-such-package\n")
-    (tmp_path / "apt-cache").chmod(0o755)
+    script = "echo 'E: no space left'\ncase \"$*\" in *install*) exit 1 ;; esac\n"
+    stand_in(tmp_path, "apt-get", script)
+    stand_in(tmp_path, "apt-cache", "echo Package: no-such-package\n")
     path = tmp_path / "list.txt"
     path.write_text("no-such-package\n")
     done = install([str(path)], tmp_path)
@@ -141,8 +135,7 @@ def test_installer_without_apt_points_to_the_container(tmp_path):
 
 
 def test_installer_says_which_package_no_archive_has(tmp_path):
-    (tmp_path / "apt-get").write_text("#!/bin/sh\n")
-    (tmp_path / "apt-get").chmod(0o755)
+    stand_in(tmp_path, "apt-get", "")
     path = tmp_path / "list.txt"
     path.write_text("no-such-package | nor-this-one\n")
     done = install([str(path)], tmp_path)
@@ -151,6 +144,12 @@ def test_installer_says_which_package_no_archive_has(tmp_path):
         "error: no package archive of this system has 'no-such-package or nor-this-one'. "
         "Run it in the container instead: make docker-run\n"
     )
+
+
+def stand_in(folder, name, script):
+    """Put a shell script in a program's place."""
+    (folder / name).write_text("#!/bin/sh\n" + script)
+    (folder / name).chmod(0o755)
 
 
 def install(lists, folder, path=None):

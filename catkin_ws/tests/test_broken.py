@@ -63,7 +63,7 @@ def run_rostest(folder, name):
 def workspace(tmp_path_factory):
     """A workspace that is built once for each of pytest's workers.
 
-    Each test breaks its package, and mends it again.
+    Each test breaks its package, and then takes the patch back.
     """
     folder = tmp_path_factory.mktemp("workspace")
     scratch.make(folder)

@@ -301,6 +301,13 @@ def is_told(finding, folder, id_, line, message):
     return bool(re.search(line, lines[finding.line - 1]))
 
 
+def observed_case(tmp_path, folder, observed):
+    """Return the case of a package of which the observer has seen that."""
+    spec = spec_of(["right"], [])
+    scratch = tmp_path / "scratch"
+    return check_rules.case_of(Package(folder), scratch, spec, facts=Facts(), observed=observed)
+
+
 def test_texts_on_a_number_topic_are_found_and_no_fault_of_the_checker(tmp_path):
     """Of what arrives, nothing is a number: its type is wrong, and its values were never seen."""
     folder = make_package(tmp_path / "lab_pkg", {"right": ("", "")}, {})
@@ -312,13 +319,7 @@ def test_texts_on_a_number_topic_are_found_and_no_fault_of_the_checker(tmp_path)
     }
     launch = {"lines": [], "seen": seen, "asked": 5, "ending": "enough"}
     observed = observing.Observed(launch=launch, executables={"publisher_right": folder})
-    case = check_rules.case_of(
-        Package(folder),
-        tmp_path / "scratch",
-        spec_of(["right"], []),
-        facts=Facts(),
-        observed=observed,
-    )
+    case = observed_case(tmp_path, folder, observed)
     found = [finding.id for rule in run.RULES for finding in rule.findings(case)]
     case.catkin.close()
     assert "type" in found and "values" not in found
@@ -342,13 +343,7 @@ def test_what_a_dead_node_would_do_was_never_seen(tmp_path):
     folder = make_package(tmp_path / "lab_pkg", {"right": ("", "")}, {})
     observed = observing.Observed(executables={"publisher_right": folder})
     observed.direct = {"nodes": {"publisher_right": {"name": None, "code": 1, "ended_after": 0.1}}}
-    case = check_rules.case_of(
-        Package(folder),
-        tmp_path / "scratch",
-        spec_of(["right"], []),
-        facts=Facts(),
-        observed=observed,
-    )
+    case = observed_case(tmp_path, folder, observed)
     case.catkin.close()
     of_run = [id_ for id_, one in REQUIREMENTS.items() if one.stage in ("run", "stop")]
     unseen = evidence.unseen(case, of_run)

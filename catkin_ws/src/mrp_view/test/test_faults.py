@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""What a browser is told of a graph in which something is wrong, or soon will be."""
+"""The page reports what is wrong in a graph, and what soon will be."""
 
 import os
 import signal

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""What a browser is told of a healthy graph, against what the nodes themselves say."""
+"""The page of a healthy graph shows what the nodes themselves report."""
 
 import http.client
 import unittest
