@@ -94,6 +94,7 @@ MUTATIONS = [
     Mutation(PUBLISHER_CPP, "Duration(0.5)", "Duration(0.45)"),
     Mutation(PUBLISHER_PY, "Duration(0.5)", "Duration(0.55)"),
     Mutation(PUBLISHER_PY, "self.timer_callback)", "self.timer_callback, oneshot=True)"),
+    Mutation(PUBLISHER_PY, "rospy.on_shutdown(self.timer.shutdown)", "pass"),
     # first value, step
     Mutation(PUBLISHER_CPP, "counter_ = 2", "counter_ = 0"),
     Mutation(PUBLISHER_PY, "self.counter = 1", "self.counter = 3"),

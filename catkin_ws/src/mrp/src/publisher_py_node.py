@@ -15,6 +15,9 @@ class PublisherPyNode:
 
         self.timer = rospy.Timer(rospy.Duration(0.5), self.timer_callback)
 
+        # The timer is a thread: at Ctrl-C it has to end before the publisher does.
+        rospy.on_shutdown(self.timer.shutdown)
+
     def timer_callback(self, event):
         msg = UInt32()
         msg.data = self.counter

@@ -28,10 +28,14 @@ def rosrun(node, *arguments):
     return Process("rosrun", contract.PACKAGE, node.executable, *arguments, extra_env=LIVE)
 
 
+def program(package, executable):
+    """Return the path of a package's program. It starts sooner by it than by rosrun."""
+    return roslib.packages.find_node(package, executable)[0]
+
+
 def run(node, *arguments):
     """Start a node of the contract without rosrun, which takes longer than the node itself."""
-    program = roslib.packages.find_node(contract.PACKAGE, node.executable)[0]
-    return Process(program, *arguments, extra_env=LIVE)
+    return Process(program(contract.PACKAGE, node.executable), *arguments, extra_env=LIVE)
 
 
 class Process:

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """How each node ends: its exit code, its last words, and what it leaves at the master."""
 
+import pathlib
 import signal
 import unittest
 
@@ -9,22 +10,29 @@ import contract
 import rospy
 import rostest
 from graph import Graph
-from process import run
+from process import LIVE, Process, program, run
 from std_msgs.msg import UInt32
+
+SLOW_END = str(pathlib.Path(__file__).with_name("slow_end.py"))
 
 
 class TestStop(unittest.TestCase):
+    maxDiff = None  # a traceback is told whole
+
     @classmethod
     def setUpClass(cls):
         rospy.init_node("test_stop")
         cls.publisher = rospy.Publisher(contract.TOPIC, UInt32, queue_size=10)
 
-    def stop(self, node, signal_number):
-        """Stop a node in the midst of its work; return its exit code, stderr and registrations."""
+    def stop(self, node, signal_number, start=run):
+        """Stop a node in the midst of its work; return its exit code, stderr and registrations.
+
+        start: starts the node and returns its Process
+        """
         values = []
         subscriber = rospy.Subscriber(contract.TOPIC, UInt32, values.append)
         self.addCleanup(subscriber.unregister)
-        with run(node) as process:
+        with start(node) as process:
             if node in contract.PUBLISHERS:
                 process.wait_for(lambda: values, "a value from " + node.name)
             else:
@@ -53,6 +61,14 @@ class TestStop(unittest.TestCase):
 
     def test_sigint_subscriber_py(self):
         self.check_sigint(contract.SUBSCRIBER_PY)
+
+    def test_sigint_while_the_timer_of_publisher_py_fires(self):
+        def start(node):
+            node_path = program(contract.PACKAGE, node.executable)
+            return Process(SLOW_END, node_path, extra_env=LIVE)
+
+        stopped = self.stop(contract.PUBLISHER_PY, signal.SIGINT, start)
+        self.assertEqual(stopped, (0, [], False))
 
     # rospy ends on SIGTERM as on SIGINT. roscpp has no handler for it: the signal kills the node,
     # which stays registered at the master.

@@ -14,7 +14,7 @@ import roslib.packages
 # What observes a running program, and waits for it, is the tutorial's own.
 sys.path.append(os.path.join(roslib.packages.get_pkg_dir("mrp"), "test"))
 
-from process import Process
+from process import Process, program  # noqa: F401
 
 PACKAGE = "mrp_labs"
 
@@ -32,11 +32,6 @@ Received = collections.namedtuple("Received", "value publisher thread")
 def path_of(launch_file):
     """Return the path of one of the labs' launch files: see Lab."""
     return roslib.packages.find_resource(PACKAGE, launch_file)[0]
-
-
-def program(node_type):
-    """Return the path of one of the labs' programs. It starts sooner by it than by rosrun."""
-    return roslib.packages.find_node(PACKAGE, node_type)[0]
 
 
 def pid_of(node, master_uri=None):

@@ -61,7 +61,7 @@ class TestParameters(unittest.TestCase):
         """Start a node; a Python one by itself the first time, which takes ten times as long."""
         fork = node.endswith(".py") and node in self.whole
         self.whole.add(node)
-        process = (Forked if fork else Whole)(lab.program(node), argument)
+        process = (Forked if fork else Whole)(lab.program(lab.PACKAGE, node), argument)
         self.addCleanup(process.close)
         return process
 

@@ -57,7 +57,7 @@ class TestTime(unittest.TestCase):
                 (only,) = running.logged(publisher, ALL_LEVELS)
                 self.assertIn("publishes std_msgs/UInt32 on /time/great_topic", only)
             # It is the clock that was missing, and nothing else.
-            with lab.Process(lab.program("lab_clock_py_node.py")):
+            with lab.Process(lab.program(lab.PACKAGE, "lab_clock_py_node.py")):
                 for subscriber in SUBSCRIBERS:
                     for publisher in ROS:
                         running.wait_until_received(subscriber, 2, publisher=publisher)

@@ -65,7 +65,7 @@ class TestFaults(unittest.TestCase):
         topic = "/mismatch/great_topic"
         publishers = ("/mismatch/publisher_cpp", "/mismatch/publisher_py")
         other = "/mismatch/other_subscriber_cpp"
-        late = (program("lab_subscriber_cpp_node"), "__name:=late", "__ns:=mismatch")
+        late = (program("mrp_labs", "lab_subscriber_cpp_node"), "__name:=late", "__ns:=mismatch")
         with Lab("type_mismatch.launch") as lab:
             for publisher in publishers:
                 lab.wait_for_count("/mismatch/subscriber_py", 1, publisher)
@@ -203,7 +203,8 @@ def log_senders(page):
 
 def publisher(name, env):
     return Process(
-        *(program("lab_publisher_py_node.py"), f"__name:={name}", "_topic:=talk", "_period:=0.1"),
+        program("mrp_labs", "lab_publisher_py_node.py"),
+        *(f"__name:={name}", "_topic:=talk", "_period:=0.1"),
         extra_env={**LIVE, **env},
     )
 

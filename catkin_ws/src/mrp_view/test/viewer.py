@@ -39,8 +39,7 @@ class Viewer(Process):
 
     def __init__(self, *options, port=0, extra_env=None):
         super().__init__(
-            # Not by rosrun, which takes as long again.
-            roslib.packages.find_node("mrp_view", "view_node.py")[0],
+            program("mrp_view", "view_node.py"),
             *("--port", str(port), *options),
             extra_env={**LIVE, **(extra_env or {})},
         )
