@@ -248,9 +248,10 @@ docker-check: need-docker  ## check the package at PKG in a container without a 
 	@test -e "$(PKG)/package.xml" || { \
 	  echo "error: expected PKG=PATH, the folder of a package; '$(PKG)' has no package.xml" >&2; exit 2; }
 	$(IMAGE_OF) --target test --tag mrp-test:$(DEBIAN) -
-	@docker run --rm --init --network none --hostname localhost --cap-drop ALL \
+	@docker run --rm --init --network none --hostname localhost \
+	  --cap-drop ALL $(addprefix --cap-add ,CHOWN DAC_OVERRIDE KILL SETGID SETUID) \
 	  --security-opt no-new-privileges --memory 4g --pids-limit 1000 \
-	  --user "$$(id -u):$$(id -g)" --volume "$(abspath $(PKG)):/package:ro" \
+	  --volume "$(abspath $(PKG)):/package:ro" \
 	  --env PYTHONPATH=catkin_ws/src/mrp_check/src mrp-test:$(DEBIAN) \
 	  /usr/bin/python3 catkin_ws/src/mrp_check/scripts/check /package
 

@@ -44,3 +44,12 @@ def kinds_of(item):
 def pytest_runtest_setup(item):
     if sum(mark.name in KINDS for mark in item.iter_markers()) != 1:
         pytest.fail("expected one mark of quick, slow, sets; found none or more", pytrace=False)
+
+
+@pytest.fixture
+def open_folders(tmp_path, tmp_path_factory):
+    """Without namespaces, the user that a command runs as must be able to come to its folder."""
+    for folder in (tmp_path, *tmp_path.parents):
+        if folder.name.startswith("pytest-") or tmp_path_factory.getbasetemp() in folder.parents:
+            folder.chmod(0o711)
+    tmp_path_factory.getbasetemp().chmod(0o711)

@@ -355,17 +355,24 @@ def test_one_that_hangs(tmp_path, seconds):
 
 
 @pytest.mark.slow
-def test_ctrl_c(tmp_path, seconds):
-    """What runs at that moment is ended, and nothing is left of it."""
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("what", [["--class"], []], ids=["class", "package"])
+def test_a_signal_ends_all(tmp_path, monkeypatch, seconds, what, number):
+    """What runs at that moment is ended, and nothing is left of it, in no folder either."""
+    scratch = tmp_path / "scratch"
+    scratch.mkdir()
+    monkeypatch.setenv("TMPDIR", str(scratch))
     hand_in(tmp_path / "class", "anna", hanging(seconds))
-    with command("--class", tmp_path / "class") as checker:
+    folder = tmp_path / "class" if what else tmp_path / "class" / "anna"
+    with command(*what, folder) as checker:
         wait_until(lambda: sleepers(seconds), "the submission's CMake runs")
-        checker.send_signal(signal.SIGINT)
+        checker.send_signal(number)
         _, errors = checker.communicate()
     assert checker.returncode == 1
-    assert "stopped by Ctrl-C" in errors
+    assert "stopped before its end" in errors
     assert "Traceback" not in errors
-    wait_until(lambda: not sleepers(seconds), "nothing is left")
+    assert list(scratch.iterdir()) == []
+    assert not sleepers(seconds)
 
 
 @pytest.mark.parametrize(

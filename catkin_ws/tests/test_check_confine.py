@@ -5,8 +5,10 @@ Each is made in both ways: the stronger one with namespaces, where this machine 
 plain one.
 """
 
+import json
 import os
 import pathlib
+import shutil
 import signal
 import socket
 import subprocess
@@ -18,7 +20,9 @@ import pytest
 from mrp_check import confine
 from waiting import wait_until
 
-pytestmark = pytest.mark.slow
+pytestmark = [pytest.mark.slow, pytest.mark.usefixtures("open_folders")]
+
+HAS_NAMESPACES = confine.isolation() is confine.Isolation.NAMESPACES
 
 FEW_SECONDS = 3  # a limit of wall time, for what never ends by itself
 
@@ -38,12 +42,12 @@ def run(request, tmp_path):
             ["/usr/bin/python3", "-c", textwrap.dedent(program), token],
             folder,
             limits=confine.Limits(**limits),
-            namespaces=None if request.param == "strongest" else False,
+            namespaces=request.param == "strongest",
         )
 
     run_program.token = token
     run_program.scratch = tmp_path / "scratch"
-    run_program.plain = request.param == "plain" or confine.isolation() == "plain"
+    run_program.plain = request.param == "plain" or not HAS_NAMESPACES
     yield run_program
     assert not processes(token)
 
@@ -324,7 +328,7 @@ def test_nothing_of_the_users_environment(run, monkeypatch):
     assert "SECRET" not in result.output
 
 
-@pytest.mark.parametrize("namespaces", [None, False])
+@pytest.mark.parametrize("namespaces", [True, False])
 def test_the_caller_is_killed(tmp_path, namespaces):
     """Nothing outlives the checker itself, however that ends."""
     token = f"attack-{uuid.uuid4().hex}"
@@ -343,7 +347,8 @@ confine.run(["/usr/bin/python3", "-uc", {program!r}, "{token}"], {str(tmp_path)!
 
 
 def test_the_watcher_is_killed(run):
-    """On the plain way the package can end its own watcher; then the mark finds what is left."""
+    """Where it runs as the same user, a package can end its watcher; its mark finds what is left.
+    As root it runs as another user, and cannot."""
     program = f"""
     import os, signal, time
     watcher = os.getppid()
@@ -356,7 +361,9 @@ def test_the_watcher_is_killed(run):
     os.kill(watcher, signal.SIGKILL)
     time.sleep({FOR_EVER})
     """
-    if run.plain:
+    if os.getuid() == 0:
+        assert "PermissionError" in run(program, time=30).errors
+    elif run.plain:
         with pytest.raises(confine.ConfineError, match="was ended"):
             run(program, time=30)
     else:
@@ -366,7 +373,8 @@ def test_the_watcher_is_killed(run):
 def test_what_only_namespaces_promise(tmp_path):
     """No network but lo, no process to be seen but one's own, no file to be written elsewhere."""
     outside = tmp_path / "outside"
-    outside.mkdir()
+    outside.mkdir(mode=0o777)
+    outside.chmod(0o777)
     (tmp_path / "scratch").mkdir()
     program = f"""
 import os, socket
@@ -380,9 +388,79 @@ except OSError:
     command = ["/usr/bin/python3", "-c", program]
     result = confine.run(command, tmp_path / "scratch")
     assert result.code == 0, result.errors
-    promised = confine.isolation() == "namespaces"
+    promised = HAS_NAMESPACES
     assert (result.output == "True\nTrue\n") == promised
     assert (outside / "file").exists() != promised
+
+
+HOST = """
+import os, re, socket, sys
+def tried(function, *arguments):
+    try:
+        function(*arguments)
+        print("did", function.__name__, arguments)
+    except OSError:
+        pass
+def connect(path):
+    socket.socket(socket.AF_UNIX).connect(path)
+def read(path):
+    open(path).read()
+def change(path):
+    open(path, "r+")
+# What is a namespace's own may be changed in it.
+OWN = "/(net|user|mqueue)/|/(shm|msg|sem|auto_msgmni|ns_last_pid|pid_max|hostname|domainname)[^/]*$"
+secret, *sockets = sys.argv[1:]
+tried(read, secret)
+tried(read, "/etc/shadow")
+for path in sockets:
+    tried(connect, path)
+    tried(connect, chr(0) + path)
+for folder, _, files in os.walk("/proc/sys"):
+    for path in (os.path.join(folder, name) for name in files):
+        if not re.search(OWN, path):
+            tried(change, path)
+"""
+
+
+CONFINED = """
+import json, sys
+package, command, scratch = json.loads(sys.argv[1])
+sys.path.insert(0, package)
+from mrp_check import confine
+done = confine.run(command, scratch)
+print(done.code, done.output, done.errors)
+"""
+ANOTHER = 61000  # the id of a user
+USERS = [None, ANOTHER] if os.getuid() == 0 else [None]
+
+
+@pytest.mark.parametrize("user", USERS)
+def test_nothing_of_the_host_is_within_reach(tmp_path, user):
+    """No socket, be it in a file or not; no file of the user's; no setting of the kernel's."""
+    code, scratch, secret = tmp_path / "code", tmp_path / "scratch", tmp_path / "secret"
+    shutil.copytree(pathlib.Path(confine.__file__).parent, code / "mrp_check")
+    scratch.mkdir()
+    secret.write_text("of the host")
+    listening = str(tmp_path / "listening")
+    command = ["/usr/bin/python3", "-c", HOST, str(secret), listening]
+    with socket.socket(socket.AF_UNIX) as in_file, socket.socket(socket.AF_UNIX) as in_none:
+        for listener, path in ((in_file, listening), (in_none, "\0" + listening)):
+            listener.bind(path)
+            listener.listen()
+        confined = ["/usr/bin/python3", "-c", CONFINED]
+        if user:
+            confined = [
+                "setpriv",
+                f"--reuid={user}",
+                f"--regid={user}",
+                "--clear-groups",
+                *confined,
+            ]
+            for path in (tmp_path, scratch, secret, listening):
+                os.chown(path, user, user)
+        task = json.dumps([str(code), command, str(scratch)])
+        done = subprocess.run([*confined, task], capture_output=True, text=True)
+    assert done.stdout.split() == ["0"], done
 
 
 def test_two_at_once_can_use_one_port(tmp_path):

@@ -18,6 +18,7 @@ pytestmark = [pytest.mark.quick, pytest.mark.xdist_group("check_cpp")]
 
 FOLDER = pathlib.Path(__file__).resolve().parents[1] / "src" / "mrp" / "src"
 PUBLISHER, SUBSCRIBER = "publisher_cpp_node", "subscriber_cpp_node"
+CPP_FACTS = pathlib.Path(static.__file__).with_name("cpp_facts.py")
 SOURCES = {name: (FOLDER / f"{name}.cpp").read_text() for name in (PUBLISHER, SUBSCRIBER)}
 
 
@@ -31,7 +32,7 @@ def said_of(folder, headers, standard=cpp_headers.STANDARD):
     unit = [str(folder / "src/a.cpp"), standard]
     task = {"folder": str(folder), "headers": str(headers), "units": [unit]}
     done = subprocess.run(
-        ["/usr/bin/python3", static._CPP_FACTS, json.dumps(task)],
+        ["/usr/bin/python3", CPP_FACTS, json.dumps(task)],
         stdout=subprocess.PIPE,
         check=True,
     )

@@ -5,6 +5,7 @@ The nodes are Python scripts, which need no build. Each has one defect, and each
 topic; so many defects are seen in one run.
 """
 
+import os
 import pathlib
 import re
 import textwrap
@@ -440,8 +441,8 @@ FLOODS = {
     "forks": "import os\n    for _ in range(50): os.fork()",
     "no_memory": "x = []\n    while True: x.append(b'x' * 10**7)",
 }
-if confine.isolation() == "namespaces":
-    # Without them it ends all that is its user's, these tests as well.
+if confine.isolation() is not confine.Isolation.NONE:
+    # Else it ends all that is its user's, these tests as well.
     FLOODS["kills_all"] = "import os, signal; rospy.sleep(1); os.kill(-1, signal.SIGKILL)"
 
 
@@ -467,3 +468,55 @@ def test_a_node_that_does_harm_is_reported_and_ended(tmp_path, flood):
         except OSError:
             continue
     assert not left
+
+
+# What a publisher with wrong values may try, so that nobody hears of them.
+FORGERY = """
+import os, signal, threading, time, xmlrpc.client
+
+
+def attack():
+    while True:
+        for process in os.listdir("/proc"):
+            try:
+                with open(f"/proc/{process}/cmdline") as file:
+                    if "mrp_check.session" in file.read():
+                        os.kill(int(process), signal.SIGKILL)
+                        os.kill(int(process), signal.SIGSTOP)
+            except (OSError, ValueError):
+                pass
+        try:
+            master = xmlrpc.client.ServerProxy(os.environ["ROS_MASTER_URI"])
+            observer = master.lookupNode("/node", "/mrp_check_observer")[2]
+            xmlrpc.client.ServerProxy(observer).shutdown("/node", "")
+            master.shutdown("/node", "")
+        except OSError:
+            pass
+        for folder, _, files in os.walk("/tmp"):
+            for name in [name for name in files if "json" in name] + ["result.json"]:
+                try:
+                    with open(os.path.join(folder, name), "w") as file:
+                        file.write("{}")
+                except OSError:
+                    pass
+        time.sleep(0.1)
+
+
+threading.Thread(target=attack, daemon=True).start()
+"""
+
+
+# What root has wherever it is; without it and without namespaces, nothing is promised.
+ROOTS = confine.isolation() if os.getuid() else confine.Isolation.USER
+
+
+@pytest.mark.usefixtures("open_folders")
+@pytest.mark.parametrize("isolation", dict.fromkeys([confine.isolation(), ROOTS]))
+def test_a_node_cannot_change_what_is_seen_of_it(tmp_path, monkeypatch, isolation):
+    monkeypatch.setattr(confine, "isolation", lambda: isolation)
+    defects = {"start": PUBLISHERS["start"]}
+    folder = make_package(tmp_path / "lab_pkg", defects, {})
+    script = folder / "scripts" / "publisher_start.py"
+    script.write_text(script.read_text().replace("\n\n\nclass Node", f"\n{FORGERY}\n\nclass Node"))
+    found = findings_of(folder, spec_of(defects, []), tmp_path / "scratch")
+    assert [f.id for f in found if f.severity == ERROR] == ["values"], found

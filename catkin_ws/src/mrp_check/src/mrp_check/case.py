@@ -20,7 +20,9 @@ from mrp_check.stages.static import cpp_headers
 class Case:
     """One package under check.
 
-    folder: a scratch folder, deleted in the end; a catkin workspace
+    folder: a scratch folder, deleted in the end; a catkin workspace, in which the package's own
+        programs can write
+    given: the folder of what the checker itself writes
     package_folder: the copy of the package in it, without what was built or is no plain file
     timeout: seconds that the whole check may take
     progress: called with a sentence that says what is being done
@@ -28,7 +30,11 @@ class Case:
     """
 
     def __init__(self, package: Package, spec: Spec, folder: pathlib.Path, timeout, progress):
-        self.package, self.spec, self.folder = package, spec, folder
+        self.package, self.spec = package, spec
+        self.folder, self.given = folder / "workspace", folder / "given"
+        self.given.mkdir()
+        self.folder.mkdir(mode=0o700)
+        folder = self.folder
         self.timeout, self.progress = timeout, progress
         self.package_folder = folder / "src" / package.root.resolve().name
         for path in package.files:
@@ -40,7 +46,7 @@ class Case:
 
     def read_headers(self):
         """Begin to read ROS's headers; `headers` is then a future, whose result is their file."""
-        self.headers = self.catkin.submit(cpp_headers.make, self.folder / "ros.pch")
+        self.headers = self.catkin.submit(cpp_headers.make, self.given / "ros.pch")
 
     @functools.cached_property
     def manifest(self):

@@ -75,10 +75,14 @@ def check(
         raise CannotCheck(missing)
     ids = [id_ for id_ in REQUIREMENTS if id_ in only or not only]
     folder = pathlib.Path(tempfile.mkdtemp(prefix="mrp_check_"))
+    folder.chmod(0o711)  # for the user that the package's programs run as
     try:
         case = Case(package, spec, folder, timeout, progress)
         try:
             examination = _Examination(case, ids)
+        except BaseException:  # such as Ctrl-C
+            confine.stop()
+            raise
         finally:
             case.catkin.close()
     finally:

@@ -190,6 +190,7 @@ class Classroom:
     def _run(self, package, name):
         """Check one package in a process of its own; return its report."""
         with tempfile.TemporaryDirectory(prefix="mrp_check_class_") as scratch:
+            os.chmod(scratch, 0o711)  # for the user that the package's programs run as
             try:
                 return self._run_in(pathlib.Path(scratch), package, name)
             finally:

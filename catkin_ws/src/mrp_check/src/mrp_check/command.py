@@ -4,9 +4,10 @@
 from __future__ import annotations
 
 import argparse
+import signal
 import sys
 
-from mrp_check import check, classroom, spec
+from mrp_check import check, classroom, confine, spec
 from mrp_check.package import PackageError
 from mrp_check.report import console, html, json_, junit
 from mrp_check.requirements import REQUIREMENTS
@@ -16,10 +17,16 @@ MET, FINDINGS, UNCHECKED = 0, 1, 2
 
 def main(arguments=None):
     """Check what the command line says, and exit: 0 all met, 1 findings, 2 could not check."""
+    # As with Ctrl-C, nothing is left behind then.
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
+    options = parser().parse_args(arguments)
+    not_apart = confine.isolation().value
+    if not_apart:
+        print(f"check: {not_apart}.", file=sys.stderr)
     try:
-        sys.exit(run(parser().parse_args(arguments)))
+        sys.exit(run(options))
     except KeyboardInterrupt:
-        sys.exit("check: stopped by Ctrl-C.")
+        sys.exit("check: stopped before its end; what it ran has ended, too.")
 
 
 def parser():

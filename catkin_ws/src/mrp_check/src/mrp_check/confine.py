@@ -6,22 +6,28 @@ Always, as any user:
   own, in a scratch folder;
 - it is ended when it breaks a limit: see Limits;
 - its output is read to the end, and kept up to a limit;
-- every process that it started is killed when it ends, however that one has detached itself: a
-  watching process (warden.py) adopts all orphans. If somebody kills the watcher, what bears the
-  mark of this run in its environment is killed all the same.
+- every process that it started is killed when it ends, even if it has detached itself: a watching
+  process (confined/warden.py) adopts all orphans.
 
-Where the system lets this user make namespaces (Debian does; Docker's default does not), besides:
+With namespaces, which bubblewrap makes where the system lets it (Debian does; Docker's default does
+not), also:
 - the command sees and signals none of the machine's other processes, and its watcher cannot be
   killed from within;
 - there is no network but its own loopback: so no port is taken, and nothing can be sent anywhere;
-- all files but those of the scratch folder and of a private /tmp are read-only.
+- of the machine's files it sees the programs in /usr and a few of /etc, read-only. There are no
+  homes, no other submissions, and no sockets.
 
-Without namespaces, a command that means harm could still write wherever its user may write, signal
-its user's other processes, and use the network: check what you do not trust in a container without
-a network, as the page on marking says. `isolation()` tells which of the two holds.
+As root, the command runs as another user, who owns the scratch folder and nothing else. This holds
+without namespaces, too: the command cannot write or read what is root's, nor signal it.
+
+As another user and without namespaces, a command that means harm could still read and write its
+user's files, signal its user's processes, and use the network. `isolation()` says what holds.
 """
 
+import atexit
+import contextlib
 import dataclasses
+import enum
 import functools
 import json
 import os
@@ -30,15 +36,29 @@ import selectors
 import shutil
 import signal
 import subprocess
-import sys
 import tempfile
+import threading
 import time
 import uuid
 from typing import List, Optional, Sequence
 
-_WARDEN = pathlib.Path(__file__).resolve().with_name("warden.py")
+import psutil
+
+from mrp_check import apart
+
+_HERE = pathlib.Path(__file__).resolve().parent
 _MARK = "MRP_CHECK_RUN"  # the environment variable that marks the processes of one run
 _MEGABYTE = 2**20
+
+# What a command needs of /etc: to find libraries, programs, users, and this machine's own name.
+_ETC = ("alternatives", "group", "hosts", "ld.so.cache", "ld.so.conf", "ld.so.conf.d", "localtime")
+_ETC += ("nsswitch.conf", "os-release", "passwd", "ros")
+# User ids that systemd, too, gives to what runs for a while; no user of a machine has one.
+_IDS = range(61184, 65520)
+_HANDING_OVER = threading.Lock()
+_RUNNING = set()  # the watchers of all runs
+# With these, root starts and ends what runs as another user, and reads its files.
+_CAPABILITIES = ("CAP_DAC_OVERRIDE", "CAP_KILL", "CAP_SETGID", "CAP_SETUID")
 
 # Seconds that the watcher may take, after a limit, to kill all and to say so.
 _GRACE = 20
@@ -111,7 +131,6 @@ def environment(scratch, **variables):
 
     It takes over nothing of the user's own. The names in `variables` come on top.
     """
-    scratch = pathlib.Path(scratch).resolve()
     env = {
         "PATH": "/usr/bin:/bin:/usr/sbin:/sbin",
         "LANG": "C.UTF-8",
@@ -123,11 +142,40 @@ def environment(scratch, **variables):
         # ROS 1 has no authentication: nothing listens beyond this machine that need not.
         "ROS_HOSTNAME": "localhost",
     }
-    folders = {"HOME": "home", "TMPDIR": "tmp", "ROS_HOME": "ros_home", "ROS_LOG_DIR": "ros_log"}
-    for name, folder in folders.items():
-        (scratch / folder).mkdir(parents=True, exist_ok=True)
-        env[name] = str(scratch / folder)
-    return {**env, **variables}
+    return {**env, **folders(scratch), **variables}
+
+
+def folders(scratch):
+    """Return the variables that name a command's own folders, and make these."""
+    names = {"HOME": "home", "TMPDIR": "tmp", "ROS_HOME": "ros_home", "ROS_LOG_DIR": "ros_log"}
+    made = {name: pathlib.Path(scratch).resolve() / folder for name, folder in names.items()}
+    for folder in made.values():
+        folder.mkdir(parents=True, exist_ok=True)
+    return {name: str(folder) for name, folder in made.items()}
+
+
+class Isolation(enum.Enum):
+    """How far what runs is kept apart. The text says what does not hold, as a sentence's end."""
+
+    NAMESPACES = ""
+    USER = (
+        "this system makes no namespaces. The package's programs run as another user, who can use"
+        " the network and read what all users can read"
+    )
+    NONE = (
+        "this system makes no namespaces. The package's programs run as you: they can read and"
+        " change your files, and this verdict. Check only what you trust, or use the container"
+    )
+
+
+@functools.lru_cache(maxsize=None)
+def isolation():
+    """Return the Isolation that this user has on this system."""
+    command = [*_bubblewrap([]), "/bin/true"]
+    done = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True)
+    if done.returncode == 0:
+        return Isolation.NAMESPACES
+    return Isolation.NONE if os.getuid() else Isolation.USER
 
 
 def run(
@@ -136,16 +184,20 @@ def run(
     limits: Optional[Limits] = None,
     env: Optional[dict] = None,
     cwd=None,
+    readable: Sequence[str] = (),
     writable: Sequence[str] = (),
-    namespaces: Optional[bool] = None,
+    namespaces: bool = True,
+    observes: bool = False,
 ) -> Result:
     """Run a command to its end, or to the first limit that it breaks.
 
     scratch: the only folder that it is meant to write to
     env: its whole environment, if not that of environment(scratch)
     cwd: where it starts, if not in scratch
+    readable: more folders that it may read
     writable: more folders that it may write to, such as a compiler's cache
-    namespaces: False takes the plain way also where namespaces could be made
+    namespaces: False makes none, even where they could be made
+    observes: it is the checker's own, and starts what is not trusted as confined/apart.py says
 
     Raises ConfineError.
     """
@@ -153,61 +205,115 @@ def run(
     scratch = os.path.realpath(scratch)
     mark = uuid.uuid4().hex
     env = {**(environment(scratch) if env is None else env), _MARK: mark}
-    task = {
-        "command": [str(part) for part in command],
-        "scratch": scratch,
-        "cwd": os.path.realpath(cwd or scratch),
-        "env": env,
-        "limits": dataclasses.asdict(limits),
-        # What lies in the scratch folder is there anyway.
-        "protected": [f for f in _needed_folders(env) if not (f + "/").startswith(scratch + "/")],
-        "writable": [os.path.realpath(folder) for folder in writable],
-    }
-    wants_namespaces = namespaces is not False and isolation() == "namespaces"
-    # What its /tmp is goes with the run.
-    with tempfile.TemporaryDirectory(prefix="tmp_", dir=scratch) as tmp:
-        task.update(namespaces=wants_namespaces, tmp=tmp)
-        return _run_warden(task, limits, mark)
+    namespaces = namespaces and isolation() is Isolation.NAMESPACES
+    # Its /tmp goes with the run. It lies beside the scratch folder: nothing in that is safe to use.
+    with tempfile.TemporaryDirectory(prefix="tmp_", dir=os.path.dirname(scratch)) as tmp:
+        os.chmod(tmp, 0o1777)
+        task = {
+            "command": [str(part) for part in command],
+            "folders": [scratch, "/tmp"] if namespaces else [scratch],
+            "cwd": os.path.realpath(cwd or scratch),
+            "env": env,
+            "limits": dataclasses.asdict(limits),
+            "user": _hand_over(scratch),
+            "namespaces": namespaces,
+            "observes": observes,
+        }
+        if observes:
+            env[apart.VARIABLE] = json.dumps({key: task[key] for key in ("user", "namespaces")})
+        binds = [("--bind", tmp, "/tmp")]
+        for option, paths in (("--ro-bind", [_HERE, *readable]), ("--bind", [scratch, *writable])):
+            binds += [(option, path, path) for path in map(os.path.realpath, paths)]
+        return _run_warden(_bubblewrap(binds) if namespaces else [], task, limits, mark)
 
 
 @functools.lru_cache(maxsize=None)
-def isolation():
-    """Return "namespaces" or "plain": which of the two ways this user has on this system."""
-    with tempfile.TemporaryDirectory(prefix="mrp_check_") as scratch:
-        task = {
-            "command": ["/bin/true"],
-            "scratch": os.path.realpath(scratch),
-            "cwd": os.path.realpath(scratch),
-            "env": {},
-            "limits": dataclasses.asdict(Limits()),
-            "protected": [],
-            "writable": [],
-            "namespaces": True,
-            "tmp": os.path.join(os.path.realpath(scratch), "tmp"),
-        }
-        os.mkdir(task["tmp"])
-        try:
-            done = _run_warden(task, Limits(time=20), "probe")
-        except ConfineError:
-            return "plain"
-        return "namespaces" if done.code == 0 else "plain"
+def code():
+    """Return this package's folder, as a command can read it: a home of root's may be closed."""
+    if isolation() is not Isolation.USER:
+        return _HERE
+    folder = tempfile.mkdtemp(prefix="mrp_check_code_")
+    atexit.register(shutil.rmtree, folder, ignore_errors=True)
+    os.chmod(folder, 0o755)
+    copied = shutil.copytree(_HERE, os.path.join(folder, _HERE.name))
+    return pathlib.Path(copied)
 
 
-def _needed_folders(env):
-    """Return the folders that a private /tmp must not hide: programs, and this package itself."""
-    names = ("PYTHONPATH", "ROS_PACKAGE_PATH", "CMAKE_PREFIX_PATH", "LD_LIBRARY_PATH")
-    folders = [folder for name in names for folder in env.get(name, "").split(":") if folder]
-    return sorted({os.path.realpath(folder) for folder in [*folders, str(_WARDEN.parent)]})
+def stop():
+    """End all that runs at this moment; each run() returns then."""
+    for warden in list(_RUNNING):
+        warden.stdin.close()
 
 
-def _run_warden(task, limits, mark):
+def _bubblewrap(binds):
+    """Return bwrap and its options; binds: of more files (option, path outside, path within)."""
+    options = ["--unshare-pid", "--unshare-net", "--unshare-ipc", "--unshare-uts", "--as-pid-1"]
+    options += ["--die-with-parent", "--cap-drop", "ALL"]
+    for path in ("/bin", "/sbin", "/lib", "/lib32", "/lib64", "/libx32"):
+        if os.path.islink(path):
+            options += ["--symlink", os.readlink(path), path]
+        else:
+            options += ["--ro-bind-try", path, path]
+    pythons = [path.name for path in pathlib.Path("/etc").glob("python3*")]
+    for path in ("/etc", "/opt", "/run", "/home", "/root", "/var"):
+        options += ["--perms", "0755", "--dir", path]
+    for path in ("/usr", "/opt/ros", *(f"/etc/{name}" for name in (*_ETC, *pythons))):
+        options += ["--ro-bind-try", path, path]
+    options += ["--proc", "/proc", "--dev", "/dev"]
+    if os.getuid():
+        options += ["--unshare-user"]
+    else:
+        # To others the kernel's settings are read-only anyway; and they make a /proc within this.
+        options += ["--ro-bind", "/proc/sys", "/proc/sys"]
+        options += [word for name in _CAPABILITIES for word in ("--cap-add", name)]
+    options += ["--perms", "1777", "--size", str(64 * _MEGABYTE), "--tmpfs", "/dev/shm"]
+    for option, outside, within in binds:
+        for parent in reversed(pathlib.Path(within).parents):
+            options += ["--perms", "0755", "--dir", str(parent)]
+        options += [option, str(outside), str(within)]
+    return ["bwrap", *options, "--remount-ro", "/", "--"]
+
+
+def _hand_over(scratch):
+    """Give to the owner of the scratch folder what root has put there; return the owner's id.
+
+    The first time, the owner is a new one, whom no process belongs to. Another user than root has
+    nothing to give away: None. Raises ConfineError.
+    """
+    if os.getuid():
+        return None
+    with _HANDING_OVER:
+        owner = os.stat(scratch).st_uid
+        if owner == 0:
+            used = {process.uids().real for process in psutil.process_iter(["uids"])}
+            free = [id_ for id_ in _IDS if id_ not in used]
+            owner = free[os.getpid() % len(free)]
+            try:
+                os.chown(scratch, owner, owner)
+            except PermissionError:
+                raise ConfineError(
+                    "root runs the package's programs as another user. For this it needs the"
+                    " capabilities CHOWN, DAC_OVERRIDE, KILL, SETGID and SETUID, and it lacks some"
+                    " of them here. Add them, or run the checker as a user who is not root"
+                ) from None
+    # By file descriptors: what runs at the same time may put links in the way.
+    for _, folders, files, fd in os.fwalk(scratch):
+        for name in (*folders, *files):
+            entry = os.stat(name, dir_fd=fd, follow_symlinks=False)
+            # A file with two names may be one of root's own, elsewhere.
+            if entry.st_uid == 0 and (entry.st_nlink == 1 or name in folders):
+                os.chown(name, owner, owner, dir_fd=fd, follow_symlinks=False)
+    return owner
+
+
+def _run_warden(sandbox, task, limits, mark):
     task_read, task_write = os.pipe()
     report_read, report_write = os.pipe()
     # Debian's own Python, without the user's settings: the checker's may be anything.
-    python = "/usr/bin/python3" if os.access("/usr/bin/python3", os.X_OK) else sys.executable
+    warden_py = [*sandbox, "/usr/bin/python3", "-I", str(_HERE / "warden.py")]
     try:
         warden = subprocess.Popen(
-            [python, "-I", "-S", str(_WARDEN), str(task_read), str(report_write)],
+            [*warden_py, str(task_read), str(report_write)],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=subprocess.PIPE,
@@ -219,6 +325,7 @@ def _run_warden(task, limits, mark):
     finally:
         os.close(task_read)
         os.close(report_write)
+    _RUNNING.add(warden)
     # When the watcher has ended, so has all that it watched over; or else it is ended now.
     reader = _Reader(limits.output, on_report=lambda: _kill_marked(mark))
     try:
@@ -241,6 +348,7 @@ def _run_warden(task, limits, mark):
                 flood=False,
             )
     finally:
+        _RUNNING.discard(warden)
         warden.stdin.close()
         _end(warden)
         _kill_marked(mark)
@@ -282,24 +390,23 @@ def _end(warden):
 
 
 def _kill_marked(mark):
-    """Kill what bears a run's mark: after its watcher was killed, the only thing to know it by."""
-    needle = f"{_MARK}={mark}".encode()
-    while True:
-        found = [pid for pid in os.listdir("/proc") if pid.isdigit() and _has_mark(pid, needle)]
-        for pid in found:
-            try:
-                os.kill(int(pid), signal.SIGKILL)
-            except OSError:
-                pass
+    """Kill what bears a run's mark: after its watcher was killed, the only thing to know it by.
+
+    Only where they run as the same user could they have killed the watcher.
+    """
+    while isolation() is Isolation.NONE:
+        found = [process for process in psutil.process_iter() if _has_mark(process, mark)]
+        for process in found:
+            with contextlib.suppress(psutil.Error):
+                process.kill()
         if not found:
             return
 
 
-def _has_mark(pid, needle):
+def _has_mark(process, mark):
     try:
-        with open(f"/proc/{pid}/environ", "rb") as file:
-            return needle in file.read().split(b"\0")
-    except OSError:
+        return process.environ().get(_MARK) == mark
+    except psutil.Error:
         return False
 
 

@@ -21,13 +21,15 @@ import typing
 import xmlrpc.client
 
 import genpy
-import genpy.dynamic
 import rosgraph
 import rosgraph.network
 import rosgraph.xmlrpc
 import rosmaster.master_api
 import rospy
+import rospy.impl.masterslave
 from rosgraph_msgs.msg import Log as LogMessage
+
+from mrp_check import messages
 
 NAME = "/mrp_check_observer"
 
@@ -112,6 +114,7 @@ class Observer:
             time.sleep(0.01)
         self.uri = self._server.uri
         os.environ["ROS_MASTER_URI"] = self.uri
+        rospy.impl.masterslave.ROSHandler.shutdown = _refuse
         rospy.init_node(NAME[1:], anonymous=False, disable_signals=True, disable_rosout=True)
         self._subscribe("/rosout")
         threading.Thread(target=self._measure_lag, daemon=True).start()
@@ -192,8 +195,7 @@ class Observer:
         key = header.get("type"), header.get("md5sum")
         try:
             if key not in self._types:
-                generated = genpy.dynamic.generate_dynamic(key[0], header["message_definition"])
-                self._types[key] = generated[key[0]]
+                self._types[key] = messages.of_definition(key[0], header["message_definition"])
             result = {}
             _flatten(self._types[key]().deserialize(message._buff), "", result)
             return result
@@ -260,8 +262,15 @@ class Observer:
         return lag[len(lag) * 9 // 10] if lag else 0.0
 
 
+def _refuse(self, caller_id, reason=""):
+    """Answer to one who asks the observer, or its master, to shut down."""
+    return -1, "the observation is not over", 0
+
+
 class _Master(rosmaster.master_api.ROSMasterHandler):
     """A master that tells the observer what it hears, and lets publishers wait for it."""
+
+    shutdown = _refuse
 
     def __init__(self, observer):
         super().__init__()

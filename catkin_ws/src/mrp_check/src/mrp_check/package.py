@@ -58,6 +58,7 @@ class Package:
             raise PackageError(f"{root} is no folder; expected the folder of a package.")
         self._bytes = {}
         self.files = self._list()
+        self._known = {*self.files}
         if "package.xml" not in self.files:
             raise PackageError(self._no_manifest())
 
@@ -94,7 +95,9 @@ class Package:
         return text
 
     def bytes(self, path):
-        """Return a file's bytes, cut at MAX_TEXT."""
+        """Return a file's bytes, cut at MAX_TEXT; none of a file that is not the package's."""
+        if path not in self._bytes and path not in self._known:
+            return b""
         if path not in self._bytes:
             with open(self.root / path, "rb") as file:
                 self._bytes[path] = file.read(MAX_TEXT)

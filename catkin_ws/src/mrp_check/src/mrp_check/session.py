@@ -1,9 +1,15 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Runs a package's nodes under observation, and writes what was seen. Runs confined.
+"""Runs a package's nodes under observation, and prints what was seen. Runs confined.
 
-Usage: python3 -m mrp_check.session PLAN RESULT    (both JSON)
+Usage: python3 -m mrp_check.session PLAN    (JSON, as the result is)
 
-There are two kinds of plan.
+The nodes run apart from it, as apart.py says. Nothing of the package is run, read or imported here:
+it hears of the nodes through ROS, their output and /proc.
+
+There are two kinds of plan. Both have:
+    environment  of the nodes, and of roslaunch
+    writable     the folders that these may write to
+    messages     what messages.definitions() says of the package's own
 
 launch: the nodes are started by a launch file, and ended by Ctrl-C to roslaunch.
     command    of roslaunch
@@ -30,20 +36,24 @@ import re
 import signal
 import subprocess
 import sys
+import tempfile
 import threading
 import time
 
-import roslib.message
+import psutil
 import rospy
 
-from mrp_check import warden
+from mrp_check import apart, messages, warden, written
 from mrp_check.observe import Observer
 
 _ESCAPES = re.compile(r"\x1b\[[0-9;]*m|\x1b\][^\x07]*\x07")
 _DIED = re.compile(r"\[(?P<name>\S+)-\d+\] process has (?P<how>died|finished cleanly)")
 _STARTED = re.compile(r"process\[(?P<name>\S+)-\d+\]: started with pid \[(?P<pid>\d+)\]")
 _NOT_STARTED = re.compile(r"cannot launch node of type \[(?P<type>[^\]]*)\]")
+_NOT_EXECUTED = re.compile(r"(bwrap: execvp|setpriv: failed to execute) ")
 _LINES = 5000  # that are kept of a program's output
+# Of what hook/sitecustomize.py writes; the node could write there, too.
+_EVENT = {"event": str, "file": (str, type(None)), "line": (int, type(None))}
 # A node that has not registered is waited for as long as it does something, whatever the load.
 _IDLE = 3.0  # seconds in which an idle process uses hardly any processor time, ...
 _HARDLY = 0.05  # ... which is less than this many seconds
@@ -56,23 +66,26 @@ _TICK = 0.02
 class Program:
     """A running program whose lines are collected as they come.
 
+    pid: the program's own, or None if it has ended already
     lines: (time, stream, text), with stream "out" or "err"
     """
 
-    def __init__(self, command, env, merge=False):
+    def __init__(self, starter, command, env, writable, merge=False):
         self.lines = []
         self.line_count = 0
         self.started = time.monotonic()
         self.ended = None
-        self._popen = subprocess.Popen(
+        self._popen, self.init = starter.start(
             command,
+            writable,
             stdin=subprocess.DEVNULL,
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT if merge else subprocess.PIPE,
             env=env,
+            cwd=writable[0],
             start_new_session=True,
         )
-        self.pid = self._popen.pid
+        self.pid = apart.started_in(self.init) if self.init else self._popen.pid
         streams = [("out", self._popen.stdout), ("err", self._popen.stderr)]
         self._readers = [
             threading.Thread(target=self._read, args=stream, daemon=True)
@@ -94,21 +107,36 @@ class Program:
 
     def poll(self):
         """Return the exit code, or None while it runs."""
-        code = self._popen.poll()
+        code = apart.exit_code(self._popen, self.init)
         if code is not None and self.ended is None:
             self.ended = time.monotonic()
         return code
 
     def send(self, number):
-        if self._popen.poll() is None:
-            self._popen.send_signal(number)
+        if self.pid and self._popen.poll() is None:
+            _send(self.pid, number)
 
     def kill(self):
+        if self.init:
+            _send(self.init.pid, signal.SIGKILL)  # and with it all that is in its sandbox
         try:
-            os.killpg(self.pid, signal.SIGKILL)
+            os.killpg(self._popen.pid, signal.SIGKILL)
         except OSError:
             pass
         self._popen.wait()
+
+    def owns(self, process):
+        """Return whether a process comes from this program, as far as that can still be seen."""
+        try:
+            if self.init:
+                return self.init in process.parents()
+            return os.getsid(process.pid) == self._popen.pid
+        except (OSError, psutil.Error):
+            return False
+
+    def was_executed(self):
+        """Return whether the system could execute it: it may lack the right first line."""
+        return not any(_NOT_EXECUTED.match(text) for _, _, text in self.lines[:1])
 
     def read_rest(self):
         """Wait until all output is read; not for ever, a child may keep the pipe open."""
@@ -117,7 +145,7 @@ class Program:
 
     def result(self):
         return {
-            "code": self._popen.returncode,
+            "code": self.poll(),
             "line_count": self.line_count,
             "lines": [(t - self.started, stream, text) for t, stream, text in list(self.lines)],
         }
@@ -138,30 +166,31 @@ def seen_by(observer, began):
     }
 
 
-def left_behind(known=()):
-    """Return the processes that have come of this one and are still there, and kill them."""
-    found = []
-    for process in warden.descendants():
-        if process.state not in "ZX" and process.pid not in known:
-            found.append(
-                {"pid": process.pid, "command": process.command(), "node": _node_of(process.pid)}
-            )
-    for one in found:
-        try:
-            os.kill(one["pid"], signal.SIGKILL)
-        except OSError:
-            pass
-    return found
-
-
-def _node_of(pid):
-    """Return the key of the plan's node that a process belongs to, by its environment."""
+def _send(pid, number):
     try:
-        with open(f"/proc/{pid}/environ", "rb") as file:
-            found = re.search(rb"(?:^|\0)MRP_CHECK_NODE=([^\0]*)", file.read())
-        return found.group(1).decode() if found else None
+        os.kill(pid, number)
     except OSError:
-        return None
+        pass  # it has ended meanwhile
+
+
+def left_behind(programs):
+    """Return the processes that have come of these programs and are still there, and kill them.
+
+    programs: key -> Program; what is found has the key of its program, if that can be told
+    """
+    makers = {program.init.pid for program in programs.values() if program.init}
+    left = [process for process in warden.descendants() if process.pid not in makers]
+    found = [
+        {
+            "pid": process.pid,
+            "command": warden.command_of(process),
+            "node": next((key for key, one in programs.items() if one.owns(process)), None),
+        }
+        for process in left
+    ]
+    for pid in [process.pid for process in left] + list(makers):
+        _send(pid, signal.SIGKILL)
+    return found
 
 
 class Activity:
@@ -207,20 +236,18 @@ class Activity:
 def _processor_seconds(pid):
     """Return the processor time that a process has used, or None if it is no more."""
     try:
-        with open(f"/proc/{pid}/stat") as file:
-            text = file.read()
-    except OSError:
+        times = psutil.Process(pid).cpu_times()
+    except psutil.Error:
         return None
-    fields = text[text.rindex(")") + 2 :].split()
-    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+    return times.user + times.system
 
 
 # --- launch
 
 
-def run_launch(plan, observer):
-    env = _node_environment()
-    roslaunch = Program(plan["command"], env, merge=True)
+def run_launch(plan, observer, starter):
+    env = {**plan["environment"], "ROS_MASTER_URI": observer.uri}
+    roslaunch = Program(starter, plan["command"], env, plan["writable"], merge=True)
     ending, all_up = None, None
     activity = Activity(observer)
     while ending is None:
@@ -254,7 +281,7 @@ def run_launch(plan, observer):
     seconds = time.monotonic() - asked
     if not ended_on_signal:
         roslaunch.kill()
-    left = left_behind()
+    left = left_behind({None: roslaunch})
     roslaunch.read_rest()
     return {
         **roslaunch.result(),
@@ -311,7 +338,8 @@ def _pid_of(roslaunch, path):
     for _, _, text in list(roslaunch.lines):
         found = _STARTED.search(text)
         if found and "/" + found["name"] == path:
-            return int(found["pid"])
+            init = roslaunch.init
+            return apart.id_outside(init, found["pid"]) if init else int(found["pid"])
     return None
 
 
@@ -325,38 +353,24 @@ def _has_died(roslaunch, node):
     return False
 
 
-def _node_environment():
-    """Return the environment of the package's nodes: without what only this program needs."""
-    env = dict(os.environ)
-    rest = env.get("PYTHONPATH", "").split(":")
-    env["PYTHONPATH"] = ":".join(p for p in rest if p and p != env.get("MRP_CHECK_PATH"))
-    env.pop("MRP_CHECK_PATH", None)
-    # Each line at once, also into a pipe: whether the launch file sees to it is another question.
-    env.update(ROSCONSOLE_STDOUT_LINE_BUFFERED="1", PYTHONUNBUFFERED="1")
-    return env
-
-
 # --- direct
 
 
 class Direct:
     """One node, started by itself."""
 
-    def __init__(self, key, plan, observer):
+    def __init__(self, key, plan, session, observer, starter):
         self.key, self.plan, self.observer = key, plan, observer
-        self.sent, self.sent_at, self.publisher, self.note = [], 0.0, None, None
+        self.messages = session["messages"]
+        self.sent, self.sent_at, self.publisher = [], 0.0, None
         for name, value in plan["params"].items():
             rospy.set_param(name, value)
-        env = {**_node_environment(), **plan["env"], "ROS_NAMESPACE": plan["namespace"]}
-        env["MRP_CHECK_NODE"] = key
-        hook = env.pop("MRP_CHECK_HOOK_PATH", None)
+        env = {**session["environment"], **plan["env"], "ROS_NAMESPACE": plan["namespace"]}
+        env["ROS_MASTER_URI"] = observer.uri
         self.events_file = env.get("MRP_CHECK_HOOK")
-        if hook:
-            env["PYTHONPATH"] = hook + ":" + env["PYTHONPATH"]
-        try:
-            self.program = Program(plan["command"], env)
-        except OSError as error:
-            self.program, self.note = None, f"{error.strerror}: {plan['command'][0]}"
+        if self.events_file:
+            env["PYTHONPATH"] = env.pop("MRP_CHECK_HOOK_PATH") + ":" + env["PYTHONPATH"]
+        self.program = Program(starter, plan["command"], env, session["writable"])
 
     def name(self):
         """Return the node's own name, or None as long as it has not registered."""
@@ -376,9 +390,9 @@ class Direct:
             return
         if self.publisher is None:
             kind = topics[0].type if topics[0].type != "*" else self.plan["type"]
-            message_class = roslib.message.get_message_class(kind)
+            message_class = messages.of_type(kind, self.messages)
             if message_class is None:
-                self.sent, self.note = [None], f"no message class {kind}"
+                self.sent = [None]
                 return
             self.message_class = message_class
             self.publisher = self.observer.publisher(topics[0].topic, message_class)
@@ -392,8 +406,8 @@ class Direct:
         try:
             _set_field(message, self.plan["field"], value)
             self.publisher.publish(message)
-        except Exception as error:  # another type than the contract's
-            self.note = f"{type(error).__name__}: {error}"
+        except Exception:  # another type than the contract's
+            pass
         self.sent.append(value)
         self.sent_at = time.monotonic()
 
@@ -413,25 +427,31 @@ class Direct:
         return any(number.search(log.text) for log in recent)
 
     def events(self):
-        if not self.events_file or not os.path.exists(self.events_file):
+        if not self.events_file:
             return []
-        with open(self.events_file) as file:
-            lines = file.read().splitlines()
+        try:
+            lines = written.read(self.events_file).decode("utf-8", "replace").splitlines()
+        except OSError:
+            return []  # it has not written any yet
         events = []
         for line in lines:
             try:
-                events.append(json.loads(line))
+                event = json.loads(line)
             except ValueError:
                 continue  # not yet whole
+            if isinstance(event, dict) and all(
+                isinstance(event.get(name), types) for name, types in _EVENT.items()
+            ):
+                events.append(event)
         return events
 
     def is_up(self, activity):
-        if self.program is None or self.program.poll() is not None:
+        if self.program.poll() is not None:
             return True
         return activity.is_up_or_stuck(self.name(), self.program.pid)
 
     def is_settled(self, silence, activity):
-        if self.program is None or self.program.poll() is not None:
+        if self.program.poll() is not None:
             return True
         now, name = time.monotonic(), self.name()
         if name is None:
@@ -475,9 +495,9 @@ def _is_ending(node, seconds, plan, activity):
     return not idle and used < _BUSY and seconds < _ENDING
 
 
-def run_direct(plan, observer):
+def run_direct(plan, observer, starter):
     began = time.monotonic()
-    nodes = [Direct(key, one, observer) for key, one in plan["nodes"].items()]
+    nodes = [Direct(key, one, plan, observer, starter) for key, one in plan["nodes"].items()]
     activity = Activity(observer)
     all_up = None
     while time.monotonic() - began < plan["most"]:
@@ -487,13 +507,12 @@ def run_direct(plan, observer):
         if now - (all_up or now) > plan["seconds"]:
             break
         for node in nodes:
-            if node.program:
-                node.send()
-                node.send_paced()
+            node.send()
+            node.send_paced()
         if all(node.is_settled(plan["silence"], activity) for node in nodes):
             break
         time.sleep(_TICK)
-    running = [n for n in nodes if n.program and n.program.poll() is None]
+    running = [n for n in nodes if n.program.poll() is None]
     registered = {n.key: bool(n.name() and observer.is_registered(n.name())) for n in running}
     asked = time.monotonic()
     for node in running:
@@ -509,10 +528,10 @@ def run_direct(plan, observer):
         time.sleep(_TICK)
     results = {}
     for node in nodes:
-        results[node.key] = {"name": node.name(), "note": node.note, "sent": node.sent}
-        if node.program is None:
-            continue
+        results[node.key] = {"name": node.name(), "sent": node.sent}
         node.program.poll()
+        if not node.program.was_executed():
+            continue
         was_running = node in running
         ended = node.program.ended
         results[node.key].update(
@@ -526,26 +545,33 @@ def run_direct(plan, observer):
         if node in stuck:
             node.program.kill()
             results[node.key]["ended_by"] = "kill"
-    left = left_behind()
+    left = left_behind({node.key: node.program for node in nodes})
     for node in nodes:
-        if node.program:
+        if node.program.was_executed():
             node.program.read_rest()
             results[node.key].update(node.program.result())
     return {"nodes": results, "left": left, "seen": seen_by(observer, began)}
 
 
 def main():
-    plan_file, result_file = sys.argv[1:]
-    with open(plan_file) as file:
-        plan = json.load(file)
-    # Orphans of the package's programs become children of this one: so they are found.
-    ctypes.CDLL(None).prctl(warden.PR_SET_CHILD_SUBREAPER, 1, 0, 0, 0)
+    plan = json.loads(sys.argv[1])
+    # Nothing but the result is printed.
+    answer = os.fdopen(os.dup(1), "w")
+    os.dup2(2, 1)
+    # Orphans of the package's programs become children of this one: so they are found. And what
+    # runs as the same user must not look into this process, nor write there.
+    libc = ctypes.CDLL(None)
+    libc.prctl(warden.PR_SET_CHILD_SUBREAPER, 1, 0, 0, 0)
+    libc.prctl(warden.PR_SET_DUMPABLE, 0, 0, 0, 0)
+    starter = apart.Starter.of_environment()
+    # The nodes cannot write to its own files.
+    del os.environ["TMPDIR"]
+    os.environ["HOME"] = os.environ["ROS_HOME"] = os.environ["ROS_LOG_DIR"] = tempfile.mkdtemp()
     with Observer() as observer:
-        result = {"launch": run_launch, "direct": run_direct}[plan["kind"]](plan, observer)
-    with open(result_file + ".new", "w") as file:
-        json.dump(result, file, default=str)
-    os.rename(result_file + ".new", result_file)
-    sys.stdout.flush()
+        run = {"launch": run_launch, "direct": run_direct}[plan["kind"]]
+        result = run(plan, observer, starter)
+    with answer:
+        json.dump(result, answer, default=str)
     # rospy's threads, and connections to what was killed, are no reason to wait.
     os._exit(0)
 

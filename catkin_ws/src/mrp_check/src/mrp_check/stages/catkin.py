@@ -12,7 +12,7 @@ import shlex
 import shutil
 import typing
 
-from mrp_check import confine
+from mrp_check import confine, written
 from mrp_check.finding import CannotCheck
 from mrp_check.stages import cmake
 
@@ -21,6 +21,7 @@ NOETIC = pathlib.Path("/opt/ros/noetic/setup.bash")
 
 # program -> the Debian package that has it
 TOOLS = {
+    "bwrap": "bubblewrap",
     "catkin_make": "catkin",
     "cmake": "cmake",
     "g++": "g++",
@@ -49,6 +50,13 @@ def search_path():
     return "/usr/bin:/bin:/usr/sbin:/sbin" + (":/opt/ros/noetic/bin" if NOETIC.exists() else "")
 
 
+def sourced(command):
+    """Return a command that runs with this machine's own ROS."""
+    if not NOETIC.exists():
+        return list(command)
+    return ["bash", "-c", 'source "$0" && exec "$@"', str(NOETIC), *command]
+
+
 class Catkin:
     """catkin_make in the scratch workspace of a check. Everything runs confined, and only once."""
 
@@ -70,14 +78,13 @@ class Catkin:
             os.makedirs(cache, exist_ok=True)  # within the confinement it could not be made
         env = confine.environment(self.folder, **variables)
         return confine.run(
-            self._sourced(command), self.folder, limits, env, writable=[cache] if cache else []
+            sourced(command),
+            self.folder,
+            limits,
+            env,
+            readable=[self.workspace.given],
+            writable=[cache] if cache else [],
         )
-
-    @staticmethod
-    def _sourced(command):
-        if not NOETIC.exists():
-            return list(command)
-        return ["bash", "-c", 'source "$0" && exec "$@"', str(NOETIC), *command]
 
     def _catkin_make(self, *arguments):
         trace = self.folder / "trace.json"
@@ -168,7 +175,7 @@ class Catkin:
         """Return source (path within the copy) -> arguments of its compiler."""
         path = self.folder / "build" / "compile_commands.json"
         try:
-            entries = json.loads(path.read_text())
+            entries = json.loads(written.read(path))
         except (OSError, ValueError):
             return {}
         return {

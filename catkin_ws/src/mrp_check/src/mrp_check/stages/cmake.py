@@ -14,6 +14,8 @@ import pathlib
 import re
 import typing
 
+from mrp_check import written
+
 
 class Call(typing.NamedTuple):
     command: str  # in lower case
@@ -49,7 +51,7 @@ def traced(trace, package_folder):
     """Return the Calls in a file that CMake's --trace-format=json-v1 made, of the package alone."""
     calls = []
     try:
-        text = pathlib.Path(trace).read_text(encoding="utf-8", errors="replace")
+        text = written.read(trace).decode("utf-8", "replace")
     except OSError:
         return calls
     for line in text.splitlines():
@@ -182,7 +184,7 @@ class Model:
         """Return the calls that CMake did not come to."""
         path = self.folder / "CMakeLists.txt"
         try:
-            text = path.read_text(encoding="utf-8", errors="replace")
+            text = written.read(path).decode("utf-8", "replace")
         except OSError:
             return []
         reached = max((c.line for c in self.calls if c.file == "CMakeLists.txt"), default=0)

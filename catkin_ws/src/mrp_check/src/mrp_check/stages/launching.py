@@ -11,7 +11,6 @@ import xml.parsers.expat
 from mrp_check import confine
 from mrp_check.finding import CannotCheck
 
-_DUMP = pathlib.Path(__file__).resolve().with_name("launch_dump.py")
 SECONDS = 180  # that loading a launch file may take
 
 
@@ -85,7 +84,7 @@ def load(package, workspace, file, *arguments):
     copy = workspace.package_folder
     done = workspace.catkin.run(
         "/usr/bin/python3",
-        str(_DUMP),
+        str(confine.code() / "stages" / "launch_dump.py"),
         str(copy / file),
         *arguments,
         time=SECONDS,

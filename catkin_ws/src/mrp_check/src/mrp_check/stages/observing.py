@@ -14,10 +14,11 @@ import os
 import pathlib
 import shlex
 import signal
+import tempfile
 import threading
 import xml.sax.saxutils
 
-from mrp_check import confine
+from mrp_check import confine, messages
 from mrp_check import spec as specs
 from mrp_check.finding import CannotCheck
 from mrp_check.stages import catkin, launching
@@ -27,14 +28,14 @@ BURST = tuple(range(21, 29))  # what each subscriber is sent at once: fewer than
 PACED = (2, 3, 33, 34)  # and then one by one, small ones too
 DEFAULT_PERIOD = 0.5  # seconds, where the contract names none
 SPARE_SECONDS = 60  # that one run may take besides
+MOST_SEEN = 64 * 2**20  # bytes of a run's result
 WRAP = "wrap:"  # before the name of a Python publisher that runs near the end of its numbers
 
 _PACKAGE = pathlib.Path(__file__).resolve().parents[1]
-# Runs the rest of its arguments with the workspace sourced, as far as there is one.
+# Prints the environment that these files make, as far as there are any.
 _SOURCED = (
-    'for file in "$1" "$2"; do [ ! -f "$file" ] || source "$file" -- || true; done; shift 2; '
-    'export PYTHONPATH="$MRP_CHECK_PATH:$PYTHONPATH"; '
-    'export ROS_PACKAGE_PATH="${ROS_PACKAGE_PATH:-$MRP_CHECK_PACKAGES}"; exec "$@"'
+    'for file in "$@"; do [ ! -f "$file" ] || source "$file" -- || true; done; '
+    "printf '\\0'; exec env -0"
 )
 
 
@@ -84,6 +85,8 @@ class _Run:
             self.result.problems.append("none of the nodes has an executable to be run")
             return self.result
         self.workspace.progress("running the nodes")
+        self.folders = {kind: self.node_folder() for kind in ("launch", "direct")}
+        self.environment = self.read_environment()
         plans = {"launch": self.launch_plan(), "direct": self.direct_plan()}
         threads = [threading.Thread(target=self.run_session, args=pair) for pair in plans.items()]
         for thread in threads:
@@ -114,7 +117,7 @@ class _Run:
 
     def read_moved(self, file):
         """Return what roslaunch makes of the launch file inside another group."""
-        path = self.workspace.folder / "moved.launch"
+        path = self.workspace.given / "moved.launch"
         included = xml.sax.saxutils.quoteattr(str(self.workspace.package_folder / file))
         path.write_text(
             f'<launch><group ns="check_moved"><include file={included}/></group></launch>\n'
@@ -203,7 +206,7 @@ class _Run:
         group = self.spec.launch.group
         if group:
             lines = [f'  <group ns="{group}">', *lines, "  </group>"]
-        path = self.workspace.folder / "of_spec.launch"
+        path = self.workspace.given / "of_spec.launch"
         path.write_text("\n".join(["<launch>", *lines, "</launch>", ""]))
         return path
 
@@ -244,10 +247,10 @@ class _Run:
             arguments += [f"{source}:={target}" for source, target in started.remaps]
             env = {k: v for k, v in started.env}
         if is_python(path):
-            events = self.workspace.folder / f"events_{namespace[1:]}"
+            events = self.folders["direct"] / f"events_{namespace[1:]}"
             env.update(
                 MRP_CHECK_HOOK=str(events),
-                MRP_CHECK_HOOK_PATH=str(_PACKAGE / "hook"),
+                MRP_CHECK_HOOK_PATH=str(confine.code() / "hook"),
                 MRP_CHECK_SOURCES=str(self.workspace.package_folder),
             )
         field = node.subscribing.field if node.subscribing else None
@@ -272,39 +275,55 @@ class _Run:
 
     # --- Running
 
+    def node_folder(self):
+        """Make a folder that the nodes of one run may write to."""
+        return pathlib.Path(tempfile.mkdtemp(prefix="nodes_", dir=self.workspace.folder))
+
+    def read_environment(self):
+        """Return the environment that the workspace's setup.bash makes, as far as there is one."""
+        setups = [catkin.NOETIC, self.workspace.folder / "devel" / "setup.bash"]
+        done = self.workspace.catkin.run("bash", "-c", _SOURCED, "bash", *setups)
+        pairs = (entry.split("=", 1) for entry in done.output.split("\0") if "=" in entry)
+        packages = launching.package_path(self.workspace)
+        env = {"ROS_PACKAGE_PATH": packages, "PYTHONPATH": "", **dict(pairs)}
+        # Each line at once, also into a pipe. Whether the launch file does so is another question.
+        return {**env, "ROSCONSOLE_STDOUT_LINE_BUFFERED": "1", "PYTHONUNBUFFERED": "1"}
+
+    def message_folders(self):
+        files = self.package.of_kind("message")
+        return sorted({(self.package.root / file).parent for file in files})
+
     def run_session(self, kind, plan):
-        folder = self.workspace.folder
-        scratch = folder / f"session_{kind}"
-        scratch.mkdir()
-        result_file = scratch / "result.json"
-        plan_file = scratch / "plan.json"
-        plan_file.write_text(json.dumps(plan))
-        env = confine.environment(
-            scratch,
-            MRP_CHECK_PATH=str(_PACKAGE.parent),
-            MRP_CHECK_PACKAGES=launching.package_path(self.workspace),
-            PATH=catkin.search_path(),
+        folder = self.folders[kind]
+        plan = {
+            **plan,
+            "environment": {**self.environment, **confine.folders(folder)},
+            "writable": [str(folder)],
+            "messages": messages.definitions(self.package.name, self.message_folders()),
+        }
+        command = ["/usr/bin/python3", "-m", "mrp_check.session", json.dumps(plan)]
+        limits = confine.Limits(
+            time=plan["most"] + plan["stop_seconds"] + SPARE_SECONDS, output=MOST_SEEN
         )
-        command = ["/usr/bin/python3", "-m", "mrp_check.session", plan_file, result_file]
-        setups = [catkin.NOETIC, folder / "devel" / "setup.bash"]
-        limits = confine.Limits(time=plan["most"] + plan["stop_seconds"] + SPARE_SECONDS)
         try:
             done = confine.run(
-                ["bash", "-c", _SOURCED, "bash", *setups, *command],
-                folder,
+                catkin.sourced(command),
+                self.workspace.folder,
                 limits=limits,
-                env=env,
-                cwd=scratch / "home",
+                env=confine.environment(
+                    folder, PYTHONPATH=str(_PACKAGE.parent), PATH=catkin.search_path()
+                ),
+                readable=[self.workspace.given],
+                observes=True,
             )
         except confine.ConfineError as error:
             self.result.problems.append(f"{error}")
             return
         if done.ended_by == "time":
             self.too_busy = True
-            return
-        try:
-            setattr(self.result, kind, json.loads(result_file.read_text()))
-        except (OSError, ValueError):
+        elif done.code == 0:
+            setattr(self.result, kind, json.loads(done.output))
+        else:
             said = (done.errors.strip().splitlines() or [f"it ended with {done.code}"])[-1]
             why = done.limit_text(limits) or said
             if why is said and "Traceback" in done.errors:

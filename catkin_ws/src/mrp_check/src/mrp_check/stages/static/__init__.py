@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import json
 import os
-import pathlib
 
 from mrp_check import confine
 from mrp_check.finding import WARNING, CannotCheck
@@ -20,8 +19,6 @@ from mrp_check.stages.static import (
     roles,
 )
 from mrp_check.stages.static import facts as facts_
-
-_CPP_FACTS = pathlib.Path(__file__).resolve().with_name("cpp_facts.py")
 
 
 def read(case):
@@ -168,7 +165,8 @@ def _read_cpp(package, workspace, unit):
     """Return (file, what cpp_facts.py says of it or None)."""
     headers = str(workspace.headers.result())
     task = {"folder": str(workspace.package_folder), "headers": headers, "units": [unit]}
-    done = workspace.catkin.run("/usr/bin/python3", str(_CPP_FACTS), json.dumps(task))
+    reader = confine.code() / "stages" / "static" / "cpp_facts.py"
+    done = workspace.catkin.run("/usr/bin/python3", str(reader), json.dumps(task))
     file = os.path.relpath(unit[0], workspace.package_folder)
     try:
         return file, json.loads(done.output)[unit[0]]

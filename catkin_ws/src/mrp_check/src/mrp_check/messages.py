@@ -1,0 +1,68 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Classes of messages, made from their definitions: nothing of a package is imported for them."""
+
+import pathlib
+import re
+
+import genmsg
+import genmsg.gentools
+import genpy.dynamic
+import roslib.message
+
+# In which ROS's packages lie, here and on Noetic.
+_SHARES = ("/usr/share", "/opt/ros/noetic/share")
+
+_TYPE = r"[A-Za-z]\w*/[A-Za-z]\w*"
+# The lines of a definition that say what is sent. genpy makes Python of a definition: a constant
+# could be more than that.
+_FIELD = re.compile(r"\s*([A-Za-z]\w*(?:/[A-Za-z]\w*)?(?:\[\d*\])?)\s+([A-Za-z]\w*)\s*(?:#.*)?")
+_BETWEEN = re.compile(rf"={{80}}|MSG: {_TYPE}")
+
+
+def definitions(package, folders):
+    """Return type -> [md5sum, definition] of the messages that a package defines.
+
+    folders: those with its .msg files. What cannot be read is left out: the build reports it.
+    """
+    of_ros = (path for share in _SHARES for path in pathlib.Path(share).glob("*/msg"))
+    search = {path.parent.name: [str(path)] for path in of_ros}
+    search[package] = [str(folder) for folder in folders]
+    found = {}
+    for path in (path for folder in folders for path in sorted(folder.glob("*.msg"))):
+        context = genmsg.MsgContext.create_default()
+        type_ = f"{package}/{path.stem}"
+        try:
+            spec = genmsg.load_msg_by_type(context, type_, search)
+            genmsg.load_depends(context, spec, search)
+            text = genmsg.gentools.compute_full_text(context, spec)
+            found[type_] = [genmsg.gentools.compute_md5(context, spec), text]
+        except (genmsg.InvalidMsgSpec, genmsg.MsgNotFound, OSError, ValueError):
+            continue
+    return found
+
+
+def of_definition(type_, text):
+    """Return the class of a type, with which messages can be read. Raises ValueError."""
+    if not re.fullmatch(_TYPE, type_):
+        raise ValueError(f"expected a type such as std_msgs/UInt32; found {type_!r}")
+    lines = []
+    for line in text.splitlines():
+        field = _FIELD.fullmatch(line)
+        if field:
+            lines.append(" ".join(field.groups()))
+        elif _BETWEEN.fullmatch(line):
+            lines.append(line)
+    return genpy.dynamic.generate_dynamic(type_, "\n".join(lines))[type_]
+
+
+def of_type(type_, own):
+    """Return the class of a type, with which messages can be sent; None if there is no such type.
+
+    own: the definitions() of the package under check
+    """
+    if type_ not in own:
+        return roslib.message.get_message_class(type_)
+    md5sum, text = own[type_]
+    made = of_definition(type_, text)
+    made._md5sum = md5sum
+    return made
