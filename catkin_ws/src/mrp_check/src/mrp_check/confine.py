@@ -224,7 +224,9 @@ def run(
         binds = [("--bind", tmp, "/tmp")]
         for option, paths in (("--ro-bind", [_HERE, *readable]), ("--bind", [scratch, *writable])):
             binds += [(option, path, path) for path in map(os.path.realpath, paths)]
-        return _run_warden(_bubblewrap(binds) if namespaces else [], task, limits, mark)
+        if namespaces:
+            return _run_warden(_bubblewrap(binds), task, limits, mark=None)
+        return _run_warden([], task, limits, mark=mark if task["user"] is None else None)
 
 
 @functools.lru_cache(maxsize=None)
@@ -392,9 +394,9 @@ def _end(warden):
 def _kill_marked(mark):
     """Kill what bears a run's mark: after its watcher was killed, the only thing to know it by.
 
-    Only where they run as the same user could they have killed the watcher.
+    mark: None where they could not have killed it
     """
-    while isolation() is Isolation.NONE:
+    while mark:
         found = [process for process in psutil.process_iter() if _has_mark(process, mark)]
         for process in found:
             with contextlib.suppress(psutil.Error):
