@@ -5,7 +5,7 @@ check/correct/STYLE/   a correct package. Its file STYLE says what is different 
                        package it is based ("nothing", or one whose other files it shares), which of
                        those it leaves out, which get the line ends of Windows (CRLF), which spec
                        it follows if not pub_sub.yaml, and for which requirement a warning is right.
-check/broken/*.patch   one defect each, in a correct package. The first lines say in which, what it
+../defects/*.patch     one defect each, in a correct package. The first lines say in which, what it
                        breaks, and which finding must say so: its id, its file and what is in its
                        line, and what its text says. Where several of them are right, the ids are a
                        regular expression, and "In" is said more than once.
@@ -16,8 +16,7 @@ check/broken/*.patch   one defect each, in a correct package. The first lines sa
     In: src/publisher_py_node.py: def timer_callback
     Tells: colon
 
-broken/*.patch         the variants that the tutorial's own tests must catch: those that break the
-                       contract for the checker, too, have the last three lines as well.
+Those that only the tutorial's own tests must catch (test_broken.py) do not have the last three lines.
 Missed: WHY            is the line of a defect that the checker is known not to find.
 """
 
@@ -41,13 +40,8 @@ def head(path):
     return fields
 
 
-def _patches():
-    own = (HERE / "check" / "broken").glob("*.patch")
-    of_the_tests = (path for path in (HERE / "broken").glob("*.patch") if "Finds" in head(path))
-    return sorted([*own, *of_the_tests])
-
-
-PATCHES = _patches()
+ALL = sorted((HERE.parent / "defects").glob("*.patch"))
+PATCHES = [path for path in ALL if "Finds" in head(path)]
 
 
 def fields_of(style):

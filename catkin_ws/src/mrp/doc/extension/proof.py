@@ -61,8 +61,9 @@ def all_tests():
         for path in folder.glob("test_*.py"):
             files[path] = f"{prefix}/{path.stem}"
     tests = {f"{files[path]}/{case}": path for path in files for case in test_cases(path)}
-    for path in (WORKSPACE / "tests" / "broken").glob("*.patch"):
-        tests["broken/" + path.stem] = path
+    for path in (WORKSPACE / "defects").glob("*.patch"):
+        if re.search(rb"^Fails: ", path.read_bytes(), re.MULTILINE):
+            tests["broken/" + path.stem] = path
     return dict(sorted(tests.items()))
 
 
