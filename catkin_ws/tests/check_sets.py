@@ -5,20 +5,8 @@ check/correct/STYLE/   a correct package. Its file STYLE says what is different 
                        package it is based ("nothing", or one whose other files it shares), which of
                        those it leaves out, which get the line ends of Windows (CRLF), which spec
                        it follows if not pub_sub.yaml, and for which requirement a warning is right.
-check/broken/*.patch   one defect each, in a correct package. The first lines say in which, what it
-                       breaks, and which finding must say so: its id, its file and what is in its
-                       line, and what its text says. Where several of them are right, the ids are a
-                       regular expression, and "In" is said more than once.
-
-    Base: mrp
-    Breaks: a def line without its colon
-    Finds: python-syntax
-    In: src/publisher_py_node.py: def timer_callback
-    Tells: colon
-
-broken/*.patch         the variants that the tutorial's own tests must catch: those that break the
-                       contract for the checker, too, have the last three lines as well.
-Missed: WHY            is the line of a defect that the checker is known not to find.
+../defects/*.patch     one defect each, in a correct package; mrp_check's defects.py explains the
+                       heads. DEFECTS are those that the checker must find.
 """
 
 import pathlib
@@ -26,33 +14,20 @@ import re
 import shutil
 import subprocess
 
+from mrp_check import defects
+
 HERE = pathlib.Path(__file__).parent
 TUTORIAL = HERE.parent / "src" / "mrp"
 CORRECT = HERE / "check" / "correct"
 STYLES = ["mrp", *sorted(path.parent.name for path in CORRECT.glob("*/STYLE"))]
-
-
-def head(path):
-    """Return name -> list of values, of the lines "Name: value" a file begins with."""
-    fields = {}
-    for line in path.read_bytes().split(b"\n\n")[0].decode().splitlines():
-        name, value = line.split(": ", 1)
-        fields.setdefault(name, []).append(value)
-    return fields
-
-
-def _patches():
-    own = (HERE / "check" / "broken").glob("*.patch")
-    of_the_tests = (path for path in (HERE / "broken").glob("*.patch") if "Finds" in head(path))
-    return sorted([*own, *of_the_tests])
-
-
-PATCHES = _patches()
+DEFECTS = [defect for defect in defects.read_all() if defect.finds]
 
 
 def fields_of(style):
     """Return name -> list of values, of what the file STYLE says."""
-    return {} if style == "mrp" else head(CORRECT / style / "STYLE")
+    if style == "mrp":
+        return {}
+    return defects.fields((CORRECT / style / "STYLE").read_text(), style)
 
 
 def spec_of(style):
@@ -78,24 +53,23 @@ def lay_out(style, folder):
         (folder / path).write_bytes((folder / path).read_bytes().replace(b"\n", b"\r\n"))
 
 
-def break_(folder, patch):
-    """Inject a patch's defect into the package at `folder`."""
-    command = ["patch", "-p1", "--fuzz=0", "--binary", "--silent", f"--input={patch}"]
-    subprocess.run(command, cwd=folder, check=True)
+def break_(folder, defect, *options):
+    """Inject a defect into the package at `folder`."""
+    command = ["patch", "-p1", "--fuzz=0", "--binary", "--silent", f"--input={defect.path}"]
+    subprocess.run([*command, *options], cwd=folder, check=True)
 
 
-def is_told(finding, fields, folder):
+def is_found(finding, defect, folder):
     """Say whether a finding of a report tells of the defect: the right id, place and words.
 
-    fields: of the patch's head
     folder: the broken package
     """
-    if not re.fullmatch(fields["Finds"][0], finding["id"]):
+    if not re.fullmatch(defect.finds, finding["id"]):
         return False
     text = "\n".join(finding[key] or "" for key in ("message", "expected", "seen", "fix"))
-    if not re.search(fields["Tells"][0], text):
+    if not re.search(defect.tells, text):
         return False
-    return any(_is_at(finding, *place.split(": ", 1), folder) for place in fields["In"])
+    return any(_is_at(finding, file, pattern, folder) for file, pattern in defect.places)
 
 
 def _is_at(finding, file, pattern, folder):

@@ -2,21 +2,33 @@
 """What the original page prints, as a package, and what mends it so far that its nodes start."""
 
 import pathlib
-import subprocess
 
-ERRATA = pathlib.Path(__file__).parent / "errata"
-ORIGINAL = ERRATA / "original"
+ORIGINAL = pathlib.Path(__file__).parent / "errata" / "original"
 PACKAGE = "my_robotics_pkg"
 
-# The mends without which its nodes do not start.
-STARTS = ("e01_global", "e03_parenthesis", "e12_interpreter")
+# What is wrong in its code (E) and in its text (P), as the page "Errata" counts it.
+NUMBERS = [*(f"E{n}" for n in range(1, 22)), *(f"P{n}" for n in range(1, 21))]
+
+# What keeps its nodes from starting, as (file, what it says, what it should say).
+MENDS = {
+    "e01_global": [
+        ("src/publisher_py_node.py", "global this_nodes_namespace", "this_nodes_namespace"),
+        ("src/subscriber_py_node.py", "global this_nodes_namespace", "this_nodes_namespace"),
+    ],
+    "e03_parenthesis": [("src/subscriber_py_node.py", "str(this_data)", "str(this_data))")],
+    "e12_interpreter": [
+        ("src/publisher_py_node.py", "/usr/bin/env python", "/usr/bin/python3"),
+        ("src/subscriber_py_node.py", "/usr/bin/env python", "/usr/bin/python3"),
+    ],
+}
+STARTS = tuple(MENDS)
 
 
 def mend(package, *names):
-    """Apply patches of errata/mends to a copy of the original."""
+    """Make some of MENDS in a copy of the original."""
     for name in names:
-        command = ["patch", "-p1", "--fuzz=0", f"--input={ERRATA / 'mends' / name}.patch"]
-        subprocess.run(command, cwd=package, check=True)
+        for file, old, new in MENDS[name]:
+            replace(package / file, old, new)
 
 
 def replace(path, old, new):

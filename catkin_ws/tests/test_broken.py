@@ -1,15 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The tests of the tests: each broken variant of the package must fail, for the right reason.
 
-A variant is a patch in broken/. Its first lines say what it breaks, and which test case of which
-rostest says what (a regular expression) about it:
-
-    Breaks: ...
-    Fails: stop.test test_sigint_publisher_cpp
-    Says: ...
+A variant is a patch in catkin_ws/defects/. Its lines Fails and Says name the test case of a
+rostest, and what it says about the variant.
 """
 
-import pathlib
 import re
 import shutil
 import subprocess
@@ -18,18 +13,12 @@ import xml.etree.ElementTree as ElementTree
 import compiler_cache
 import pytest
 import scratch
+from mrp_check import defects
 
 pytestmark = pytest.mark.slow
 
-PATCHES = sorted((pathlib.Path(__file__).parent / "broken").glob("*.patch"))
+VARIANTS = [defect for defect in defects.read_all() if defect.fails]
 DEADLINE = "10"  # seconds that a test waits for what a broken variant never does
-
-
-def head(patch, field):
-    """Return the text of a field in a patch's first lines."""
-    found = re.search("^" + field + ": (.+)$", patch.read_text(), re.MULTILINE)
-    assert found, f"{patch.name} has no line '{field}: ...'"
-    return found.group(1)
 
 
 def run_rostest(folder, name):
@@ -88,22 +77,22 @@ def rebuild(workspace, rostest):
     assert done.returncode == 0, done.stdout
 
 
-@pytest.mark.parametrize("patch", PATCHES, ids=lambda patch: patch.stem)
-def test_broken_variant_fails(patch, workspace):
+@pytest.mark.parametrize("variant", VARIANTS, ids=lambda variant: variant.name)
+def test_broken_variant_fails(variant, workspace):
     def run_patch(*options):
-        command = ["patch", "-p1", "--fuzz=0", "--input=" + str(patch), *options]
+        command = ["patch", "-p1", "--fuzz=0", f"--input={variant.path}", *options]
         subprocess.run(command, cwd=workspace / "src" / "mrp", check=True)
 
     run_patch()
     try:
-        rostest, case = head(patch, "Fails").split()
+        rostest, case = variant.fails
         rebuild(workspace, rostest)
         failures = run_rostest(workspace, rostest)
     finally:
         run_patch("--reverse")
     assert case in failures, f"failed: {failures}"
-    assert re.search(head(patch, "Says"), failures[case]), failures[case]
+    assert re.search(variant.says, failures[case]), failures[case]
 
 
 def test_there_are_broken_variants():
-    assert PATCHES
+    assert VARIANTS

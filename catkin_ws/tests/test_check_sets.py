@@ -14,6 +14,7 @@ import check_sets
 import compiler_cache
 import pytest
 import scratch
+from mrp_check import defects
 
 pytestmark = pytest.mark.sets
 
@@ -29,7 +30,7 @@ def parameters(values, name):
 
 
 CHECK = check_sets.HERE.parent / "src" / "mrp_check"
-EXERCISES = sorted(CHECK.glob("exercises/*/solution.patch"))
+EXERCISES = defects.exercises()
 
 
 @pytest.fixture
@@ -94,51 +95,52 @@ def test_correct_package_is_met(style, tmp_path, run_check):
 
 
 @pytest.mark.parametrize(
-    "patch",
-    parameters(check_sets.PATCHES, lambda patch: patch.stem),
-    ids=lambda patch: patch.stem,
+    "defect",
+    parameters([one for one in check_sets.DEFECTS if not one.order], lambda one: one.name),
+    ids=lambda one: one.name,
 )
-def test_defect_is_found(patch, tmp_path, run_check):
-    fields = check_sets.head(patch)
-    style = fields.get("Base", ["mrp"])[0]
+def test_defect_is_found(defect, tmp_path, run_check):
     folder = tmp_path / "package"
-    check_sets.lay_out(style, folder)
-    check_sets.break_(folder, patch)
-    report = run_check(folder, check_sets.spec_of(style))
-    assert_one_defect(report["findings"], fields, folder)
-    for finding in report["findings"]:
+    check_sets.lay_out(defect.base, folder)
+    check_sets.break_(folder, defect)
+    report = run_check(folder, check_sets.spec_of(defect.base))
+    assert_one_defect(report["findings"], defect, folder)
+    assert_fixes_fit(report["findings"], folder)
+
+
+def assert_fixes_fit(findings, folder):
+    """Raise AssertionError unless each diff that a finding proposes can be applied."""
+    for finding in findings:
         if "\n--- a/" in finding["fix"]:
             text = finding["fix"].partition("\n")[2] + "\n"
             patch = ["patch", "-p1", "--fuzz=0", "--dry-run"]
             subprocess.run(patch, cwd=folder, input=text, text=True, check=True)
 
 
-def assert_one_defect(findings, fields, folder, severities=("error",)):
+def assert_one_defect(findings, defect, folder, severities=("error",)):
     """Raise AssertionError unless the defect is found, and nothing that does not follow from it."""
     causes = [
         one for one in findings if one["severity"] in severities and not one["consequence_of"]
     ]
-    told = [one for one in causes if check_sets.is_told(one, fields, folder)]
-    if "Missed" in fields:
+    told = [one for one in causes if check_sets.is_found(one, defect, folder)]
+    if defect.missed:
         assert not told, "it is found: take its line Missed away"
         return
-    assert told, f"expected: {fields}\nfound:\n{shown(findings)}"
+    assert told, f"expected: {defect}\nfound:\n{shown(findings)}"
     others = [one for one in causes if one not in told]
     assert not others, f"besides the defect:\n{shown(others)}"
 
 
-@pytest.mark.parametrize("solution", EXERCISES, ids=lambda path: path.parent.name)
-def test_exercise_fails_for_its_own_reason_and_its_solution_passes(solution, tmp_path, run_check):
+@pytest.mark.parametrize("exercise", EXERCISES, ids=lambda one: one.name)
+def test_exercise_fails_for_its_own_reason_and_its_solution_passes(exercise, tmp_path, run_check):
     folder = tmp_path / "package"
     check_sets.lay_out("mrp", folder)
-    subprocess.run(
-        ["patch", "-p1", "--fuzz=0", "--reverse", f"--input={solution}"], cwd=folder, check=True
-    )
+    check_sets.break_(folder, exercise)
     report = run_check(folder, "pub_sub.yaml")
-    fields = check_sets.head(solution)
-    assert_one_defect(report["findings"], fields, folder, severities=("error", "warning"))
+    assert_one_defect(report["findings"], exercise, folder, severities=("error", "warning"))
+    assert_fixes_fit(report["findings"], folder)
     # The solution makes the tutorial's package of it, which is met: see "mrp" above.
-    check_sets.break_(folder, solution)
+    check_sets.break_(folder, exercise, "--reverse")
     check_sets.lay_out("mrp", tmp_path / "tutorial")
     assert contents(folder) == contents(tmp_path / "tutorial")
 

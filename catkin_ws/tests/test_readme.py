@@ -94,7 +94,7 @@ def test_layout_names_folders_that_exist():
 
 def test_sizes_of_the_checkers_sets():
     sizes = (
-        f"checks {len(check_sets.PATCHES)} packages with one injected defect each, and "
+        f"checks {len(check_sets.DEFECTS)} packages with one injected defect each, and "
         f"{len(check_sets.STYLES)} correct packages"
     )
     assert sizes in " ".join(README.split())

@@ -4,24 +4,16 @@
 Each is named as its task is, with the erratum that it is made of.
 """
 
-import pathlib
-import re
-
-from proof import WORKSPACE, Generated
-
-FOLDER = WORKSPACE / "src" / "mrp_check" / "exercises"
+from proof import Generated, defects
 
 
 class Exercises(Generated):
     def text(self):
-        return "\n".join(self.line(path.parent) for path in sorted(FOLDER.glob("*/task.md")))
+        return "\n".join(self.line(one) for one in defects.exercises())
 
-    def line(self, folder: pathlib.Path):
-        title = (folder / "task.md").read_text().splitlines()[0].lstrip("# ")
-        patch = (folder / "solution.patch").read_text()
-        erratum = re.match(r"Mends: (\w+),", patch).group(1)
-        self.env.note_dependency(str(folder / "task.md"))
-        return f"#. **{title}**: `{erratum} <errata.html#{erratum.lower()}>`__"
+    def line(self, one):
+        self.env.note_dependency(str(one.path))
+        return f"#. **{one.title}**: `{one.erratum} <errata.html#{one.erratum.lower()}>`__"
 
 
 def setup(app):

@@ -7,7 +7,7 @@ tests. What the proof may be:
     PACKAGE/NAME/CASE     a test case of PACKAGE's NAME.test, which is run by rostest
     workspace/FILE/CASE   a test case of catkin_ws/tests/FILE.py
     docker/FILE/CASE      a test case of docker/test/FILE.py
-    broken/NAME           a variant of the tutorial that the tests must catch
+    broken/NAME           a defect of catkin_ws/defects/ that a rostest of the tutorial must find
 
 A proof that does not exist is a warning, and so an error; so is a section that has none, and shows
 nothing recorded either, unless conf.py lists its page in pages_without_claims. All that pages claim
@@ -22,6 +22,7 @@ import functools
 import json
 import pathlib
 import re
+import sys
 
 from docutils import nodes
 from docutils.statemachine import StringList
@@ -30,6 +31,9 @@ from sphinx.util.docutils import SphinxDirective, SphinxRole
 
 WORKSPACE = pathlib.Path(__file__).resolve().parents[4]
 ROOT = WORKSPACE.parent
+sys.path.insert(0, str(WORKSPACE / "src" / "mrp_check" / "src"))
+
+from mrp_check import defects  # noqa: E402
 
 logger = logging.getLogger(__name__)
 
@@ -61,8 +65,7 @@ def all_tests():
         for path in folder.glob("test_*.py"):
             files[path] = f"{prefix}/{path.stem}"
     tests = {f"{files[path]}/{case}": path for path in files for case in test_cases(path)}
-    for path in (WORKSPACE / "tests" / "broken").glob("*.patch"):
-        tests["broken/" + path.stem] = path
+    tests.update({f"broken/{one.name}": one.path for one in defects.read_all() if one.fails})
     return dict(sorted(tests.items()))
 
 

@@ -1,21 +1,21 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The exercises: broken packages to be mended, one after the other. `make exercise` calls this.
 
-Each folder of exercises/ has task.md, hint.md, and solution.patch, which makes the tutorial's
-package of the exercise's. So the exercise's package is the tutorial's with that patch taken back,
-and stands nowhere twice. The student edits a copy of it.
+An exercise is a defect with a task (defects.py): the tutorial's package with its patch. The student
+edits a copy of it. Reversed, the patch is the solution.
 """
 
 from __future__ import annotations
 
 import argparse
 import pathlib
+import re
 import shutil
 import subprocess
 import sys
 import typing
 
-from mrp_check import check, resources, spec
+from mrp_check import check, defects, spec
 from mrp_check.finding import NOTE
 from mrp_check.package import PackageError
 from mrp_check.report import console
@@ -28,43 +28,32 @@ class ExerciseError(Exception):
 
 
 class Exercise(typing.NamedTuple):
-    """One exercise, of a folder of exercises/."""
+    """One exercise, made of a defect."""
 
-    folder: pathlib.Path
+    defect: defects.Defect
 
     @property
     def name(self):
-        return self.folder.name
-
-    @property
-    def task(self):
-        return (self.folder / "task.md").read_text()
-
-    @property
-    def hint(self):
-        return (self.folder / "hint.md").read_text()
-
-    @property
-    def solution(self):
-        """The path of the patch."""
-        return self.folder / "solution.patch"
+        """The number and the title: the defect's own name would say too much."""
+        words = re.findall(r"[a-z0-9]+", self.defect.title.lower())
+        return "_".join([f"{self.defect.order:02}", *words])
 
     def lay_out(self, folder):
         """Make the broken package at `folder`, with the task beside it in TASK.md."""
-        tutorial = resources.folder("exercises").parent.parent / "mrp"
+        tutorial = self.defect.path.parent.parent / "src" / "mrp"
         if not (tutorial / "src").is_dir():
             raise ExerciseError(
                 f"The exercises are made of the tutorial's sources, and {tutorial} is not there: "
                 "call `make exercise` in a clone of the repository."
             )
         shutil.copytree(tutorial, folder, ignore=shutil.ignore_patterns("doc", "__pycache__"))
-        patch(folder, self.solution, "--reverse")
-        (folder / "TASK.md").write_text(self.task)
+        patch(folder, self.defect.path)
+        (folder / "TASK.md").write_text(f"{self.defect.task}\n")
 
 
-def patch(folder, file, *options):
+def patch(folder, file):
     """Apply a patch to a package. Raises ExerciseError if that cannot be done."""
-    command = ["patch", "-p1", "--fuzz=0", "--silent", f"--input={file}", *options]
+    command = ["patch", "-p1", "--fuzz=0", "--silent", f"--input={file}"]
     try:
         done = subprocess.run(
             command, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
@@ -77,9 +66,7 @@ def patch(folder, file, *options):
 
 def exercises():
     """Return all exercises, from the easiest on."""
-    return [
-        Exercise(path.parent) for path in sorted(resources.folder("exercises").glob("*/task.md"))
-    ]
+    return [Exercise(defect) for defect in defects.exercises()]
 
 
 class Progress:
@@ -114,7 +101,7 @@ def lines_of(findings):
 
 def show_task(exercise, place, number, count):
     """Print what is to be done, and where."""
-    print(f"Exercise {number} of {count}\n\n{exercise.task}")
+    print(f"Exercise {number} of {count}\n\n{exercise.defect.task}\n")
     print(f"The package: {place}\nMend it, and call `make exercise` again.")
 
 
@@ -142,7 +129,7 @@ def run(folder, hint=False, reset=False):
         show_task(exercise, place, number, len(everything))
         return PASSED
     if hint:
-        print(exercise.hint, end="")
+        print(exercise.defect.hint)
         return PASSED
 
     shown = console.Progress(sys.stderr)
@@ -170,7 +157,7 @@ def main(arguments=None):
     options = parser.parse_args(arguments)
     try:
         sys.exit(run(options.folder, options.hint, options.reset))
-    except (ExerciseError, check.CannotCheck, PackageError) as error:
+    except (ExerciseError, defects.DefectError, check.CannotCheck, PackageError) as error:
         print(f"exercise: {error}", file=sys.stderr)
         sys.exit(UNCHECKED)
     except KeyboardInterrupt:

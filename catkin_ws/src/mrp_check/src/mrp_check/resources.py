@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The package's own files that are no Python code: specs and schemas."""
+"""The files beside the Python code: specs, schemas, and the workspace's defects."""
 
 import pathlib
 
@@ -7,7 +7,7 @@ _HERE = pathlib.Path(__file__).resolve().parent
 
 
 def folder(name):
-    """Return the package's folder `name`, in the source tree or where it is installed."""
+    """Return the folder `name` of the package or of its workspace, or where it is installed."""
     installed = _HERE.parents[3] / "share" / "mrp_check" / name
-    in_sources = _HERE.parents[1] / name
-    return in_sources if in_sources.is_dir() else installed
+    in_sources = (_HERE.parents[1] / name, _HERE.parents[3] / name)
+    return next((folder for folder in in_sources if folder.is_dir()), installed)
