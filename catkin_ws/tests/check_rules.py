@@ -3,10 +3,12 @@
 
 import pathlib
 
-from mrp_check import case, spec
-from mrp_check.package import Package
-from mrp_check.stages import cmake, uses
-from mrp_check.stages.static import facts, python_facts, python_read, python_rules
+from mrp_check import case
+from mrp_check.contract import spec
+from mrp_check.rules import python_rules
+from mrp_check.sources import facts, python_facts, python_read, uses
+from mrp_check.student import cmake
+from mrp_check.student.package import Package
 
 MANIFEST = """<?xml version="1.0"?>
 <package format="3">

@@ -9,9 +9,10 @@ import subprocess
 import check_rules
 import pytest
 from check_rules import PUB_SUB, told
-from mrp_check.stages import static
-from mrp_check.stages.static import cpp_headers, node_rules
-from mrp_check.stages.static import facts as facts_
+from mrp_check.confined import cpp_headers
+from mrp_check.rules import node_rules
+from mrp_check.sources import facts as facts_
+from mrp_check.sources import reading
 
 # One worker of pytest builds for all of these tests.
 pytestmark = [pytest.mark.quick, pytest.mark.xdist_group("check_cpp")]
@@ -31,7 +32,7 @@ def said_of(folder, headers, standard=cpp_headers.STANDARD):
     unit = [str(folder / "src/a.cpp"), standard]
     task = {"folder": str(folder), "headers": str(headers), "units": [unit]}
     done = subprocess.run(
-        ["/usr/bin/python3", static._CPP_FACTS, json.dumps(task)],
+        ["/usr/bin/python3", reading._CPP_FACTS, json.dumps(task)],
         stdout=subprocess.PIPE,
         check=True,
     )
@@ -45,7 +46,7 @@ def findings(folder, headers, node, source):
     said = said_of(folder, headers)
     assert said["errors"] == []
     facts = facts_.Facts()
-    static._mark_unused(facts, static._take(package, facts, "src/a.cpp", said))
+    reading._mark_unused(facts, reading._take(package, facts, "src/a.cpp", said))
     facts.sources[node] = ["src/a.cpp"]
     model = check_rules.model_of(package)
     return list(node_rules.findings(package, PUB_SUB, model, None, facts))

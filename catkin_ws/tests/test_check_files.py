@@ -4,8 +4,9 @@
 import check_rules
 import pytest
 from check_rules import CMAKE, MANIFEST, PUB_SUB, told
-from mrp_check.stages import cmake, compiler, configuring
-from mrp_check.stages.files import cmake_rules, dependencies, manifest, names, scripts, text
+from mrp_check.build import compiler, configuring
+from mrp_check.rules import cmake_rules, dependencies, names, scripts, text
+from mrp_check.student import cmake, manifest
 
 pytestmark = pytest.mark.quick
 

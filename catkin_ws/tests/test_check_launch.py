@@ -6,8 +6,8 @@ import re
 import check_rules
 import pytest
 from check_rules import PUB_SUB, told
-from mrp_check.stages import launching
-from mrp_check.stages.files import launch_rules
+from mrp_check.rules import launch_rules
+from mrp_check.student import launch as launching
 
 pytestmark = pytest.mark.slow  # each test imports roslaunch anew, in a process of its own
 

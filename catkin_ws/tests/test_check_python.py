@@ -6,7 +6,7 @@ import re
 import check_rules
 import pytest
 from check_rules import told
-from mrp_check.stages.static import node_rules
+from mrp_check.rules import node_rules
 
 pytestmark = pytest.mark.quick
 

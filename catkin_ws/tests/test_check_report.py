@@ -12,14 +12,17 @@ import check_rules
 import jsonschema
 import pytest
 import scratch
-from mrp_check import causes, check, classroom, resources
+from mrp_check import causes, check
 from mrp_check.case import Case
-from mrp_check.finding import CannotCheck, Finding
+from mrp_check.cli import classroom
+from mrp_check.contract import resources
+from mrp_check.contract.errors import CannotCheck
+from mrp_check.contract.finding import Finding
+from mrp_check.contract.requirements import REQUIREMENTS, Rule
 from mrp_check.report import console, json_, junit
 from mrp_check.report import html as html_report
-from mrp_check.requirements import REQUIREMENTS, Rule
-from mrp_check.stages import files, static
-from mrp_check.stages.static.facts import Facts
+from mrp_check.rules import of_files, of_sources
+from mrp_check.sources.facts import Facts
 
 pytestmark = pytest.mark.quick
 
@@ -298,7 +301,7 @@ def test_what_failed_once_is_not_tried_again(tmp_path, monkeypatch):
     assert {*one.requirements.values()} == {check.UNCHECKED}
 
 
-STATIC = {"files": files.RULES, "static": static.RULES}
+STATIC = {"files": of_files.RULES, "static": of_sources.RULES}
 STATIC_IDS = [id_ for id_, one in REQUIREMENTS.items() if one.stage in STATIC]
 
 

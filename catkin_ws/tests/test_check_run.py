@@ -11,12 +11,15 @@ import textwrap
 
 import check_rules
 import pytest
-from mrp_check import confine, evidence, spec
-from mrp_check.finding import ERROR, NOTE, CannotCheck
-from mrp_check.package import Package
-from mrp_check.requirements import REQUIREMENTS
-from mrp_check.stages import observing, run, stop
-from mrp_check.stages.static.facts import Facts
+from mrp_check import confine
+from mrp_check.contract import spec
+from mrp_check.contract.errors import CannotCheck
+from mrp_check.contract.finding import ERROR, NOTE
+from mrp_check.contract.requirements import REQUIREMENTS
+from mrp_check.rules import of_run, stop
+from mrp_check.running import evidence, observing
+from mrp_check.sources.facts import Facts
+from mrp_check.student.package import Package
 
 pytestmark = pytest.mark.slow
 
@@ -257,7 +260,7 @@ def findings_of(folder, contract, scratch):
     """Return what the stages run and stop find, without building anything."""
     case = check_rules.case_of(Package(folder), scratch, contract, built=None, facts=Facts())
     found = []
-    for rule in (*run.RULES, *stop.RULES):
+    for rule in (*of_run.RULES, *stop.RULES):
         of_rule = list(rule.findings(case))
         assert {finding.id for finding in of_rule} <= {*rule.ids}
         found += of_rule
@@ -320,7 +323,7 @@ def test_texts_on_a_number_topic_are_found_and_no_fault_of_the_checker(tmp_path)
     launch = {"lines": [], "seen": seen, "asked": 5, "ending": "enough"}
     observed = observing.Observed(launch=launch, executables={"publisher_right": folder})
     case = observed_case(tmp_path, folder, observed)
-    found = [finding.id for rule in run.RULES for finding in rule.findings(case)]
+    found = [finding.id for rule in of_run.RULES for finding in rule.findings(case)]
     case.catkin.close()
     assert "type" in found and "values" not in found
     unseen = evidence.unseen(case, ["values", "rate", "latch", "exit", "type"])

@@ -8,8 +8,9 @@ import pytest
 
 sys.path.insert(0, str(check_sets.HERE.parent / "src" / "mrp_check" / "src"))
 
-from mrp_check import check, exercise
-from mrp_check.finding import WARNING, Finding
+from mrp_check import check
+from mrp_check.cli import exercise
+from mrp_check.contract.finding import WARNING, Finding
 
 pytestmark = pytest.mark.quick
 

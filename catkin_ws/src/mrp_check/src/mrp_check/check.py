@@ -3,54 +3,33 @@
 
 from __future__ import annotations
 
-import dataclasses
 import pathlib
 import tempfile
 import traceback
 import typing
 
-from mrp_check import causes, confine, diff, evidence
+from mrp_check import causes, confine
+from mrp_check.build.catkin import missing_tool
 from mrp_check.case import Case
-from mrp_check.finding import ERROR, CannotCheck, Finding
-from mrp_check.package import Package
-from mrp_check.requirements import REQUIREMENTS, closure
-from mrp_check.spec import Spec
-from mrp_check.stages import build, files, run, static, stop
-from mrp_check.stages.catkin import missing_tool
-
-MET, FINDINGS, UNCHECKED = "met", "findings", "unchecked"
-BROKEN = "broken"
+from mrp_check.contract.errors import CannotCheck
+from mrp_check.contract.finding import ERROR
+from mrp_check.contract.requirements import REQUIREMENTS, closure
+from mrp_check.contract.spec import Spec
+from mrp_check.contract.verdict import BROKEN, FINDINGS, MET, UNCHECKED, Report
+from mrp_check.report import diff
+from mrp_check.rules import building, of_files, of_run, of_sources, stop
+from mrp_check.running import evidence
+from mrp_check.student.package import Package
 
 RULES = {
-    "files": files.RULES,
-    "static": static.RULES,
-    "build": build.RULES,
-    "run": run.RULES,
+    "files": of_files.RULES,
+    "static": of_sources.RULES,
+    "build": building.RULES,
+    "run": of_run.RULES,
     "stop": stop.RULES,
 }
 
-
 _FOLD = 3  # findings about files outside the exercise: more are folded into one
-
-
-@dataclasses.dataclass
-class Report:
-    """What came of a check.
-
-    verdict: MET, FINDINGS or UNCHECKED
-    findings: in the order in which the stages found them
-    requirements: id -> MET, BROKEN or UNCHECKED
-    reason: why it is UNCHECKED, in one sentence
-    unseen: id -> why nobody can say whether it is met, of those that are UNCHECKED
-    """
-
-    package: str
-    spec: str
-    verdict: str
-    findings: list[Finding]
-    requirements: dict[str, str]
-    reason: str = ""
-    unseen: dict[str, str] = dataclasses.field(default_factory=dict)
 
 
 def check(

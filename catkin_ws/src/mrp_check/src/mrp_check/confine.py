@@ -36,7 +36,7 @@ import time
 import uuid
 from typing import List, Optional, Sequence
 
-_WARDEN = pathlib.Path(__file__).resolve().with_name("warden.py")
+_WARDEN = pathlib.Path(__file__).resolve().parent / "confined" / "warden.py"
 _MARK = "MRP_CHECK_RUN"  # the environment variable that marks the processes of one run
 _MEGABYTE = 2**20
 
@@ -197,7 +197,7 @@ def _needed_folders(env):
     """Return the folders that a private /tmp must not hide: programs, and this package itself."""
     names = ("PYTHONPATH", "ROS_PACKAGE_PATH", "CMAKE_PREFIX_PATH", "LD_LIBRARY_PATH")
     folders = [folder for name in names for folder in env.get(name, "").split(":") if folder]
-    return sorted({os.path.realpath(folder) for folder in [*folders, str(_WARDEN.parent)]})
+    return sorted({os.path.realpath(folder) for folder in [*folders, str(_WARDEN.parents[1])]})
 
 
 def _run_warden(task, limits, mark):

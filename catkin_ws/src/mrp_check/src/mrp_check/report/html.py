@@ -6,13 +6,13 @@ from __future__ import annotations
 import html
 import pathlib
 
-from mrp_check import check
-from mrp_check.finding import ERROR
+from mrp_check.contract.finding import ERROR
+from mrp_check.contract.requirements import REQUIREMENTS, STAGES, page_of
+from mrp_check.contract.verdict import BROKEN, FINDINGS, MET, UNCHECKED
 from mrp_check.report import console
-from mrp_check.requirements import REQUIREMENTS, STAGES, page_of
 
 _SITE = pathlib.Path(__file__).resolve().parents[5] / "build" / "docs"
-_WORDS = {check.MET: "met", check.BROKEN: "not met", check.UNCHECKED: "not checked"}
+_WORDS = {MET: "met", BROKEN: "not met", UNCHECKED: "not checked"}
 
 STYLE = """
 :root { color-scheme: light dark; --text: #1c2126; --faint: #56606a; --back: #ffffff;
@@ -79,7 +79,7 @@ def text(report):
 
 
 def _body(report):
-    classes = {check.MET: "met", check.FINDINGS: "broken", check.UNCHECKED: "unchecked"}
+    classes = {MET: "met", FINDINGS: "broken", UNCHECKED: "unchecked"}
     parts = [
         f'<p class="faint">{_escaped(report.spec)}</p>',
         f'<p class="verdict {classes[report.verdict]}">{_escaped(console.summary(report))}</p>',
