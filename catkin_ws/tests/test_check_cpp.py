@@ -8,9 +8,8 @@ import subprocess
 
 import check_rules
 import pytest
-from check_rules import PUB_SUB, told
+from check_rules import told
 from mrp_check.confined import cpp_headers
-from mrp_check.rules import node_rules
 from mrp_check.sources import facts as facts_
 from mrp_check.sources import reading
 
@@ -49,7 +48,7 @@ def findings(folder, headers, node, source):
     reading._mark_unused(facts, reading._take(package, facts, "src/a.cpp", said))
     facts.sources[node] = ["src/a.cpp"]
     model = check_rules.model_of(package)
-    return list(node_rules.findings(package, PUB_SUB, model, None, facts))
+    return check_rules.node_findings(package, model, facts)
 
 
 def replaced(node, *changes):

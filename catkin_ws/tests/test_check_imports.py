@@ -18,8 +18,8 @@ LAYERS = (
     ("sources",),
     ("build",),
     ("running",),
-    ("rules", "report"),
-    ("case", "causes"),
+    ("rules",),
+    ("report", "case", "causes"),
     ("check",),
     ("cli",),
 )

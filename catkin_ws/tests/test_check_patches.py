@@ -15,7 +15,7 @@ import pytest
 CHECK = check_sets.HERE.parent / "src" / "mrp_check"
 sys.path.insert(0, str(CHECK / "src"))
 
-from mrp_check.contract.requirements import REQUIREMENTS  # noqa: E402
+from mrp_check.rules import REQUIREMENTS  # noqa: E402
 
 pytestmark = pytest.mark.quick
 

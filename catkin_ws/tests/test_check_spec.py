@@ -7,7 +7,8 @@ import re
 import pytest
 from mrp_check.contract import resources, spec
 from mrp_check.contract.errors import SpecError
-from mrp_check.contract.requirements import REQUIREMENTS, STAGES
+from mrp_check.contract.requirements import STAGES
+from mrp_check.rules import REQUIREMENTS
 
 pytestmark = pytest.mark.quick
 
@@ -89,7 +90,7 @@ def test_wrong_spec_is_told_in_one_sentence(old, new, says, tmp_path):
     assert MINIMAL.count(old) == 1
     path.write_text(MINIMAL.replace(old, new))
     with pytest.raises(SpecError) as error:
-        spec.read(path)
+        spec.read(path, REQUIREMENTS)
     assert str(error.value).startswith(str(path))
     assert re.search(says, str(error.value)), error.value
     assert "\n" not in str(error.value)

@@ -10,10 +10,10 @@ import shutil
 from mrp_check.build.catkin import Catkin
 from mrp_check.confined import cpp_headers
 from mrp_check.contract.spec import Spec
-from mrp_check.rules import launch_rules
 from mrp_check.running import observing
 from mrp_check.running.node import Node
 from mrp_check.running.places import Places
+from mrp_check.sources import node as sources_node
 from mrp_check.sources import reading
 from mrp_check.student import launch as launching
 from mrp_check.student import manifest
@@ -58,7 +58,7 @@ class Case:
     @functools.cached_property
     def launch_file(self):
         """The path of the launch file, or None; and the Findings that say why it cannot be read."""
-        return launch_rules.readable(self.package, self.spec)
+        return launching.readable(self.package, self.spec)
 
     @functools.cached_property
     def _loading(self):
@@ -95,6 +95,11 @@ class Case:
     def facts(self):
         """What the sources say, a facts.Facts."""
         return reading.read(self)
+
+    @functools.cached_property
+    def coded(self):
+        """The nodes of the spec as their sources tell them, each a sources.node.Node."""
+        return sources_node.nodes(self.package, self.spec, self.model, self.launch, self.facts)
 
     @functools.cached_property
     def built(self):

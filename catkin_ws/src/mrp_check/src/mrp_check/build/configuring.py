@@ -185,3 +185,24 @@ def _in_words(package, text, command, model):
     if "Parse error" in text:
         return "a bracket or a quotation mark is missing, or too much.", "Mend the call there."
     return text[:300], "Compare the line with the one on the page."
+
+
+def unknown(package, step, id_):
+    """Return a Finding about a failure whose output names no place in the package."""
+    lines = [line for line in step.output.splitlines() if line.strip()]
+    errors = [line for line in lines if "error" in line.lower()]
+    what = "CMake" if id_ == "configure" else "catkin_make"
+    if step.why_ended:
+        message, seen = f"{what} was ended: {step.why_ended}.", step.why_ended
+    else:
+        message = f"{what} failed; what it printed names no line of the package."
+        seen = " ".join((errors or lines)[-3:])[:500]
+    return Finding(
+        id_,
+        message,
+        "CMakeLists.txt" if "CMakeLists.txt" in package.files else None,
+        1 if "CMakeLists.txt" in package.files else None,
+        expected=f"{what} to succeed",
+        seen=seen,
+        fix="Run catkin_make yourself, and read what it prints from the top.",
+    )

@@ -10,8 +10,8 @@ from mrp_check import check
 from mrp_check.cli import classroom
 from mrp_check.contract import spec, verdict
 from mrp_check.contract.errors import CannotCheck, PackageError, SpecError
-from mrp_check.contract.requirements import REQUIREMENTS
 from mrp_check.report import console, html, json_, junit
+from mrp_check.rules import REQUIREMENTS
 
 MET, FINDINGS, UNCHECKED = 0, 1, 2
 
@@ -98,7 +98,7 @@ def run_class(options):
     progress = console.Progress(sys.stderr)
     try:
         spec_file = spec.find(options.spec)
-        contract = spec.read(spec_file)
+        contract = spec.read(spec_file, REQUIREMENTS)
         room = classroom.Classroom(
             options.class_,
             contract,
@@ -134,7 +134,7 @@ def run_class(options):
 def run_package(options):
     progress = console.Progress(sys.stderr)
     try:
-        contract = spec.read(spec.find(options.spec))
+        contract = spec.read(spec.find(options.spec), REQUIREMENTS)
         report = check.check(options.path, contract, options.only, options.timeout, progress.show)
     except (PackageError, SpecError, CannotCheck) as error:
         report = verdict.Report("", "", verdict.UNCHECKED, [], {}, reason=str(error))

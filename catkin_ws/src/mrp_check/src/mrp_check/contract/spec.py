@@ -15,7 +15,6 @@ import yaml
 
 from mrp_check.contract import resources
 from mrp_check.contract.errors import SpecError
-from mrp_check.contract.requirements import REQUIREMENTS
 from mrp_check.contract.resources import SHARES
 
 SCHEMA = resources.folder("schema") / "spec.json"
@@ -154,8 +153,11 @@ def find(name):
     return ours if not path.is_file() and ours.is_file() else path
 
 
-def read(path):
-    """Return the Spec in a file. Raises SpecError if it is no spec."""
+def read(path, requirements=None):
+    """Return the Spec in a file. Raises SpecError if it is no spec.
+
+    requirements: the ids of those that there are, to which points can be given; any if None
+    """
     try:
         text = pathlib.Path(path).read_text(encoding="utf-8")
         data = yaml.load(text, Loader=_Loader)
@@ -169,7 +171,7 @@ def read(path):
         raise SpecError(f"{where}: the spec is no valid YAML: {error.problem}.") from None
     except yaml.YAMLError as error:
         raise SpecError(f"{path}: the spec is no valid YAML: {error}.") from None
-    return _Reader(path, text).spec(data)
+    return _Reader(path, text, requirements).spec(data)
 
 
 class _Loader(yaml.SafeLoader):
@@ -189,8 +191,8 @@ class _Loader(yaml.SafeLoader):
 class _Reader:
     """Makes a Spec of what YAML says; an error names the line of the file."""
 
-    def __init__(self, path, text):
-        self.path = path
+    def __init__(self, path, text, requirements):
+        self.path, self.requirements = path, requirements
         self.tree = yaml.compose(text, Loader=yaml.SafeLoader)
 
     def fail(self, place, sentence):
@@ -240,8 +242,8 @@ class _Reader:
         for topic in topics.values():
             self.field(topic, spec.messages)
         for id_ in spec.points:
-            if id_ not in REQUIREMENTS:
-                self.fail(["points", id_], _no_such("requirement", id_, REQUIREMENTS))
+            if self.requirements is not None and id_ not in self.requirements:
+                self.fail(["points", id_], _no_such("requirement", id_, self.requirements))
         return spec
 
     def own_messages(self, messages):

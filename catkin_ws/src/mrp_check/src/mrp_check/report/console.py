@@ -8,8 +8,9 @@ import re
 import textwrap
 
 from mrp_check.contract.finding import ERROR, NOTE, WARNING
-from mrp_check.contract.requirements import REQUIREMENTS, STAGES, page_of
+from mrp_check.contract.requirements import STAGES
 from mrp_check.contract.verdict import BROKEN, MET, UNCHECKED
+from mrp_check.rules import REQUIREMENTS
 
 MARKS = {MET: "[OK]  ", BROKEN: "[FAIL]", UNCHECKED: "[--]  "}
 _COLOURS = {
@@ -118,7 +119,7 @@ def finding_lines(finding, report):
             f" ({finding.consequence_of})"
         )
     else:
-        lines.append(f"  page:     {page_of(finding.id)}")
+        lines.append(f"  page:     {REQUIREMENTS[finding.id].page}")
     return lines
 
 

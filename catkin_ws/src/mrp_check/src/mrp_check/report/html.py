@@ -7,9 +7,10 @@ import html
 import pathlib
 
 from mrp_check.contract.finding import ERROR
-from mrp_check.contract.requirements import REQUIREMENTS, STAGES, page_of
+from mrp_check.contract.requirements import STAGES
 from mrp_check.contract.verdict import BROKEN, FINDINGS, MET, UNCHECKED
 from mrp_check.report import console
+from mrp_check.rules import REQUIREMENTS
 
 _SITE = pathlib.Path(__file__).resolve().parents[5] / "build" / "docs"
 _WORDS = {MET: "met", BROKEN: "not met", UNCHECKED: "not checked"}
@@ -147,7 +148,7 @@ def _article(finding, report, following=()):
 
 def _link(id_):
     """Return the page that explains a requirement: a link where the pages have been built."""
-    page = page_of(id_)
+    page = REQUIREMENTS[id_].page
     if (_SITE / page.split("#")[0]).is_file():
         path, _, anchor = page.partition("#")
         address = (_SITE / path).as_uri() + (f"#{anchor}" if anchor else "")

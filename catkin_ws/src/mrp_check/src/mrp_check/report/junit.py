@@ -7,9 +7,9 @@ import re
 import xml.etree.ElementTree as ElementTree
 
 from mrp_check.contract.finding import ERROR
-from mrp_check.contract.requirements import REQUIREMENTS
 from mrp_check.contract.verdict import BROKEN, UNCHECKED
 from mrp_check.report import console
+from mrp_check.rules import REQUIREMENTS
 
 # What XML 1.0 cannot hold: a student's program may print it.
 _NOT_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The requirement console: the lines that a node logs."""
+"""The console shows the right lines."""
 
 from __future__ import annotations
 
@@ -7,14 +7,16 @@ import difflib
 import re
 
 from mrp_check.contract import spec as specs
-from mrp_check.running.node import received_line
+from mrp_check.contract.requirements import Requirement, Rule
+from mrp_check.running import evidence
+from mrp_check.running.node import each_node, received_line
 from mrp_check.running.words import PREFIX
 
 _NEAR = 0.6  # how alike two lines are, from 0 to 1, to call one of them a misspelling
 _FLOOD = 2000  # lines that a node prints in its few seconds
 
 
-def console_findings(node):
+def _of(node):
     """Yield a Finding for each line that the node should log otherwise, or prints too many."""
     printed = (node.direct or {}).get("line_count", 0)
     if printed > _FLOOD:
@@ -162,3 +164,14 @@ def _is_logged(text, pattern):
 
 def _ratio(a, b):
     return difflib.SequenceMatcher(None, a, b, autojunk=False).ratio()
+
+
+RULE = Rule(
+    stage="run",
+    order=70,
+    needs=("nodes",),
+    findings=each_node(_of),
+    requirements={
+        "console": Requirement("The console shows the right lines", "launching", evidence.up)
+    },
+)

@@ -3,20 +3,12 @@
 
 from __future__ import annotations
 
-import difflib
-import re
-
 from mrp_check.contract.finding import NOTE, WARNING, Finding
+from mrp_check.contract.requirements import Requirement, Rule
+from mrp_check.contract.words import nearest
+from mrp_check.running import evidence
 from mrp_check.sources import uses
-from mrp_check.student.manifest import FILE, declared
-
-_DEPEND = re.compile(r"<\w*depend\b")
-
-
-def last_dependency(package):
-    """Return the line of the last dependency in package.xml: where a missing one would stand."""
-    lines = [n for n, text in enumerate(package.lines(FILE), 1) if _DEPEND.search(text)]
-    return max(lines, default=package.find_line(FILE, "<package", 1))
+from mrp_check.student.manifest import FILE, declared, last_dependency
 
 
 def findings(package, spec, manifest, model):
@@ -86,7 +78,7 @@ def _kind(package, name, use, manifest):
 def _misspelt(name, names, used):
     """Return the name in `names` that is no package and looks like this one, or None."""
     others = [one for one in names if one not in used and not uses.is_ros_package(one)]
-    return next(iter(difflib.get_close_matches(name, others, 1, 0.75)), None)
+    return nearest(name, others, 0.75)
 
 
 def _not_in_manifest(package, name, use, manifest, used):
@@ -149,3 +141,18 @@ def _passed_on(used, manifest, model):
             seen=f"catkin_package({' '.join(call.arguments)})",
             fix=f"Add {' '.join(missing)} to CATKIN_DEPENDS.",
         )
+
+
+RULE = Rule(
+    stage="files",
+    order=20,
+    needs=("manifest", "model"),
+    findings=lambda case: findings(case.package, case.spec, case.manifest[0], case.model),
+    requirements={
+        "dependencies": Requirement(
+            "Each package that the code uses is declared in package.xml and CMakeLists.txt",
+            "building#package-xml",
+            evidence.code,
+        )
+    },
+)

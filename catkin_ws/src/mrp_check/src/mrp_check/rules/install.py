@@ -4,6 +4,8 @@
 from __future__ import annotations
 
 from mrp_check.contract.finding import Finding
+from mrp_check.contract.requirements import Requirement, Rule
+from mrp_check.running import evidence
 
 
 def findings(package, spec, model, launch_file, started):
@@ -38,3 +40,20 @@ def _finding(what, expected, line):
         seen="no install rule for it",
         fix=f"Add {expected}.",
     )
+
+
+def _findings(case):
+    if case.spec.install:
+        file = case.launch_file[0]
+        yield from findings(case.package, case.spec, case.model, file, case.started)
+
+
+RULE = Rule(
+    stage="files",
+    order=130,
+    needs=("model", "launch"),
+    findings=_findings,
+    requirements={
+        "install": Requirement("What is needed to run is installed", "building", evidence.cmake)
+    },
+)

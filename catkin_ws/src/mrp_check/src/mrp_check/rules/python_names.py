@@ -10,20 +10,34 @@ import sys
 from pyflakes import checker, messages
 
 from mrp_check.contract.finding import NOTE
-from mrp_check.rules.python_rule import Rules, nearest
+from mrp_check.contract.requirements import Requirement, Rule
+from mrp_check.contract.words import nearest, perhaps
+from mrp_check.running import evidence
 from mrp_check.sources import uses
 from mrp_check.sources.python_facts import last_line
 from mrp_check.sources.python_modules import is_module, is_ros, load, resolve, ros_modules
+from mrp_check.sources.python_rule import PythonRule, of_sources
 
 # Names of Python 2, which old code mentions where Python 3 does not come by.
 _PYTHON2 = {"unicode", "xrange", "raw_input", "long", "basestring", "reduce", "unichr", "file"}
 
 
-class Names(Rules):
+class Names(PythonRule):
     def __init__(self, package, source):
         super().__init__(package, source)
         self.not_imported = []  # names whose import fails
         self.message_names = {path.rsplit("/", 1)[-1][:-4] for path in package.of_kind("message")}
+
+    def findings(self):
+        yield from [*self.imports()]
+        undefined = [*self.undefined_names()]
+        for finding in undefined:
+            # What was to be imported under its right name is not there under it, either.
+            if nearest(finding.expected, self.not_imported):
+                finding.consequence_of = "python-names"
+        yield from undefined
+        yield from self.attributes()
+        yield from self.own_attributes()
 
     def imports(self):
         for node in self.source.import_nodes:
@@ -57,15 +71,16 @@ class Names(Rules):
         if parent is None:
             known = set(sys.modules) | ros_modules()
             # Of short names many are alike: cv2 is no misspelt csv.
-            near, hint = nearest(missing, {n for n in known if "." not in n}, 0.75)
+            near = nearest(missing, {n for n in known if "." not in n}, 0.75)
             if not near:
                 yield self._absent(node, missing)
                 return
         else:
-            near, hint = nearest(missing.rsplit(".", 1)[-1], {"msg", "srv", "exceptions"})
+            near = nearest(missing.rsplit(".", 1)[-1], {"msg", "srv", "exceptions"})
         yield self.finding(
             "python-names",
-            f"There is no Python module {missing}: Python ends with a ModuleNotFoundError.{hint}",
+            f"There is no Python module {missing}: Python ends with a ModuleNotFoundError."
+            + perhaps(near),
             node,
             expected="a module that is installed",
             fix=f"Write {near}." if near else "Mend the name of the module.",
@@ -91,7 +106,8 @@ class Names(Rules):
             if is_module(f"{node.module}.{alias.name}"):
                 continue
             self.not_imported.append(alias.name)
-            near, hint = nearest(alias.name, {n for n in names if not n.startswith("_")})
+            near = nearest(alias.name, {n for n in names if not n.startswith("_")})
+            hint = perhaps(near)
             messages_ = load(f"{node.module}.msg") if is_module(f"{node.module}.msg") else None
             if hasattr(messages_, alias.name):
                 hint = f" It is in {node.module}.msg."
@@ -130,7 +146,7 @@ class Names(Rules):
             for n in ast.walk(self.source.tree)
             if isinstance(n, (ast.FunctionDef, ast.ClassDef))
         }
-        _, hint = nearest(name, names)
+        hint = perhaps(nearest(name, names))
         fix = "Mend the name, or define it before it is used."
         if isinstance(message, messages.UndefinedLocal):
             return self.finding(
@@ -203,12 +219,12 @@ class Names(Rules):
             owner, missing = resolve(name)
             if missing is None:
                 continue
-            near, hint = nearest(missing, [n for n in dir(owner) if not n.startswith("_")])
+            near = nearest(missing, [n for n in dir(owner) if not n.startswith("_")])
             called = getattr(owner, "__name__", name.rsplit(".", 1)[0])
             yield self.finding(
                 "python-names",
                 f"{called} has no {missing}: Python ends with an AttributeError when it comes"
-                f" here.{hint}",
+                " here." + perhaps(near),
                 node,
                 expected=f"a name that {called} has",
                 fix=f"Write {near} for {missing}." if near else "Mend the name.",
@@ -262,13 +278,11 @@ class Names(Rules):
             if self.source.is_guarded(node, "AttributeError"):
                 continue
             said.add(node.attr)
-            near, hint = nearest(
-                f"self.{node.attr}", {f"self.{n}" for n in known - set(dir(object))}
-            )
+            near = nearest(f"self.{node.attr}", {f"self.{n}" for n in known - set(dir(object))})
             yield self.finding(
                 "python-names",
                 f"No method of {class_.name} ever sets self.{node.attr}: Python ends with an"
-                f" AttributeError when it comes here.{hint}",
+                " AttributeError when it comes here." + perhaps(near),
                 node,
                 expected="a member that is set, or a method that is defined",
                 fix=f"Write {near}." if near else f"Set self.{node.attr} in __init__.",
@@ -278,3 +292,16 @@ class Names(Rules):
 def _self_first(method):
     rest = ", " if method.args.args or method.args.vararg or method.args.kwarg else ""
     return f"def {method.name}(", f"def {method.name}(self{rest}"
+
+
+RULE = Rule(
+    stage="static",
+    order=20,
+    needs=("facts",),
+    findings=of_sources(Names),
+    requirements={
+        "python-names": Requirement(
+            "Each name in Python code exists", "wrong", evidence.python_read
+        )
+    },
+)

@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import ast
 import codecs
-import difflib
 import functools
 import os
 import shutil
@@ -13,6 +12,9 @@ import subprocess
 
 from mrp_check.build.catkin import search_path
 from mrp_check.contract.finding import NOTE, Finding
+from mrp_check.contract.requirements import Requirement, Rule
+from mrp_check.contract.words import nearest, perhaps
+from mrp_check.running import evidence
 from mrp_check.sources.uses import is_test
 
 _MARKS = (codecs.BOM_UTF8, codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)
@@ -92,16 +94,15 @@ def _listed(package, model):
     for script in model.scripts:
         if script.path in package.files or "$" in script.path or script.path.startswith("/"):
             continue
-        near = difflib.get_close_matches(script.path, package.of_kind("python"), 1, 0.6)
+        near = nearest(script.path, package.of_kind("python"))
         yield Finding(
             "scripts",
-            f"CMakeLists.txt installs {script.path}, and there is no such file."
-            + (f" Perhaps {near[0]} is meant." if near else ""),
+            f"CMakeLists.txt installs {script.path}, and there is no such file." + perhaps(near),
             script.file,
             script.line,
             expected="the name of a file, relative to CMakeLists.txt",
             seen=script.path,
-            fix=f"Write {near[0]} for {script.path}." if near else "Name a file that is there.",
+            fix=f"Write {near} for {script.path}." if near else "Name a file that is there.",
         )
 
 
@@ -190,3 +191,18 @@ def _of(package, model, path, shebang, relayed):
             seen=f"mode {(package.root / path).stat().st_mode & 0o777:o}",
             fix=f"chmod +x {path}",
         )
+
+
+RULE = Rule(
+    stage="files",
+    order=70,
+    needs=("model", "launch"),
+    findings=lambda case: findings(case.package, case.model, case.started),
+    requirements={
+        "scripts": Requirement(
+            "Each script is there, executable, and can be started",
+            "wrong#the-script-is-not-executable",
+            evidence.python,
+        )
+    },
+)

@@ -7,6 +7,8 @@ import codecs
 import re
 
 from mrp_check.contract.finding import NOTE, Finding
+from mrp_check.contract.requirements import Requirement, Rule
+from mrp_check.running import evidence
 
 _TEXT = ("python", "cpp", "header", "launch", "message", "cmake")
 _CODING = re.compile(rb"^[ \t\f]*#.*?coding[:=][ \t]*([-\w.]+)")
@@ -101,3 +103,21 @@ def _encoding(data, path, kind, relayed):
         seen=f"the byte {byte:02X}, perhaps of a letter such as ä or é in Latin-1",
         fix="Save the file with the encoding UTF-8.",
     )
+
+
+def _findings(case):
+    relayed = {s.path for s in case.model.scripts if s.by == "catkin_install_python"}
+    return findings(case.package, relayed)
+
+
+RULE = Rule(
+    stage="files",
+    order=80,
+    needs=("model",),
+    findings=_findings,
+    requirements={
+        "text": Requirement(
+            "Each file is plain UTF-8 text with Unix line ends", "wrong", evidence.always
+        )
+    },
+)

@@ -163,3 +163,17 @@ class Node:
 def received_line(node):
     """Return the spec's line for a value that the node receives, or None."""
     return next((line for line in node.wanted.prints if "{value}" in line), None)
+
+
+def each_node(findings, also_dead=False):
+    """Return the function of a case.Case that asks this of each Node that came up.
+
+    also_dead: of those that did not, too
+    """
+
+    def of_all(case):
+        for node in case.nodes.values():
+            if node.is_up or also_dead:
+                yield from findings(node)
+
+    return of_all

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The requirements starts, spin, node-start and node-name; and errors while a node works."""
+"""Why a node is not up soon after it is started."""
 
 from __future__ import annotations
 
 import re
 
-from mrp_check.contract.finding import ERROR, NOTE, WARNING
+from mrp_check.contract.finding import ERROR, NOTE
 from mrp_check.running.words import code_text, last_words
 
 
@@ -35,7 +35,7 @@ def start_findings(node):
         module = re.match(r"No module named '(\w+)", text)
         is_absent = module and module.group(1) in node.places.facts.absent(node.name)
         yield node.finding(
-            _id_of_error(kind, text, "starts"),
+            id_of_error(kind, text, "starts"),
             f"{node.name} ends as soon as it is started: {kind}: {text}",
             place,
             NOTE if is_absent else ERROR,
@@ -98,62 +98,7 @@ def _not_registered(node, direct):
     )
 
 
-def name_findings(node):
-    """Yield a Finding if the node has another name where no launch file gives it one."""
-    own = node.direct and node.direct.get("name")
-    if not own:
-        return
-    name = own.rsplit("/", 1)[-1]
-    if re.fullmatch(rf"{re.escape(node.name)}_\d+(_\d+)?", name):
-        yield node.finding(
-            "node-name",
-            "The node asks for an anonymous name: rosrun starts it under another name each time;"
-            " the launch file gives it its own.",
-            node.places.of(node.name, "init"),
-            WARNING,
-            expected=node.name,
-            seen=name,
-        )
-    elif name != node.name:
-        yield node.finding(
-            "node-name",
-            f"Started by itself, {node.name} calls itself {name}: the launch file hides it, but"
-            " with rosrun the node has the wrong name.",
-            node.places.of(node.name, "init"),
-            expected=node.name,
-            seen=name,
-        )
-
-
-def raised_findings(node):
-    """Yield a Finding for an error that was raised while the node went on."""
-    if node.not_up:
-        return
-    found = node.places.traceback(node.errors())
-    if found:
-        place, kind, text = found
-        source = node.package.lines(place[0])[place[1] - 1].strip()
-        yield node.finding(
-            _id_of_error(kind, text, "callbacks"),
-            f"{node.name} runs into an error as it works: {kind}: {text}",
-            place,
-            expected="a node that works without an error",
-            seen=f"{kind}: {text}, in: {source}",
-        )
-        return
-    found = node.places.wrong_arguments(node.errors())
-    if found:
-        place, text = found
-        yield node.finding(
-            "callbacks",
-            f"{node.name} has a callback that cannot be called as ROS calls it: {text}.",
-            place,
-            expected="a callback with one argument besides self",
-            seen=f"TypeError: {text}",
-        )
-
-
-def _id_of_error(kind, text, otherwise):
+def id_of_error(kind, text, otherwise):
     """Return the requirement that an error's class belongs to."""
     # That a number has no such attribute says nothing of the name, but of what it is used on.
     built_in = re.match(

@@ -23,6 +23,7 @@ class Source:
     has_star: whether it has `from ... import *`
     parents: each node's parent in the tree
     absent: module that it imports and this machine has not -> a sentence that says so
+    told: (line, severity) -> the first Finding about it
 
     Raises SyntaxError (or ValueError) as Python itself does.
     """
@@ -32,7 +33,7 @@ class Source:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
             self.tree = ast.parse(text, file)
-        self.parents, self.absent = {}, {}
+        self.parents, self.absent, self.told = {}, {}, {}
         for node in ast.walk(self.tree):
             for child in ast.iter_child_nodes(node):
                 self.parents[child] = node

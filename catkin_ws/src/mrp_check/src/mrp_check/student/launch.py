@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The package's launch file: what roslaunch makes of it, and the line of each of its elements."""
+"""The package's launch file: what roslaunch makes of it, and the line of each of its nodes."""
 
 from __future__ import annotations
 
@@ -10,19 +10,12 @@ import xml.parsers.expat
 
 from mrp_check import confine
 from mrp_check.contract.errors import CannotCheck
+from mrp_check.contract.finding import Finding
+from mrp_check.contract.words import nearest
+from mrp_check.student.xml_file import elements, xml_finding
 
 _DUMP = pathlib.Path(__file__).resolve().parents[1] / "confined" / "launch_dump.py"
 SECONDS = 180  # that loading a launch file may take
-
-
-@dataclasses.dataclass
-class Element:
-    """One XML element; line: where it begins."""
-
-    tag: str
-    attributes: dict
-    line: int
-    parents: list
 
 
 @dataclasses.dataclass
@@ -57,27 +50,54 @@ class Launch:
     files: list
     params: dict = dataclasses.field(default_factory=dict)
 
+    def of_spec(self, spec):
+        """Return the first node of each name of the spec; none if roslaunch cannot read it."""
+        nodes = {} if self.error else {node.name: node for node in reversed(self.nodes)}
+        return [nodes[name] for name in spec.nodes if name in nodes]
 
-def elements(data):
-    """Return the Elements of an XML file's bytes. Raises xml.parsers.expat.ExpatError."""
-    found, stack = [], []
-    parser = xml.parsers.expat.ParserCreate()
-
-    def start(tag, attributes):
-        element = Element(tag, attributes, parser.CurrentLineNumber, list(stack))
-        found.append(element)
-        stack.append(element)
-
-    parser.StartElementHandler = start
-    parser.EndElementHandler = lambda tag: stack.pop()
-    parser.Parse(data, True)
-    return found
+    def elements(self, package):
+        """Return the (file, Element)s of the file and of what of the package it includes."""
+        found = []
+        for file in self.files or [self.file]:
+            try:
+                found += [(file, element) for element in elements(package.bytes(file))]
+            except (xml.parsers.expat.ExpatError, OSError):
+                continue
+        return found
 
 
 def find(package, spec):
     """Return the path of the spec's launch file in the package, or None."""
     found = [path for path in package.files if path.rsplit("/", 1)[-1] == spec.launch.file]
     return min(found, key=lambda path: (not path.startswith("launch/"), path), default=None)
+
+
+def readable(package, spec):
+    """Return (path of the launch file or None, the Findings that say why it cannot be loaded)."""
+    path = find(package, spec)
+    if path is None:
+        others = package.of_kind("launch")
+        near = nearest(spec.launch.file, [o.rsplit("/", 1)[-1] for o in others], 0)
+        other = next((o for o in others if near and o.endswith(near)), None)
+        return None, [
+            Finding(
+                "launch-file",
+                f"The package has no launch file {spec.launch.file}."
+                + (f" There is {other}." if other else ""),
+                other,
+                1 if other else None,
+                expected=f"launch/{spec.launch.file}",
+                seen=", ".join(others) or "no launch file",
+                fix=f"Rename it to {spec.launch.file}."
+                if other
+                else "Write one, as the page shows.",
+            )
+        ]
+    try:
+        elements(package.bytes(path))
+    except xml.parsers.expat.ExpatError as error:
+        return path, [xml_finding("launch-file", package, path, error)]
+    return path, []
 
 
 def load(package, workspace, file, *arguments):

@@ -148,6 +148,14 @@ class Package:
                 return number
         return default
 
+    def first_match(self, files, pattern):
+        """Return the place of the first line in which a pattern is found, or None."""
+        for file in files:
+            for number, text in enumerate(self.lines(file), 1):
+                if re.search(pattern, text):
+                    return file, number
+        return None
+
     @functools.cached_property
     def manifest(self):
         """The root element of package.xml, or None if it is no XML."""

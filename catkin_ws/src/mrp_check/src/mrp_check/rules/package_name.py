@@ -6,6 +6,8 @@ from __future__ import annotations
 import collections
 
 from mrp_check.contract.finding import Finding
+from mrp_check.contract.requirements import Requirement, Rule
+from mrp_check.running import evidence
 
 
 def findings(package, model, launch):
@@ -35,3 +37,22 @@ def findings(package, model, launch):
         fix=f"Write {expected}.",
         change=(wrong, right),
     )
+
+
+def _findings(case):
+    return findings(case.package, case.model, case.launch) if case.manifest[0] else ()
+
+
+RULE = Rule(
+    stage="files",
+    order=30,
+    needs=("manifest", "model", "launch"),
+    findings=_findings,
+    requirements={
+        "package-name": Requirement(
+            "The package has one name, in package.xml, CMake and launch file",
+            "package",
+            evidence.manifest,
+        )
+    },
+)

@@ -7,14 +7,16 @@ import ast
 import inspect
 import re
 
-from mrp_check.rules.python_rule import Rules, ast_text, nearest
+from mrp_check.contract.requirements import Rule
+from mrp_check.contract.words import nearest, perhaps
 from mrp_check.sources.python_facts import argument
 from mrp_check.sources.python_modules import cannot_bind, resolve, signature
+from mrp_check.sources.python_rule import PythonRule, ast_text, of_sources
 from mrp_check.sources.python_source import UNKNOWN
 
 
-class Calls(Rules):
-    def wrong(self):
+class Calls(PythonRule):
+    def findings(self):
         for node in ast.walk(self.source.tree):
             if not isinstance(node, ast.Call):
                 continue
@@ -22,63 +24,19 @@ class Calls(Rules):
             if name and name.startswith("rospy.") and not self.is_own("rospy"):
                 yield from self._call(node, name)
 
-    def too_early(self):
-        """A timer that is made before rospy knows the time: its thread ends at once."""
-        for function in ast.walk(self.source.tree):
-            if not isinstance(function, (ast.Module, ast.FunctionDef)):
-                continue
-            inits = [s for s in function.body if self._calls(s, "rospy.init_node")]
-            before = function.body[: function.body.index(inits[0])] if inits else []
-            for statement in before:
-                call = self._makes_timer(statement)
-                if call:
-                    yield self.finding(
-                        "node-start",
-                        "A rospy.Timer is made here before rospy.init_node() is called: rospy does"
-                        " not know the time yet, the timer's thread ends with a ROSInitException,"
-                        " and nothing is ever called.",
-                        call,
-                        expected="rospy.init_node() before all else",
-                        fix=f"Move rospy.init_node() from line {inits[0].lineno} up to before this"
-                        " line.",
-                    )
-
-    def _calls(self, statement, name):
-        return (
-            isinstance(statement, ast.Expr)
-            and isinstance(statement.value, ast.Call)
-            and self.source.dotted(statement.value.func) == name
-        )
-
-    def _makes_timer(self, statement):
-        """Return the call in a statement that makes a rospy.Timer, or an object that makes one."""
-        if isinstance(statement, (ast.FunctionDef, ast.ClassDef)):
-            return None
-        for call in ast.walk(statement):
-            if not isinstance(call, ast.Call):
-                continue
-            made = self.source.definition(call.func)
-            inside = [call]
-            if isinstance(made, ast.ClassDef):
-                inits = [n for n in made.body if getattr(n, "name", "") == "__init__"]
-                inside += [n for init in inits for n in ast.walk(init) if isinstance(n, ast.Call)]
-            if any(self.source.dotted(one.func) == "rospy.Timer" for one in inside):
-                return call
-        return None
-
     def _call(self, node, name):
         function, missing = resolve(name)
         if missing is not None or not callable(function):
             return
         problem = cannot_bind(function, node)
         if problem:
-            near = ""
+            hint = ""
             match = re.search(r"unexpected keyword argument '(\w+)'", problem)
             if match:
-                _, near = nearest(match.group(1), inspect.signature(function).parameters)
+                hint = perhaps(nearest(match.group(1), inspect.signature(function).parameters))
             yield self.finding(
                 "callbacks" if name == "rospy.Timer" else "python-names",
-                f"{name}() is called with the wrong arguments: {problem}.{near}",
+                f"{name}() is called with the wrong arguments: {problem}.{hint}",
                 node,
                 expected=f"{name}{signature(function)}",
                 fix="Compare the call with the one on the page.",
@@ -263,3 +221,12 @@ def _returns(function):
         or isinstance(n, (ast.Yield, ast.YieldFrom))
         for n in ast.walk(function)
     ) or bool(function.decorator_list)
+
+
+RULE = Rule(
+    stage="static",
+    order=22,
+    needs=("facts",),
+    findings=of_sources(Calls),
+    also=("python-names", "node-start", "type", "callbacks"),
+)

@@ -5,11 +5,17 @@ from __future__ import annotations
 
 import ast
 
-from mrp_check.rules.python_rule import Rules, nearest
+from mrp_check.contract.requirements import Rule
+from mrp_check.contract.words import nearest, perhaps
 from mrp_check.sources.python_facts import argument
+from mrp_check.sources.python_rule import PythonRule, of_sources
 
 
-class Messages(Rules):
+class Messages(PythonRule):
+    def findings(self):
+        yield from self.unknown_fields()
+        yield from self.unknown_arguments()
+
     def unknown_fields(self):
         for key, class_ in self._messages().items():
             for node in ast.walk(self.source.tree):
@@ -18,7 +24,8 @@ class Messages(Rules):
                     and self.source.key(node.value) == key
                     and not hasattr(class_, node.attr)
                 ):
-                    near, hint = nearest(node.attr, class_.__slots__)
+                    near = nearest(node.attr, class_.__slots__)
+                    hint = perhaps(near)
                     if not near and len(class_.__slots__) == 1:
                         near = class_.__slots__[0]
                         hint = f" Its only field is {near}."
@@ -78,12 +85,15 @@ class Messages(Rules):
     def _arguments(self, node, class_):
         for keyword in node.keywords:
             if keyword.arg and keyword.arg not in class_.__slots__:
-                near, hint = nearest(keyword.arg, class_.__slots__)
+                near = nearest(keyword.arg, class_.__slots__)
                 yield self.finding(
                     "python-names",
                     f"A message {class_._type} has no field {keyword.arg}: Python ends with an"
-                    f" AttributeError when it comes here.{hint}",
+                    " AttributeError when it comes here." + perhaps(near),
                     node,
                     expected=", ".join(class_.__slots__),
                     fix=f"Write {near} for {keyword.arg}." if near else "Mend the name.",
                 )
+
+
+RULE = Rule("static", 21, ("facts",), of_sources(Messages), also=("python-names",))

@@ -1,20 +1,21 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The requirements latch, values and rate: what a node publishes."""
+"""Publishers publish the right values."""
 
 from __future__ import annotations
 
-import statistics
-
+from mrp_check.contract.requirements import Requirement, Rule
+from mrp_check.running import evidence
+from mrp_check.running.node import Node, each_node
 from mrp_check.running.observing import resolved
 from mrp_check.running.words import few
 
 
-def publisher_findings(node):
-    """Yield a Finding for what the node publishes: nothing, latched, its values, its rate."""
+def _of(node):
+    yield from _relayed(node)
     role = node.wanted.publishes
     if role is None:
         return
-    messages = node.own_messages(role.topic)
+    messages = node.published()
     announced = resolved(role.topic, node.path) in node.topics("publications")
     if announced and not messages:
         silent = _silent_seconds(node)
@@ -29,23 +30,9 @@ def publisher_findings(node):
             expected=_rule_text(role) + (f", every {role.period:g} s" if role.period else ""),
             seen="no message",
         )
-    if not messages:
-        return
-    latched = node.path in node.latched.get(messages[0]["topic"], [])
-    if latched != role.latched:
-        yield node.finding(
-            "latch",
-            f"{node.name} latches its topic: whoever subscribes later first hears an old value."
-            if latched
-            else f"{node.name} does not latch its topic.",
-            node.places.of_topic(node.name, "publisher", role.topic.name),
-            expected="a latched publisher" if role.latched else "a publisher without latch",
-            seen="latched" if latched else "not latched",
-        )
     values = [node.value(m, role.topic) for m in messages]
-    if role.values and None not in values:
+    if role.values and values and None not in values:
         yield from _value_findings(node, values, role)
-    yield from _rate_findings(node, messages, role)
 
 
 def _silent_seconds(node):
@@ -101,72 +88,13 @@ def _start_place(node, first, publish):
     return publish
 
 
-def _rate_findings(node, messages, role):
-    if not role.period:
-        return
-    place = node.places.of(node.name, "rate", "timer", "publish")
-    expected = f"a message every {role.period:g} s"
-    times = [m["time"] for m in messages]
-    if not node.has_rate():
-        waited = node.asked - times[-1]
-        if waited > 3 * role.period + 10 * node.all.get("lag", 0):
-            count = "once" if len(times) == 1 else f"{len(times)} messages"
-            slow = len(times) > 1 and times[-1] - times[0] > 2 * role.period
-            yield node.finding(
-                "rate",
-                f"{node.name} published {count}"
-                + (
-                    " in all, far too seldom."
-                    if slow
-                    else f", and then no more for {waited:.0f} s."
-                ),
-                place,
-                expected=expected,
-                seen=count,
-            )
-        return
-    gaps = [b - a for a, b in zip(times, times[1:])]
-    # A busy machine can delay messages, and let them come in a burst after that; it can change
-    # neither the middle one of all gaps by much, nor the time that all together take.
-    middle, mean = statistics.median(gaps), (times[-1] - times[0]) / len(gaps)
-    low, high = role.period * (1 - role.tolerance), role.period * (1 + role.tolerance)
-    lag = node.all.get("lag", 0)
-    too_fast = middle < low and mean < low
-    too_slow = middle > high + 2 * lag and mean > high + 2 * lag
-    if too_slow and not _is_slow_by_itself(node, role, high):
-        return
-    if too_fast or too_slow:
-        seen = f"a message every {middle:.2g} s"
-        # Beside a timer: a loop's own sleep is what its rate is made of.
-        timer = "Timer" in (node.package.lines(place[0])[place[1] - 1] if place[0] else "")
-        sleep = too_slow and timer and node.places.sleep_beside(node.name, "publish")
-        yield node.finding(
-            "rate",
-            f"{node.name} publishes too {'often' if too_fast else 'seldom'}: {seen}, where the"
-            f" contract says every {role.period:g} s."
-            + (" Its callback sleeps, and the timer waits for it." if sleep else ""),
-            sleep or place,
-            expected=expected,
-            seen=seen,
-        )
-
-
-def _is_slow_by_itself(node, role, high):
-    """Return whether the node was as slow when it ran by itself: two runs agree."""
-    messages = node.direct_of("messages")
-    topics = {m["topic"] for m in messages if m["topic"].endswith("/" + role.topic.name)}
-    times = [m["time"] for m in messages if m["topic"] in topics]
-    gaps = [b - a for a, b in zip(times, times[1:])]
-    return not gaps or statistics.median(gaps) > high
-
-
-def relay_findings(node):
+def _relayed(node):
     """Yield a Finding if a node that relays publishes something else for what it is sent."""
     relay = node.wanted.relays
     if relay is None:
         return
-    sent = [value for value in (node.direct or {}).get("sent", []) if value is not None]
-    name = node.direct and node.direct.get("name")
+    sent = node.sent()
+    name = node.own_name
     if not sent or not name:
         return
     target = resolved(relay.target, name)
@@ -193,3 +121,24 @@ def _rule_text(role):
         return f"messages on {role.topic.name}"
     values = [rule.start, rule.start + rule.step, rule.start + 2 * rule.step]
     return ", ".join(map(str, values)) + ", ..."
+
+
+_published = evidence.of_publisher(
+    lambda role: role.values, Node.published_numbers, "published no number"
+)
+_sent = evidence.when(Node.sent, "was sent nothing", lambda wanted: wanted.relays)
+
+
+RULE = Rule(
+    stage="run",
+    order=30,
+    needs=("nodes",),
+    findings=each_node(_of),
+    requirements={
+        "values": Requirement(
+            "Publishers publish the right values",
+            "publisher",
+            lambda case: _sent(case) or _published(case),
+        )
+    },
+)

@@ -4,14 +4,13 @@
 from __future__ import annotations
 
 import ast
-import difflib
 
-from mrp_check.contract.finding import Finding
+from mrp_check.contract.finding import NOTE, Finding
 from mrp_check.sources.python_modules import is_ros, resolve
 
 
-class Rules:
-    """Rules about one source."""
+class PythonRule:
+    """A rule about one source; `findings` yields what it finds."""
 
     def __init__(self, package, source):
         self.package = package
@@ -21,17 +20,21 @@ class Rules:
     def finding(self, id_, message, node, **more):
         line = node if isinstance(node, int) else node.lineno
         more.setdefault("seen", self.package.lines(self.file)[line - 1].strip())
-        return Finding(id_, message, self.file, line, **more)
+        finding = Finding(id_, message, self.file, line, **more)
+        # Of several findings about one line, the first is the cause.
+        cause = self.source.told.setdefault((line, finding.severity), finding)
+        if cause is not finding and finding.severity != NOTE:
+            finding.consequence_of = cause.id
+        return finding
 
     def is_own(self, name):
         """Return whether a module is the package's own (made, or generated of its messages)."""
         top = name.split(".")[0]
-        paths = {p for p in self.package.of_kind("python")}
         return top == self.package.name or any(
             path.endswith((f"/{top}.py", f"/{top}/__init__.py"))
             or path == f"{top}.py"
             or f"/{top}/" in f"/{path}"
-            for path in paths
+            for path in self.package.of_kind("python")
         )
 
     def message_class(self, node):
@@ -47,14 +50,19 @@ class Rules:
         return ast.get_source_segment(self.package.text(self.file), node)
 
 
-def nearest(name, names, alike=0.6):
-    """Return (the name that is most like it, a hint that says so), or (None, "")."""
-    found = difflib.get_close_matches(name, list(names), 1, alike)
-    return (found[0], f" Perhaps {found[0]} is meant.") if found else (None, "")
-
-
 def ast_text(node):
     """Return the source of a short expression."""
     if isinstance(node, ast.Attribute):
         return f"{ast_text(node.value)}.{node.attr}"
     return node.id if isinstance(node, ast.Name) else "..."
+
+
+def of_sources(rule):
+    """Return the function of a case.Case that asks a PythonRule of each source that matters."""
+
+    def findings(case):
+        for file in case.facts.relevant:
+            if file in case.facts.python:
+                yield from rule(case.package, case.facts.python[file]).findings()
+
+    return findings

@@ -1,18 +1,17 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The requirements topic, type, namespace and warnings: the names that a node gives to ROS."""
+"""Publishers and subscribers meet on the topic, with messages of the right type."""
 
 from __future__ import annotations
 
 import difflib
-import re
 
-from mrp_check.contract.finding import WARNING, Finding
+from mrp_check.contract.requirements import Requirement, Rule
+from mrp_check.running import evidence
+from mrp_check.running.node import each_node
 from mrp_check.running.observing import resolved
 
-_NOT_A_NAME = re.compile(r"'(?P<name>[^']*)' is not a legal ROS")
 
-
-def topic_findings(node):
+def _of(node):
     """Yield a Finding for each topic of the node with another name, type or namespace."""
     roles = (
         ("publishes on", "publications", "publisher", node.wanted.publishing),
@@ -142,43 +141,18 @@ def _namespace_finding(node, topic, kind, verb, place_kind):
         )
 
 
-def warning_findings(node):
-    """Yield a Finding if rospy has warned of a name."""
-    for text in node.errors():
-        found = _NOT_A_NAME.search(text)
-        if found:
-            name = found["name"]
-            kind = "publisher" if node.wanted.publishing else "subscriber"
-            file, line = node.places.of_topic(node.name, kind, name)
-            if "//" in name:  # where it is put together
-                line = node.package.find_line(file, "get_namespace()", line)
-            slashes = " It has two slashes: rospy.get_namespace() already ends with one."
-            yield node.finding(
-                "warnings",
-                f"{node.name} uses the name '{name}', which ROS warns of."
-                + (slashes if "//" in name else ""),
-                (file, line),
-                WARNING,
-                expected=name.replace("//", "/"),
-                seen=name,
-            )
-            return
-
-
-def moved_findings(spec, seen):
-    """Yield a finding if the launch file does not follow a group that it is included in."""
-    if seen.moved is None:
-        return
-    for node in seen.moved.nodes:
-        if node.name in spec.nodes and not node.namespace.startswith("/check_moved/"):
-            yield Finding(
-                "namespace",
-                f"Included in another group, the launch file starts {node.name} in"
-                f" {node.namespace} all the same: its namespace begins with a slash.",
-                node.file,
-                node.line,
-                expected=f"/another_group{node.namespace}",
-                seen=node.namespace,
-                node=node.name,
-            )
-            return
+RULE = Rule(
+    stage="run",
+    order=20,
+    needs=("nodes",),
+    findings=each_node(_of),
+    requirements={
+        "topic": Requirement(
+            "Publishers and subscribers meet on the topic", "publisher", evidence.meets
+        ),
+        "type": Requirement("The messages have the right type", "publisher", evidence.meets),
+        "namespace": Requirement(
+            "The nodes can be moved to another namespace", "namespaces", evidence.alone, shown=75
+        ),
+    },
+)

@@ -1,89 +1,20 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""CMakeLists.txt: catkin's own calls, the targets' sources, the package's own messages."""
+"""The package's own messages: their definitions, and what makes code of them."""
 
 from __future__ import annotations
 
-import difflib
-
 from mrp_check.contract.finding import ERROR, WARNING, Finding
+from mrp_check.contract.requirements import Requirement, Rule
 from mrp_check.contract.spec import PACKAGE
-from mrp_check.rules.dependencies import last_dependency
+from mrp_check.contract.words import nearest
+from mrp_check.running import evidence
 from mrp_check.sources import uses
-from mrp_check.student.manifest import declared
+from mrp_check.student.manifest import declared, last_dependency
 
 FILE = "CMakeLists.txt"
 
 
-def missing():
-    return Finding(
-        "cmake",
-        "The package has no CMakeLists.txt: catkin_make cannot build it.",
-        expected="a file CMakeLists.txt beside package.xml",
-        seen="none",
-        fix="Write one, as the page on building shows.",
-    )
-
-
-def findings(package, model):
-    """Yield findings about CMakeLists.txt, from a cmake.Model."""
-    yield from _skeleton(package, model)
-    yield from _sources(package, model)
-
-
-def _skeleton(package, model):
-    if model.project is None or model.catkin is None or model.catkin_package is None:
-        for call, found, why in (
-            ("project(NAME)", model.project, "CMake needs it first of all"),
-            ("find_package(catkin REQUIRED ...)", model.catkin, "without it there is no catkin"),
-            (
-                "catkin_package()",
-                model.catkin_package,
-                "without it catkin does not know the package, and its executables are put where"
-                " roslaunch and rosrun do not look",
-            ),
-        ):
-            if found is None:
-                before = model.catkin or (model.project and model.project[1])
-                yield Finding(
-                    "cmake",
-                    f"CMakeLists.txt does not call {call}: {why}.",
-                    FILE,
-                    before.line if before else 1,
-                    expected=call,
-                    seen="no such call",
-                    fix=f"Add {call} after this line." if before else f"Add {call}.",
-                )
-    if model.late is not None:
-        yield Finding(
-            "cmake",
-            f"catkin_package() comes after the target {model.late.name} of line {model.late.line}:"
-            " the executable is then put where roslaunch and rosrun do not look.",
-            model.catkin_package.file,
-            model.catkin_package.line,
-            expected="catkin_package() before the first add_executable()",
-            seen=f"{model.late.name} in line {model.late.line},"
-            f" catkin_package() in line {model.catkin_package.line}",
-            fix="Move catkin_package() up, to before the first target.",
-        )
-
-
-def _sources(package, model):
-    for target in model.targets.values():
-        for source, file, line in target.missing:
-            near = difflib.get_close_matches(source, package.of_kind("cpp"), 1, 0.6)
-            yield Finding(
-                "targets",
-                f"The target {target.name} is made of {source}, and there is no such file."
-                + (f" Perhaps {near[0]} is meant." if near else ""),
-                file,
-                line,
-                expected="the name of a file, relative to CMakeLists.txt",
-                seen=source,
-                fix=f"Write {near[0]} for {source}." if near else "Name a file that is there.",
-            )
-
-
-def own_messages(package, spec, model, manifest):
+def findings(package, spec, model, manifest):
     """Yield findings about the messages of the package itself."""
     files = {path: path for path in package.of_kind("message") if path.count("/") <= 1}
     for name, fields in spec.messages.items():
@@ -154,15 +85,15 @@ def _definition(package, name, fields):
     path = f"msg/{name}.msg"
     expected = "; ".join(f"{kind} {field}" for field, kind in fields.items())
     if path not in package.files:
-        near = difflib.get_close_matches(path, package.of_kind("message"), 1, 0.6)
+        near = nearest(path, package.of_kind("message"))
         yield Finding(
             "messages",
             f"There is no message {PACKAGE.lower()}/{name}: the file {path} is missing."
-            + (f" There is {near[0]}." if near else ""),
-            near[0] if near else None,
+            + (f" There is {near}." if near else ""),
+            near if near else None,
             1 if near else None,
             expected=f"{path} with: {expected}",
-            seen=near[0] if near else "no such file",
+            seen=near if near else "no such file",
             fix=f"Name the file {path}." if near else f"Write {path}.",
         )
         return
@@ -173,8 +104,8 @@ def _definition(package, name, fields):
             seen[words[1]] = (words[0], number)
     for field, kind in fields.items():
         if field not in seen or seen[field][0] != kind:
-            near = difflib.get_close_matches(field, list(seen), 1, 0.5)
-            number = seen[field][1] if field in seen else seen[near[0]][1] if near else 1
+            near = nearest(field, seen, 0.5)
+            number = seen[field][1] if field in seen else seen[near][1] if near else 1
             yield Finding(
                 "messages",
                 f"The message {name} has no field '{kind} {field}'.",
@@ -225,3 +156,17 @@ def _headers(package, model, target):
         for header, _ in uses.includes(package, file)
     }
     return [path for path in package.of_kind("header") if path.rsplit("/", 1)[-1] in names]
+
+
+RULE = Rule(
+    stage="files",
+    order=60,
+    needs=("manifest", "model"),
+    findings=lambda case: findings(case.package, case.spec, case.model, case.manifest[0]),
+    requirements={
+        "messages": Requirement(
+            "The package's own messages are generated", "message_types", evidence.cmake
+        )
+    },
+    also=("dependencies",),
+)

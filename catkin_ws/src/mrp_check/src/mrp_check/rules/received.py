@@ -1,27 +1,24 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The requirements received and queue: by itself, each subscriber is sent values."""
+"""Subscribers hear every value: by itself, each is sent some."""
 
 from __future__ import annotations
 
 import re
 
 from mrp_check.contract.finding import ERROR, WARNING
-from mrp_check.rules.console import (
-    not_logged,
-    other_words,
-    received_pattern,
-    sample,
-)
-from mrp_check.running.node import received_line
+from mrp_check.contract.requirements import Requirement, Rule
+from mrp_check.rules.console import not_logged, other_words, received_pattern, sample
+from mrp_check.running import evidence
+from mrp_check.running.node import each_node, received_line
 from mrp_check.running.observing import BURST, PACED
 from mrp_check.running.words import PREFIX, few
 
 
-def subscriber_findings(node):
+def _of(node):
     """Yield a Finding if the node does not log each value that it is sent, once."""
     if not node.wanted.subscribes or not node.direct:
         return
-    sent = [value for value in node.direct.get("sent", []) if value is not None]
+    sent = node.sent()
     pattern = received_pattern(node)
     if not sent or pattern is None:
         return
@@ -121,3 +118,23 @@ def _logged_place(node, logs, pattern):
         if pattern.search(log["text"]):
             return node.places.of_log(node.name, log)
     return node.places.of(node.name, "subscriber")
+
+
+RULE = Rule(
+    stage="run",
+    order=60,
+    needs=("nodes",),
+    findings=each_node(_of),
+    requirements={
+        "received": Requirement(
+            "Subscribers hear every value",
+            "subscriber",
+            evidence.when(
+                lambda node: node.sent() and received_line(node),
+                "logged no value",
+                lambda wanted: wanted.subscribes,
+            ),
+        )
+    },
+    also=("console", "queue", "callbacks"),
+)

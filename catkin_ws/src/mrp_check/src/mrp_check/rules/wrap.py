@@ -1,12 +1,15 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The requirement wrap: what a publisher publishes at the end of its numbers."""
+"""The values wrap round past the largest one."""
 
 from __future__ import annotations
 
 from mrp_check.contract.finding import NOTE
+from mrp_check.contract.requirements import Requirement, Rule
+from mrp_check.running import evidence
+from mrp_check.running.node import Node, each_node
 
 
-def wrap_findings(node):
+def _of(node):
     """Yield a Finding if a Python publisher goes wrong at the end of its numbers."""
     role = node.wanted.publishes
     if not (role and role.values and role.values.modulus and node.wrap):
@@ -80,3 +83,23 @@ def _continues(after, rule):
 
 def _stopped(events):
     return len([e for e in events if e["event"] == "after"]) < 4
+
+
+RULE = Rule(
+    stage="run",
+    order=50,
+    needs=("nodes",),
+    findings=each_node(_of),
+    requirements={
+        "wrap": Requirement(
+            "The values wrap round past the largest one",
+            "publisher",
+            evidence.of_publisher(
+                lambda role: role.values and role.values.modulus,
+                Node.has_wrapped,
+                "has no counter that could be found",
+            ),
+            shown=35,
+        )
+    },
+)

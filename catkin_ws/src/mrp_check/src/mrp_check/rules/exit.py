@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The stage stop: how each node ends, and what it leaves behind."""
+"""Each node ends cleanly on Ctrl-C."""
 
 from __future__ import annotations
 
@@ -7,23 +7,21 @@ import re
 import signal
 
 from mrp_check.contract.finding import Finding
-from mrp_check.contract.requirements import Rule
+from mrp_check.contract.requirements import Requirement, Rule
+from mrp_check.running import evidence
+from mrp_check.running.node import Node
 from mrp_check.running.words import code_text, last_words
 
 # What rospy itself may say when a message is published at the very moment of the end.
 _AT_THE_END = ("closed topic", "ROSInterruptException: rospy shutdown")
 
 
-def _exit(case):
+def findings(case):
     """Yield a Finding for each node that does not end as the spec says."""
     for name in case.spec.nodes:
         direct = case.observed.alone(name)
         if direct and direct.get("asked") is not None:
             yield from _exit_findings(name, direct, case.spec, case.package, case.places)
-
-
-def _left(case):
-    return _left_findings(case.observed, case.spec, case.package, case.places)
 
 
 def _exit_findings(name, direct, spec, package, places):
@@ -103,23 +101,14 @@ def _needs_force(name, launch):
     return forced or not started or launch["stopped_in"] is None
 
 
-def _first_line(package, files, pattern):
-    """Return the place of the first line in which a pattern is found, or None."""
-    for file in files:
-        for number, text in enumerate(package.lines(file), 1):
-            if re.search(pattern, text):
-                return file, number
-    return None
-
-
 def _waits(name, package, places):
     """Return the place of what may keep a C++ node from ending: a handler of its own, or a loop."""
     handler = r"\bSIG_IGN\b|\bsignal\s*\(|\bsigaction\s*\("
     endless = r"\bwhile\s*\(\s*(true|1)\s*\)|\bfor\s*\(\s*;\s*;|\bwhile True"
     files = places.sources(name)
     return (
-        _first_line(package, files, handler)
-        or _first_line(package, files, endless)
+        package.first_match(files, handler)
+        or package.first_match(files, endless)
         or places.of(name, "loop", "spin", "init")
     )
 
@@ -132,45 +121,22 @@ def _leaves(name, package, places, code):
         breaks = r"\bNoSigintHandler\b|\bSIG_DFL\b"
     files = places.sources(name)
     return (
-        _first_line(package, files, ends)
-        or (code < 0 and _first_line(package, files, breaks))
+        package.first_match(files, ends)
+        or (code < 0 and package.first_match(files, breaks))
         or places.of(name, "spin", "init")
     )
 
 
-def _left_findings(seen, spec, package, places):
-    told = set()
-    for left in (seen.direct or {}).get("left", []) + (seen.launch or {}).get("left", []):
-        name = left["node"]
-        if name is None or name not in spec.nodes:
-            found = re.search(r"__name:=(\w+)", left["command"])
-            name = found.group(1) if found and found.group(1) in spec.nodes else None
-        stuck = (seen.alone(name) or {}).get("ended_by")
-        if {(name, "left"), left["command"]} & told or stuck:
-            continue
-        told |= {(name, "left"), left["command"]}
-        file, line = _starts_program(name, package, places)
-        name = name or next((node for node in spec.nodes if file in places.sources(node)), None)
-        yield Finding(
-            "leftovers",
-            f"{name or 'The package'} leaves a process behind when it ends:"
-            f" {left['command'][:120]}",
-            file,
-            line,
-            expected="no process of the package after its end",
-            seen=left["command"][:200],
-            node=name,
+RULE = Rule(
+    stage="stop",
+    order=10,
+    needs=("nodes",),
+    findings=findings,
+    requirements={
+        "exit": Requirement(
+            "Each node ends cleanly on Ctrl-C",
+            "launching",
+            evidence.when(Node.has_ended, "was not seen to end"),
         )
-
-
-def _starts_program(name, package, places):
-    files = places.sources(name) if name else package.of_kind("python", "cpp")
-    starts = r"\b(Popen|fork|system|popen|Process)\s*\(|subprocess\.\w+\("
-    place = _first_line(package, files, starts)
-    return place or (places.of(name, "init") if name else (None, None))
-
-
-RULES = (
-    Rule(("exit",), ("nodes",), _exit),
-    Rule(("leftovers",), ("nodes",), _left),
+    },
 )
