@@ -3,11 +3,12 @@
 
 from __future__ import annotations
 
-import difflib
 import os
 import re
+import typing
 
 from mrp_check.contract.finding import Finding
+from mrp_check.contract.words import nearest, perhaps
 from mrp_check.sources import uses
 from mrp_check.student.cmake import relative
 
@@ -23,11 +24,13 @@ _MESSAGES = (
 ).split()
 
 
-class Problem:
+class Problem(typing.NamedTuple):
     """One error of the compiler: where in the package it is, what was said, and what follows it."""
 
-    def __init__(self, file, line, text, after):
-        self.file, self.line, self.text, self.after = file, line, text, after
+    file: str
+    line: int
+    text: str
+    after: str
 
 
 def problems(output, copy):
@@ -74,25 +77,53 @@ def _place(match, copy):
     return (file, int(match.group("line"))) if file else None
 
 
+class _Words(typing.NamedTuple):
+    """What an error means, and what to do; the line to blame, if it is another than the compiler's;
+    and (old, new) in that line, if that mends it for certain."""
+
+    said: str
+    fix: str
+    line: int | None = None
+    change: tuple | None = None
+
+
+class _Error(typing.NamedTuple):
+    """A Problem that matches a shape of _WORDS."""
+
+    package: object
+    problem: Problem
+    lines: list
+    match: re.Match
+
+    def suggested(self):
+        """Return the name that the compiler itself suggests, or None."""
+        found = re.search(r"did you mean '([^']+)'", _plain(self.problem.text)) or re.search(
+            r"suggested alternative: '([^']+)'", _plain(self.problem.after.split("error:")[0])
+        )
+        return found and found.group(1)
+
+
+def _plain(text):
+    return text.replace("‘", "'").replace("’", "'")
+
+
 def finding(package, problem):
     """Return the Finding about a Problem."""
-    file, line = problem.file, problem.line
-    lines = package.lines(file)
-    line = max(1, min(line, len(lines)))
+    lines = package.lines(problem.file)
     standard = re.search(r"support for the ISO C\+\+ (?:20)?(\d+) standard", problem.text)
     if standard:
         return _old_standard(package, standard.group(1), problem)
-    said, fix, better, *change = _in_words(package, problem, lines)
-    line = better or line
+    words = _in_words(package, problem, lines)
+    line = words.line or max(1, min(problem.line, len(lines)))
     return Finding(
         "compile",
-        f"The compiler stops at line {line} of {file}: {said}",
-        file,
+        f"The compiler stops at line {line} of {problem.file}: {words.said}",
+        problem.file,
         line,
         expected="C++ that the compiler accepts",
         seen=f"{lines[line - 1].strip()}  (g++: {problem.text})",
-        fix=fix,
-        change=change[0] if change else None,
+        fix=words.fix,
+        change=words.change,
     )
 
 
@@ -113,22 +144,22 @@ def _old_standard(package, needed, problem):
 
 
 def _in_words(package, problem, lines):
-    """Return (what it means, what to do, the line that is to blame if it is another one), and what
-    to change in that line if it is certain."""
-    text = problem.text.replace("‘", "'").replace("’", "'")
-    for shape, function in _WORDS:
+    text = _plain(problem.text)
+    for shape, words in _WORDS:
         match = re.search(shape, text)
+        if match and callable(words):
+            return words(_Error(package, problem, lines, match))
         if match:
-            return function(package, problem, lines, match)
-    return f"{text}.", "Compare the line with the one on the page.", None
+            return _Words(*(part.format(*match.groups()) for part in words))
+    return _Words(f"{text}.", "Compare the line with the one on the page.")
 
 
-def _semicolon(package, problem, lines, match):
-    return (
-        "a semicolon is missing at its end"
-        + (f", before {match.group(1)}." if match.group(1) else "."),
+def _semicolon(error):
+    before = error.match.group(1)
+    return _Words(
+        "a semicolon is missing at its end" + (f", before {before}." if before else "."),
         "Add ; at the end of the statement.",
-        *_end_of_statement(lines, problem.line, match.group(1)),
+        *_end_of_statement(error.lines, error.problem.line, before),
     )
 
 
@@ -143,104 +174,78 @@ def _end_of_statement(lines, line, following):
     return None, None
 
 
-def _expected(package, problem, lines, match):
-    what = match.group(1)
-    unbalanced = unbalanced_brace(lines)
+_MISSING = {
+    ")": "a closing bracket ) is missing.",
+    "(": "an opening bracket ( is missing.",
+    "}": "a closing brace } is missing.",
+    "{": "an opening brace { is missing.",
+    "]": "a closing bracket ] is missing.",
+    ">": "a closing > is missing.",
+}
+
+
+def _expected(error):
+    what = error.match.group(1)
+    unbalanced = unbalanced_brace(error.lines)
     if unbalanced and what in ("}", "unqualified-id", "declaration"):
-        return _brace(unbalanced)
-    words = {
-        ")": "a closing bracket ) is missing.",
-        "(": "an opening bracket ( is missing.",
-        "}": "a closing brace } is missing.",
-        "{": "an opening brace { is missing.",
-        "]": "a closing bracket ] is missing.",
-        ">": "a closing > is missing.",
-    }
-    if what in words:
-        return words[what], "Close what was opened.", None
-    return (
+        return _brace(*unbalanced)
+    if what in _MISSING:
+        return _Words(_MISSING[what], "Close what was opened.")
+    return _Words(
         f"{what} is expected there. Often something is missing or too much in the line above it.",
         "Look for a missing ; or bracket at the end of the line above, or a brace too many.",
-        None,
     )
 
 
-def _brace(unbalanced):
-    line, missing = unbalanced
+def _brace(line, missing):
     if missing == "}":
-        return (
-            f"the brace {{ that is opened in line {line} is never closed.",
-            "Add the missing }.",
-            line,
-        )
-    return f"the brace }} of line {line} closes nothing.", "Take one } out.", line
+        said = f"the brace {{ that is opened in line {line} is never closed."
+        return _Words(said, "Add the missing }.", line)
+    return _Words(f"the brace }} of line {line} closes nothing.", "Take one } out.", line)
 
 
-def _function_definition(package, problem, lines, match):
-    unbalanced = unbalanced_brace(lines)
+def _function_definition(error):
+    unbalanced = unbalanced_brace(error.lines)
     if unbalanced:
-        return _brace(unbalanced)
-    return (
-        "a function begins inside another one: a closing brace } is missing above it.",
-        "Add the missing }.",
-        None,
-    )
+        return _brace(*unbalanced)
+    said = "a function begins inside another one: a closing brace } is missing above it."
+    return _Words(said, "Add the missing }.")
 
 
-def _undeclared(package, problem, lines, match):
-    name = match.group(1)
-    suggested = re.search(
-        r"did you mean '([^']+)'", problem.text.replace("‘", "'").replace("’", "'")
-    )
-    after = problem.after.replace("‘", "'").replace("’", "'")
-    suggested = suggested or re.search(
-        r"suggested alternative: '([^']+)'", after.split("error:")[0]
-    )
+def _undeclared(error):
+    name, text = error.match.group(1), "\n".join(error.lines)
     if name == "ros" or name.startswith("ROS_"):
         return _header(name, "ros/ros.h")
     if uses.is_ros_package(name):
-        used = re.search(rf"\b{re.escape(name)}::(\w+)", "\n".join(lines))
+        used = re.search(rf"\b{re.escape(name)}::(\w+)", text)
         return _header(name, f"{name}/{used.group(1)}.h" if used else f"{name}/....h")
     if name in _MESSAGES:
-        return (
-            f"nothing is called {name} here; the type is std_msgs::{name}.",
-            f"Write std_msgs::{name}.",
-            None,
-            (name, f"std_msgs::{name}"),
-        )
+        said = f"nothing is called {name} here; the type is std_msgs::{name}."
+        return _Words(said, f"Write std_msgs::{name}.", None, (name, f"std_msgs::{name}"))
     if re.fullmatch(r"u?int(8|16|32|64)_t", name):
         return _header(name, "cstdint")
     if name in ("cout", "cin", "endl", "string", "vector"):
         said = f"nothing is called {name} here; it is std::{name}."
-        return said, f"Write std::{name}.", None, (name, f"std::{name}")
-    own = set(re.findall(r"\b[A-Za-z_]\w*\b", "\n".join(lines))) - {name}
-    near = [suggested.group(1)] if suggested else difflib.get_close_matches(name, own, 1, 0.8)
-    hint = f" Perhaps {near[0]} is meant." if near else ""
-    return (
+        return _Words(said, f"Write std::{name}.", None, (name, f"std::{name}"))
+    own = set(re.findall(r"\b[A-Za-z_]\w*\b", text)) - {name}
+    near = error.suggested() or nearest(name, own, 0.8)
+    return _Words(
         f"nothing is called {name} here: it is misspelt, or declared nowhere, or further"
-        f" down.{hint}",
-        f"Write {near[0]} for {name}." if near else f"Declare {name}, or mend its name.",
-        None,
+        f" down.{perhaps(near)}",
+        f"Write {near} for {name}." if near else f"Declare {name}, or mend its name.",
     )
 
 
 def _header(name, header):
-    return (
-        f"{name} is not known: the line #include <{header}> is missing.",
-        f"Add #include <{header}>.",
-        None,
-    )
+    said = f"{name} is not known: the line #include <{header}> is missing."
+    return _Words(said, f"Add #include <{header}>.")
 
 
-def _no_member(package, problem, lines, match):
-    owner, member = match.group(1), match.group(2)
-    owner = re.sub(r"_<std::allocator<void> ?>", "", owner)
-    suggested = re.search(
-        r"did you mean '([^']+)'", problem.text.replace("‘", "'").replace("’", "'")
-    )
-    hint = f" Perhaps {suggested.group(1)} is meant." if suggested else ""
+def _no_member(error, owner=1, member=2):
+    owner = re.sub(r"_<std::allocator<void> ?>", "", error.match.group(owner))
+    member, suggested = error.match.group(member), error.suggested()
     if re.search(r"(::(Const)?Ptr|shared_ptr<.*>)&?$", owner):
-        return (
+        return _Words(
             f"{member} is asked of a pointer to a message, which has it behind ->.",
             f"Write ->{member} for .{member}.",
             None,
@@ -248,113 +253,94 @@ def _no_member(package, problem, lines, match):
         )
     if owner in ("ros", "std_msgs") and not suggested and member in _MESSAGES:
         return _header(f"{owner}::{member}", f"{owner}/{member}.h")
-    if "UInt32" in owner or re.search(r"std_msgs::\w+$", owner):
-        hint = hint or " Its field is called data."
-    return (
-        f"{owner} has no {member}.{hint}",
-        f"Write {suggested.group(1)}." if suggested else f"Mend the name {member}.",
-        None,
-    )
+    hint = perhaps(suggested)
+    if not hint and ("UInt32" in owner or re.search(r"std_msgs::\w+$", owner)):
+        hint = " Its field is called data."
+    fix = f"Write {suggested}." if suggested else f"Mend the name {member}."
+    return _Words(f"{owner} has no {member}.{hint}", fix)
 
 
-def _no_match(package, problem, lines, match):
-    name = match.group(1).split("(")[0].split("::")[-1].split("<")[0]
-    said = {
-        "subscribe": (
-            "the arguments of subscribe() do not fit: the topic's name, the queue's size, the"
-            " callback, and for a method of a class also the object, as in &CLASS::METHOD, this."
-            " The callback must take the message, and return nothing."
-        ),
-        "advertise": "advertise<TYPE>() takes the topic's name and the queue's size.",
-        "createTimer": (
-            "the arguments of createTimer() do not fit: a ros::Duration, the callback, and for a"
-            " method of a class also the object. The callback must take a const ros::TimerEvent&."
-        ),
-        "publish": "publish() takes a message of the type that was advertised.",
-        "init": "ros::init() takes argc, argv and the node's name, in this order.",
-    }.get(name)
-    return (
-        said or f"{match.group(1)} is called with arguments that do not fit.",
+_CALLS = {
+    "subscribe": (
+        "the arguments of subscribe() do not fit: the topic's name, the queue's size, the"
+        " callback, and for a method of a class also the object, as in &CLASS::METHOD, this."
+        " The callback must take the message, and return nothing."
+    ),
+    "advertise": "advertise<TYPE>() takes the topic's name and the queue's size.",
+    "createTimer": (
+        "the arguments of createTimer() do not fit: a ros::Duration, the callback, and for a"
+        " method of a class also the object. The callback must take a const ros::TimerEvent&."
+    ),
+    "publish": "publish() takes a message of the type that was advertised.",
+    "init": "ros::init() takes argc, argv and the node's name, in this order.",
+}
+
+
+def _no_match(error):
+    called = error.match.group(1)
+    said = _CALLS.get(called.split("(")[0].split("::")[-1].split("<")[0])
+    return _Words(
+        said or f"{called} is called with arguments that do not fit.",
         "Compare the call with the one on the page.",
-        None,
     )
 
 
-def _missing_header(package, problem, lines, match):
-    header = match.group(1)
-    folder = header.split("/")[0]
-    if folder == package.name:
-        own = [path.rsplit("/", 1)[-1][:-4] for path in package.of_kind("message")]
-        name = header.rsplit("/", 1)[-1][:-2]
-        near = difflib.get_close_matches(name, own, 1, 0.5)
-        if name in own:
-            return (
-                f"there is no {header} yet: it is made of {name}.msg, and the target does not wait"
-                " for that, or nothing makes it.",
-                "Look at add_message_files(), generate_messages() and add_dependencies().",
-                None,
-            )
-        hint = f" Perhaps {package.name}/{near[0]}.h is meant." if near else ""
-        return f"there is no header {header}.{hint}", "Mend the name of the header.", None
-    known = [f"std_msgs/{name}.h" for name in _MESSAGES] + ["ros/ros.h"]
-    near = difflib.get_close_matches(header, known, 1, 0.7)
-    hint = f" Perhaps {near[0]} is meant." if near else ""
-    return (
-        f"there is no header {header}.{hint}",
-        f"Write {near[0]}." if near else "Mend the name, or install and declare its package.",
-        None,
-    )
-
-
-def _convert(package, problem, lines, match):
-    return (
-        f"a {_short(match.group(1))} cannot be used where a {_short(match.group(2))} is needed.",
-        "Compare the types with those on the page.",
-        None,
-    )
+def _missing_header(error):
+    header, package = error.match.group(1), error.package
+    if header.split("/")[0] != package.name:
+        near = nearest(header, [f"std_msgs/{name}.h" for name in _MESSAGES] + ["ros/ros.h"], 0.7)
+        fix = f"Write {near}." if near else "Mend the name, or install and declare its package."
+        return _Words(f"there is no header {header}.{perhaps(near)}", fix)
+    own = [path.rsplit("/", 1)[-1][:-4] for path in package.of_kind("message")]
+    name = header.rsplit("/", 1)[-1][:-2]
+    if name in own:
+        return _Words(
+            f"there is no {header} yet: it is made of {name}.msg, and the target does not wait"
+            " for that, or nothing makes it.",
+            "Look at add_message_files(), generate_messages() and add_dependencies().",
+        )
+    near = nearest(name, own, 0.5)
+    hint = perhaps(near and f"{package.name}/{near}.h")
+    return _Words(f"there is no header {header}.{hint}", "Mend the name of the header.")
 
 
 def _short(name):
     return re.sub(r"_<std::allocator<void> ?>|std::__cxx11::|, std::allocator<char>", "", name)
 
 
-def _many_arguments(package, problem, lines, match):
-    return (
-        f"{match.group(2)} is called with too {match.group(1)} arguments.",
-        "Compare the call with the function's parameters.",
-        None,
-    )
+def _convert(error):
+    given, needed = map(_short, error.match.groups())
+    said = f"a {given} cannot be used where a {needed} is needed."
+    return _Words(said, "Compare the types with those on the page.")
 
 
-def _string(package, problem, lines, match):
-    return (
-        "a text is begun with a quotation mark and not ended with one.",
-        "Add the missing quotation mark.",
-        None,
-    )
-
-
-def _no_message(package, problem, lines, match):
-    return (
-        f"{match.group(1)} is no message type, and only messages can be published and received.",
-        "A callback takes a message, such as const std_msgs::UInt32::ConstPtr&; what it holds are"
-        " its members.",
-        None,
-    )
-
-
-def _not_const(package, problem, lines, match):
-    message = _short(match.group(1))
+def _not_const(error):
+    message = _short(error.match.group(1))
     parameter = re.compile(rf"(?<!const )\b{re.escape(message)}\s*&")
-    found = [number for number, text in enumerate(lines, 1) if parameter.search(text)]
-    return (
+    found = [number for number, text in enumerate(error.lines, 1) if parameter.search(text)]
+    return _Words(
         f"a callback takes a {message}& that is not const, and no subscriber can give it one.",
         f"Write const {message}&, or const {message}::ConstPtr&.",
         found[0] if found else None,
-        *([(f"{message}&", f"const {message}&")] if found else []),
+        (f"{message}&", f"const {message}&") if found else None,
     )
 
 
+_TEXT_WITHOUT_END = (
+    "a text is begun with a quotation mark and not ended with one.",
+    "Add the missing quotation mark.",
+)
+_NO_MESSAGE = (
+    "{0} is no message type, and only messages can be published and received.",
+    "A callback takes a message, such as const std_msgs::UInt32::ConstPtr&; what it holds are its"
+    " members.",
+)
+_MANY_ARGUMENTS = (
+    "{1} is called with too {0} arguments.",
+    "Compare the call with the function's parameters.",
+)
+# What the compiler says -> the function of an _Error that says it in plain words; or these words
+# and what to do, with the groups of the shape.
 _WORDS = (
     (
         r"reference of type 'ros::ParameterAdapter<([\w:]+(?:_<[^>]*> ?>)?)\s*&>.* discards",
@@ -362,42 +348,30 @@ _WORDS = (
     ),
     (r"expected ';'(?: before '?([^']+?)'?(?: token)?)?$", _semicolon),
     (r"expected ',' or ';'(?: before '?([^']+?)'?(?: token)?)?", _semicolon),
-    (r"missing terminating", _string),
-    (r"a function-definition is not allowed here", _function_definition),
-    (r"qualified-id in declaration", _function_definition),
+    (r"missing terminating", _TEXT_WITHOUT_END),
+    (
+        r"a function-definition is not allowed here|qualified-id in declaration",
+        _function_definition,
+    ),
     (r"expected '?([^' ]+)'?", _expected),
     (r"(\S+): No such file or directory", _missing_header),
-    (r"'([\w:]+)' was not declared in this scope", _undeclared),
-    (r"'([\w:]+)' has not been declared", _undeclared),
-    (r"'([\w:]+)' does not name a type", _undeclared),
-    (r"'([\w:]+)' is not a (?:class|namespace)", _undeclared),
+    (
+        r"'([\w:]+)' (?:was not declared in this scope|has not been declared|does not name a type"
+        r"|is not a (?:class|namespace))",
+        _undeclared,
+    ),
     (r"'([^']+)' (?:\{aka '[^']*'\} )?has no member named '(\w+)'", _no_member),
     # What roscpp asks of each message.
-    (r"'__s_get\w+' is not a member of '([^']+)'", _no_message),
+    (r"'__s_get\w+' is not a member of '([^']+)'", _NO_MESSAGE),
     (
-        r"'(\w+)' is not a member of '([^']+)'",
-        lambda p, e, lines, m: _no_member(p, e, lines, _Swapped(m)),
+        r"'(\w+)' (?:is not a member of|in namespace) '([^']+)'",
+        lambda error: _no_member(error, owner=2, member=1),
     ),
-    (
-        r"'(\w+)' in namespace '([^']+)' does not name",
-        lambda p, e, lines, m: _no_member(p, e, lines, _Swapped(m)),
-    ),
-    (r"no matching function for call to '([^']+)'", _no_match),
-    (r"no match for call to '([^']+)'", _no_match),
-    (r"too (many|few) arguments to function '([^']+)'", _many_arguments),
+    (r"no match(?:ing function)? for call to '([^']+)'", _no_match),
+    (r"too (many|few) arguments to function '([^']+)'", _MANY_ARGUMENTS),
     (r"cannot convert '([^']+)'.* to '([^']+)'", _convert),
     (r"invalid conversion from '([^']+)' to '([^']+)'", _convert),
 )
-
-
-class _Swapped:
-    """A match whose first two groups have changed places."""
-
-    def __init__(self, match):
-        self.match = match
-
-    def group(self, number):
-        return self.match.group(3 - number)
 
 
 _CODE = re.compile(

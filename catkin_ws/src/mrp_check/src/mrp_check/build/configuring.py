@@ -3,10 +3,10 @@
 
 from __future__ import annotations
 
-import difflib
 import re
 
 from mrp_check.contract.finding import Finding
+from mrp_check.contract.words import nearest, perhaps
 from mrp_check.student.cmake import relative
 
 _CMAKE_ERROR = re.compile(
@@ -44,7 +44,7 @@ def finding(package, output, copy, model):
     if (
         "Unknown CMake command" in text
         and model.catkin
-        and re.search(r'"(add_message_files|generate_messages|add_service_files)"', text)
+        and any(f'"{command}"' in text for command in _BRINGS_MESSAGES)
     ):
         file, line = model.catkin.file, model.catkin.line
     line = max(1, min(line, len(package.lines(file))))
@@ -95,95 +95,132 @@ _COMMANDS = (
 _PACKAGES = ["roscpp", "rospy", "std_msgs", "catkin", "message_generation", "roslib"]
 
 
-def _not_found(text):
-    """Return the match whose group is the name of a package that CMake did not find, or None."""
-    return (
-        re.search(r'Could not find a package configuration file provided by "(\w+)"', text)
-        or re.search(r"catkin_package\(\).*?on the catkin package '(\w+)'", text)
-        or re.search(r"Could NOT find (\w+)", text)
-    )
+# Their group is the name of a package that CMake did not find.
+_NOT_FOUND = (
+    r'Could not find a package configuration file provided by "(\w+)"',
+    r"catkin_package\(\).*?on the catkin package '(\w+)'",
+    r"Could NOT find (\w+)",
+)
 
 
 def absent(package, output):
     """Return the package that CMake did not find though package.xml asks for it, and that looks
     like no other's misspelt name; or None."""
-    match = _not_found(output)
-    name = match and match.group(1)
+    found = (re.search(shape, output) for shape in _NOT_FOUND)
+    name = next((match.group(1) for match in found if match), None)
     asked = name and package.find_line("package.xml", f">{name}<")
-    return name if asked and not difflib.get_close_matches(name, _PACKAGES, 1, 0.6) else None
+    return name if asked and not nearest(name, _PACKAGES) else None
+
+
+_BRINGS_MESSAGES = ("add_message_files", "generate_messages", "add_service_files")
+
+
+def _unknown_command(package, model, match, text):
+    name = match.group(1)
+    if name in _BRINGS_MESSAGES:
+        return (
+            f"{name}() is not known, as find_package(catkin ...) does not name"
+            " message_generation, which brings it.",
+            "Add message_generation to COMPONENTS.",
+        )
+    if name.startswith("catkin_") and model.catkin is None:
+        return (
+            f"{name}() is not known, as find_package(catkin REQUIRED ...) is missing above it.",
+            "Add find_package(catkin REQUIRED COMPONENTS ...).",
+        )
+    near = nearest(name.lower(), _COMMANDS)
+    said = f"there is no command {name}().{perhaps(near)}"
+    return said, f"Write {near}." if near else "Mend it."
+
+
+def _no_package(package, model, match, text):
+    name = match.group(1)
+    near = nearest(name, _PACKAGES)
+    return (
+        f"there is no package {name} on this machine.{perhaps(near)}",
+        f"Write {near} for {name}." if near else f"Install {name}, or take it out.",
+    )
+
+
+def _no_source(package, model, match, text):
+    near = nearest(match.group(1), package.of_kind("cpp"))
+    said = f"there is no source {match.group(1)}.{perhaps(near)}"
+    return said, "Name a file that is there."
+
+
+def _no_target(package, model, match, text):
+    name = match.group(1)
+    near = nearest(name, [] if name in model.targets else model.targets, 0.5)
+    hint = f" There is {near}." if near else ""
+    return (
+        f"there is no target {name} at this point.{hint} add_executable() has to come before.",
+        f"Write {near} for {name}." if near else f"Add add_executable({name} ...) above it.",
+    )
+
+
+def _no_script(package, model, match, text):
+    shown = "/".join(match.group(1).rsplit("/", 2)[1:])
+    near = nearest(shown, package.of_kind("python"))
+    return f"there is no script {shown}.{perhaps(near)}", "Name a file that is there."
+
+
+# (command or None for any, what CMake says) -> what it means and what to do: these words, or a
+# function that says them.
+_WORDS = (
+    (None, r'Unknown CMake command "(\w+)"', _unknown_command),
+    *(("find_package", shape, _no_package) for shape in _NOT_FOUND),
+    (
+        "catkin_package",
+        r"catkin_package\(\) .*?'(\w+)'",
+        lambda package, model, match, text: (
+            text,
+            "Let package.xml, find_package() and catkin_package() name the same.",
+        ),
+    ),
+    (None, r"Cannot find source file: (\S+)", _no_source),
+    (
+        None,
+        r'Cannot specify (?:link libraries|include directories|\w+ \w+) for target "(\S+)"',
+        _no_target,
+    ),
+    (
+        None,
+        r'add_dependencies Cannot add target-level dependencies to non-existent target "(\S+?)"',
+        _no_target,
+    ),
+    (
+        None,
+        r"because another target with the same name already exists",
+        ("a target of this name has been made already, further up.", "Give it its own name."),
+    ),
+    (None, r"non-existing file '([^']+)'", _no_script),
+    (
+        None,
+        r"Function missing ending",
+        ("the call that begins there has no closing parenthesis.", "Close it with a )."),
+    ),
+    (
+        None,
+        r"end of file|not closed",
+        (
+            "a bracket or a quotation mark that is opened there is never closed.",
+            "Close what was opened.",
+        ),
+    ),
+    (
+        None,
+        r"Parse error",
+        ("a bracket or a quotation mark is missing, or too much.", "Mend the call there."),
+    ),
+)
 
 
 def _in_words(package, text, command, model):
     """Return (what it means, what to do)."""
-    match = re.search(r'Unknown CMake command "(\w+)"', text)
-    if match:
-        name = match.group(1)
-        if name in ("add_message_files", "generate_messages", "add_service_files"):
-            return (
-                f"{name}() is not known, as find_package(catkin ...) does not name"
-                " message_generation, which brings it.",
-                "Add message_generation to COMPONENTS.",
-            )
-        if name.startswith("catkin_") and model.catkin is None:
-            return (
-                f"{name}() is not known, as find_package(catkin REQUIRED ...) is missing above it.",
-                "Add find_package(catkin REQUIRED COMPONENTS ...).",
-            )
-        near = difflib.get_close_matches(name.lower(), _COMMANDS, 1, 0.6)
-        hint = f" Perhaps {near[0]} is meant." if near else ""
-        return f"there is no command {name}().{hint}", f"Write {near[0]}." if near else "Mend it."
-    match = _not_found(text)
-    if match and command == "find_package":
-        name = match.group(1)
-        near = difflib.get_close_matches(name, _PACKAGES, 1, 0.6)
-        hint = f" Perhaps {near[0]} is meant." if near else ""
-        return (
-            f"there is no package {name} on this machine.{hint}",
-            f"Write {near[0]} for {name}." if near else f"Install {name}, or take it out.",
-        )
-    match = re.search(r"catkin_package\(\) .*?'(\w+)'", text)
-    if command == "catkin_package" and match:
-        return f"{text}", "Let package.xml, find_package() and catkin_package() name the same."
-    match = re.search(r"Cannot find source file: (\S+)", text)
-    if match:
-        near = difflib.get_close_matches(match.group(1), package.of_kind("cpp"), 1, 0.6)
-        hint = f" Perhaps {near[0]} is meant." if near else ""
-        return f"there is no source {match.group(1)}.{hint}", "Name a file that is there."
-    match = re.search(
-        r'Cannot specify (?:link libraries|include directories|\w+ \w+) for target "(\S+)"', text
-    ) or re.search(
-        r"add_dependencies Cannot add target-level dependencies to"
-        r' non-existent target "(\S+?)"',
-        text,
-    )
-    if match:
-        name = match.group(1)
-        targets = [] if name in model.targets else list(model.targets)
-        near = difflib.get_close_matches(name, targets, 1, 0.5)
-        hint = f" There is {near[0]}." if near else ""
-        return (
-            f"there is no target {name} at this point.{hint} add_executable() has to come before.",
-            f"Write {near[0]} for {name}." if near else f"Add add_executable({name} ...) above it.",
-        )
-    match = re.search(r"because another target with the same name already exists", text)
-    if match:
-        return "a target of this name has been made already, further up.", "Give it its own name."
-    match = re.search(r"non-existing file '([^']+)'", text)
-    if match:
-        name = match.group(1).rsplit("/", 2)
-        shown = "/".join(name[1:])
-        near = difflib.get_close_matches(shown, package.of_kind("python"), 1, 0.6)
-        hint = f" Perhaps {near[0]} is meant." if near else ""
-        return f"there is no script {shown}.{hint}", "Name a file that is there."
-    if "Function missing ending" in text:
-        return "the call that begins there has no closing parenthesis.", "Close it with a )."
-    if "end of file" in text or "not closed" in text:
-        return (
-            "a bracket or a quotation mark that is opened there is never closed.",
-            "Close what was opened.",
-        )
-    if "Parse error" in text:
-        return "a bracket or a quotation mark is missing, or too much.", "Mend the call there."
+    for of_command, shape, words in _WORDS:
+        match = re.search(shape, text) if of_command in (None, command) else None
+        if match:
+            return words(package, model, match, text) if callable(words) else words
     return text[:300], "Compare the line with the one on the page."
 
 

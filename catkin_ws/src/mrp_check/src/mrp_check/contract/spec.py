@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import dataclasses
-import difflib
 import json
 import pathlib
 import re
@@ -16,6 +15,7 @@ import yaml
 from mrp_check.contract import resources
 from mrp_check.contract.errors import SpecError
 from mrp_check.contract.resources import SHARES
+from mrp_check.contract.words import nearest
 
 SCHEMA = resources.folder("schema") / "spec.json"
 PACKAGE = "PACKAGE"  # in a type: the package's own name
@@ -341,8 +341,8 @@ def _no_such(kind, name, names):
 
 
 def _near(name, names):
-    near = difflib.get_close_matches(name, list(names), 1)
-    return f" Did you mean '{near[0]}'?" if near else ""
+    near = nearest(name, names)
+    return f" Did you mean '{near}'?" if near else ""
 
 
 def _sentence(error):

@@ -13,11 +13,11 @@ from mrp_check.running import evidence
 _TAGS = ("launch node group arg param rosparam remap include env machine test master").split()
 
 
-def findings(package, spec, launch):
+def findings(package, launch):
     """Yield findings about a launch file that is XML, from a launch.Launch."""
     tags = launch.elements(package)
     if launch.error:
-        yield _error(package, launch, tags)
+        yield _error(launch, tags)
     else:
         yield from _unknown(tags)
 
@@ -39,71 +39,86 @@ def _unknown(tags):
             )
 
 
-def _error(package, launch, tags):
+class _Said:
+    """What roslaunch said instead of loading a file; finds the element that is to blame."""
+
+    def __init__(self, launch, tags):
+        self.text = " ".join(launch.error.split())
+        self.tags, self.start = tags, (launch.file, 1)
+
+    def first(self, condition):
+        """Return the place of the first element for which the condition holds."""
+        return next(((f, e.line) for f, e in self.tags if condition(e)), self.start)
+
+    def named(self, tag, name):
+        """Return the places of the elements of that tag and name."""
+        same = ((f, e) for f, e in self.tags if e.tag == tag and e.attributes.get("name") == name)
+        return [(file, element.line) for file, element in same]
+
+    def not_understood(self, name=None):
+        words = [name] if name else re.findall(r"[\w./$()-]+", self.text)
+        place = self.first(lambda e: any(v in words for v in e.attributes.values()))
+        return place, f"roslaunch cannot load the launch file: {self.text}", None
+
+
+def _twice(said, name):
+    name = name.rsplit("/", 1)[-1]
+    place = [said.start, *said.named("node", name)][-1]
+    message = f"Two nodes of the launch file have the name {name}; each needs its own."
+    return place, message, "Give each <node> its own name."
+
+
+def _attribute(said, tag, name):
+    place = said.first(lambda e: e.tag == tag and name not in e.attributes)
+    message = f'A <{tag}> in the launch file has no {name}="...".'
+    return place, message, f'Add {name}="...".'
+
+
+def _not_there(said, name):
+    name = name.strip("'\".,")
+    place = said.first(lambda e: any(name in v for v in e.attributes.values()))
+    message = f"The launch file names a package or a file that is not there: {name}."
+    return place, message, None
+
+
+def _argument(said, name):
+    declared = said.named("arg", name)
+    if declared:
+        message = f"The launch file's argument {name} has no value: roslaunch asks for one."
+        return declared[0], message, 'Give it one for when no other is given: default="...".'
+    place = said.first(lambda e: any(f"arg {name}" in v for v in e.attributes.values()))
+    return place, f"roslaunch cannot load the launch file: {said.text}", None
+
+
+# What roslaunch says -> the function of _Said and of its groups that returns (place, message, fix).
+_WORDS = (
+    (r"multiple nodes named \[(\S+?)\]", _twice),
+    (r"<(\w+)> tag is missing required attribute:? ?'(\w+)'", _attribute),
+    (r"Resource ?[Nn]ot ?[Ff]ound: (\S+)", _not_there),
+    (r"arg (?:to be set|named)? ?\[?'?(\w+)'?\]?|requires the '(\w+)' arg", _argument),
+    (r"unknown .*?'(\w+)'|\[(\w+)\] is not a valid|$", _Said.not_understood),
+)
+
+
+def _error(launch, tags):
     """Return the Finding about what roslaunch said instead of loading the file."""
-    text = " ".join(launch.error.split())
-    file, line = launch.file, 1
-
-    def first(condition):
-        return next(((f, e.line) for f, e in tags if condition(e)), (file, 1))
-
-    def named(tag, name):
-        return [(f, e.line) for f, e in tags if e.tag == tag and e.attributes.get("name") == name]
-
-    twice = re.search(r"multiple nodes named \[(\S+?)\]", text)
-    attribute = re.search(r"<(\w+)> tag is missing required attribute:? ?'(\w+)'", text)
-    argument = re.search(
-        r"arg (?:to be set|named)? ?\[?'?(\w+)'?\]?|requires the '(\w+)' arg", text
-    )
-    missing = re.search(r"Resource ?[Nn]ot ?[Ff]ound: (\S+)", text)
-    unknown = re.search(r"unknown .*?'(\w+)'|\[(\w+)\] is not a valid", text)
-    fix = "Mend this line, and try again: roslaunch --nodes says whether it can be read."
-    if twice:
-        name = twice.group(1).rsplit("/", 1)[-1]
-        lines = named("node", name)
-        file, line = lines[-1] if lines else (file, 1)
-        message = f"Two nodes of the launch file have the name {name}; each needs its own."
-        fix = "Give each <node> its own name."
-    elif attribute:
-        tag, name = attribute.groups()
-        file, line = first(lambda e: e.tag == tag and name not in e.attributes)
-        message = f'A <{tag}> in the launch file has no {name}="...".'
-        fix = f'Add {name}="...".'
-    elif missing:
-        name = missing.group(1).strip("'\".,")
-        file, line = first(lambda e: any(name in v for v in e.attributes.values()))
-        message = f"The launch file names a package or a file that is not there: {name}."
-    elif argument and ("arg" in text):
-        name = next(filter(None, argument.groups()))
-        declared = named("arg", name)
-        if declared:
-            file, line = declared[0]
-            message = f"The launch file's argument {name} has no value: roslaunch asks for one."
-            fix = 'Give it one for when no other is given: default="...".'
-        else:
-            file, line = first(lambda e: any(f"arg {name}" in v for v in e.attributes.values()))
-            message = f"roslaunch cannot load the launch file: {text}"
-    else:
-        words = re.findall(r"[\w./$()-]+", text)
-        if unknown:
-            words = [next(filter(None, unknown.groups()))]
-        file, line = first(lambda e: any(v in words for v in e.attributes.values()))
-        message = f"roslaunch cannot load the launch file: {text}"
+    said = _Said(launch, tags)
+    match, words = next((m, w) for shape, w in _WORDS for m in [re.search(shape, said.text)] if m)
+    place, message, fix = words(said, *filter(None, match.groups()))
     return Finding(
         "launch-file",
         message,
-        file,
-        line,
+        *place,
         expected="a file that roslaunch can load",
-        seen=text[:500],
-        fix=fix,
+        seen=said.text[:500],
+        fix=fix or "Mend this line, and try again: roslaunch --nodes says whether it can be read.",
     )
 
 
 def _findings(case):
     yield from case.launch_file[1]
     if case.launch:
-        yield from findings(case.package, case.spec, case.launch)
+        yield from findings(case.package, case.launch)
 
 
 RULE = Rule(
