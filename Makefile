@@ -111,7 +111,7 @@ test-check: packages-test-all  ## check the packages that judge the checker
 # HINT=1 shows the hint; RESET=1 begins the exercise anew. Exit code 1 only says: not yet.
 .PHONY: exercise
 exercise: packages-check  ## show the next exercise, or check it; HINT=1 gives a hint
-	@$(IN_ENVIRONMENT) PYTHONPATH=catkin_ws/src/mrp_check/src /usr/bin/python3 -m mrp_check.exercise \
+	@$(IN_ENVIRONMENT) PYTHONPATH=catkin_ws/src/mrp_check/src /usr/bin/python3 -m mrp_check.cli.exercise \
 	  $(if $(HINT),--hint) $(if $(RESET),--reset) catkin_ws/exercises || [ $$? = 1 ]
 
 # What else runs on this machine shows in the figures: end it before.

@@ -2,11 +2,29 @@
 """Small packages for the tests of the checker's rules: a rule sees the files, nothing is built."""
 
 import pathlib
+import types
 
-from mrp_check import case, spec
-from mrp_check.package import Package
-from mrp_check.stages import cmake, uses
-from mrp_check.stages.static import facts, python_facts, python_read, python_rules
+from mrp_check import case
+from mrp_check.contract import spec
+from mrp_check.rules import (
+    callbacks,
+    counter,
+    early_timer,
+    lifetime,
+    message_fields,
+    node_name,
+    node_start,
+    not_called,
+    not_kept,
+    python_names,
+    queue,
+    rospy_calls,
+    spin,
+    swapped_sources,
+)
+from mrp_check.sources import facts, node, python_facts, python_read, uses
+from mrp_check.student import cmake
+from mrp_check.student.package import Package
 
 MANIFEST = """<?xml version="1.0"?>
 <package format="3">
@@ -68,7 +86,20 @@ def python_findings(folder, source):
     """Return the findings of the Python rules about a source, that of a file src/odd.py."""
     package = make(folder, src__odd_DOT_py=source)
     read, problem = python_read.read(package, "src/odd.py")
-    return [problem] if problem else list(python_rules.findings(package, read))
+    if problem:
+        return [problem]
+    known = facts.Facts(python={read.file: read}, relevant=[read.file])
+    one = types.SimpleNamespace(package=package, facts=known)
+    rules = python_names, message_fields, rospy_calls, early_timer, not_called, not_kept
+    return [finding for file in rules for finding in file.RULE.findings(one)]
+
+
+def node_findings(package, model, found):
+    """Return what the rules say of the nodes of pub_sub whose sources say that (facts.Facts)."""
+    coded = node.nodes(package, PUB_SUB, model, None, found)
+    one = types.SimpleNamespace(coded=coded)
+    rules = swapped_sources, node_start, node_name, spin, queue, lifetime, callbacks, counter
+    return [finding for file in rules for finding in file.RULE.findings(one)]
 
 
 def python_facts_of(folder, source):

@@ -14,7 +14,7 @@ import re
 import shutil
 import subprocess
 
-from mrp_check import defects
+from mrp_check.contract import defects
 
 HERE = pathlib.Path(__file__).parent
 TUTORIAL = HERE.parent / "src" / "mrp"

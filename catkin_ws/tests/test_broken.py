@@ -13,7 +13,7 @@ import xml.etree.ElementTree as ElementTree
 import compiler_cache
 import pytest
 import scratch
-from mrp_check import defects
+from mrp_check.contract import defects
 
 pytestmark = pytest.mark.slow
 

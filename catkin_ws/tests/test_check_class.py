@@ -13,7 +13,10 @@ import sys
 import uuid
 
 import pytest
-from mrp_check import check, classroom, package, spec
+from mrp_check import check
+from mrp_check.cli import classroom
+from mrp_check.contract import spec
+from mrp_check.student import package
 from waiting import wait_until
 
 pytestmark = pytest.mark.quick
@@ -318,7 +321,7 @@ def sleepers(seconds):
 @contextlib.contextmanager
 def command(*arguments):
     """The checker's command, running; whatever becomes of the test, it ends with it."""
-    program = "from mrp_check.command import main; main()"
+    program = "from mrp_check.cli.check import main; main()"
     env = {**os.environ, "PYTHONPATH": ":".join(sys.path)}
     with subprocess.Popen(
         ["/usr/bin/python3", "-c", program, *map(str, arguments)],

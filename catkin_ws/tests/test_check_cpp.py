@@ -8,17 +8,17 @@ import subprocess
 
 import check_rules
 import pytest
-from check_rules import PUB_SUB, told
-from mrp_check.stages import static
-from mrp_check.stages.static import cpp_headers, node_rules
-from mrp_check.stages.static import facts as facts_
+from check_rules import told
+from mrp_check.confined import cpp_headers
+from mrp_check.sources import facts as facts_
+from mrp_check.sources import reading
 
 # One worker of pytest builds for all of these tests.
 pytestmark = [pytest.mark.quick, pytest.mark.xdist_group("check_cpp")]
 
 FOLDER = pathlib.Path(__file__).resolve().parents[1] / "src" / "mrp" / "src"
 PUBLISHER, SUBSCRIBER = "publisher_cpp_node", "subscriber_cpp_node"
-CPP_FACTS = pathlib.Path(static.__file__).with_name("cpp_facts.py")
+CPP_FACTS = pathlib.Path(cpp_headers.__file__).with_name("cpp_facts.py")
 SOURCES = {name: (FOLDER / f"{name}.cpp").read_text() for name in (PUBLISHER, SUBSCRIBER)}
 
 
@@ -46,10 +46,10 @@ def findings(folder, headers, node, source):
     said = said_of(folder, headers)
     assert said["errors"] == []
     facts = facts_.Facts()
-    static._mark_unused(facts, static._take(package, facts, "src/a.cpp", said))
+    reading._mark_unused(facts, reading._take(package, facts, "src/a.cpp", said))
     facts.sources[node] = ["src/a.cpp"]
     model = check_rules.model_of(package)
-    return list(node_rules.findings(package, PUB_SUB, model, None, facts))
+    return check_rules.node_findings(package, model, facts)
 
 
 def replaced(node, *changes):

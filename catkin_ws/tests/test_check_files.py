@@ -4,8 +4,11 @@
 import check_rules
 import pytest
 from check_rules import CMAKE, MANIFEST, PUB_SUB, told
-from mrp_check.stages import cmake, compiler, configuring
-from mrp_check.stages.files import cmake_rules, dependencies, manifest, names, scripts, text
+from mrp_check.build import compiler, configuring
+from mrp_check.rules import cmake as cmake_rule
+from mrp_check.rules import dependencies, messages, package_name, scripts, targets, text
+from mrp_check.rules import manifest as manifest_rule
+from mrp_check.student import cmake, manifest
 
 pytestmark = pytest.mark.quick
 
@@ -62,7 +65,7 @@ def test_broken_manifest(old, new, line, says, tmp_path):
     assert MANIFEST.count(old) == 1
     package = check_rules.make(tmp_path, **{"package_DOT_xml": MANIFEST.replace(old, new)})
     parsed, problem = manifest.parse(package)
-    findings = [problem] if problem else list(manifest.findings(package, parsed))
+    findings = [problem] if problem else list(manifest_rule.findings(package, parsed))
     assert told(findings) == [("manifest", line)]
     assert says in findings[0].message
 
@@ -70,7 +73,7 @@ def test_broken_manifest(old, new, line, says, tmp_path):
 def test_good_manifest(tmp_path):
     package = check_rules.make(tmp_path)
     parsed, problem = manifest.parse(package)
-    assert (problem, told(manifest.findings(package, parsed))) == (None, [])
+    assert (problem, told(manifest_rule.findings(package, parsed))) == (None, [])
 
 
 def dependency_findings(folder, manifest_text=MANIFEST, cmake_text=CMAKE, **files):
@@ -140,7 +143,8 @@ def test_broken_cmake(old, new, line, says, tmp_path):
     package = check_rules.make(
         tmp_path, CMakeLists_DOT_txt=CMAKE.replace(old, new), src__a_DOT_cpp="int main() {}\n"
     )
-    (finding,) = cmake_rules.findings(package, check_rules.model_of(package))
+    model = check_rules.model_of(package)
+    (finding,) = [*cmake_rule.findings(package, model), *targets.findings(package, model)]
     assert (finding.file, finding.line) == ("CMakeLists.txt", line)
     assert says in finding.message
 
@@ -161,13 +165,13 @@ def test_cmake_as_text():
 def test_who_is_wrong_about_the_name_is_decided_by_the_others(tmp_path):
     package = check_rules.make(tmp_path / "some_pkg")
     model = check_rules.model_of(package)
-    assert list(names.findings(package, model, None)) == []
+    assert list(package_name.findings(package, model, None)) == []
     text_ = CMAKE.replace("project(some_pkg)", "project(other)")
     package = check_rules.make(tmp_path / "some_pkg", CMakeLists_DOT_txt=text_)
-    (finding,) = names.findings(package, check_rules.model_of(package), None)
+    (finding,) = package_name.findings(package, check_rules.model_of(package), None)
     assert (finding.file, finding.line) == ("CMakeLists.txt", 2)
     package = check_rules.make(tmp_path / "other", CMakeLists_DOT_txt=text_)
-    (finding,) = names.findings(package, check_rules.model_of(package), None)
+    (finding,) = package_name.findings(package, check_rules.model_of(package), None)
     assert (finding.file, finding.line) == ("package.xml", 3)
 
 
@@ -311,7 +315,7 @@ def test_what_makes_messages(generator, severities, tmp_path):
     )
     parsed, _ = manifest.parse(package)
     model = check_rules.model_of(package)
-    found = cmake_rules.own_messages(package, PUB_SUB, model, parsed)
+    found = messages.findings(package, PUB_SUB, model, parsed)
     assert [finding.severity for finding in found] == severities
 
 

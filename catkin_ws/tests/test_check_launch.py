@@ -6,8 +6,8 @@ import re
 import check_rules
 import pytest
 from check_rules import PUB_SUB, told
-from mrp_check.stages import launching
-from mrp_check.stages.files import launch_rules
+from mrp_check.rules import launch_file, launch_group, launch_nodes, launch_output, launch_remap
+from mrp_check.student import launch as launching
 
 pytestmark = pytest.mark.slow  # each test imports roslaunch anew, in a process of its own
 
@@ -34,6 +34,8 @@ LAUNCH = f"""<launch>
 {"".join(NODES)}  </group>
 </launch>
 """
+FILES = (launch_file, launch_nodes, launch_group, launch_output, launch_remap)
+RULES = [file.RULE for file in FILES]
 
 
 def findings(folder, text, **files):
@@ -42,14 +44,10 @@ def findings(folder, text, **files):
     for name in ("publisher", "subscriber"):
         files[f"src__{name}_py_node_DOT_py"] = "#!/usr/bin/env python\n"
     package = check_rules.make(folder / "some_pkg", launch__pub_sub_DOT_launch=text, **files)
-    file, problems = launch_rules.readable(package, PUB_SUB)
-    if problems:
-        return problems
-    case = check_rules.case_of(package, folder / "scratch")
-    launch = launching.load(package, case, file)
+    case = check_rules.case_of(package, folder / "scratch", model=check_rules.model_of(package))
+    found = [finding for rule in RULES for finding in rule.findings(case)]
     case.catkin.close()
-    model = check_rules.model_of(package)
-    return list(launch_rules.findings(package, PUB_SUB, model, launch))
+    return found
 
 
 def replaced(old, new):
@@ -130,7 +128,7 @@ def test_broken_launch_file(old, new, wanted, words, tmp_path):
 @pytest.mark.quick
 def test_other_file_name(tmp_path):
     package = check_rules.make(tmp_path, launch__pubsub_DOT_launch=LAUNCH)
-    path, (finding,) = launch_rules.readable(package, PUB_SUB)
+    path, (finding,) = launching.readable(package, PUB_SUB)
     assert (path, finding.id, finding.file) == (None, "launch-file", "launch/pubsub.launch")
 
 

@@ -6,7 +6,6 @@ import re
 import check_rules
 import pytest
 from check_rules import told
-from mrp_check.stages.static import node_rules
 
 pytestmark = pytest.mark.quick
 
@@ -188,7 +187,7 @@ def test_queue_is_as_long_as_the_contract_says(queue, severity, tmp_path):
     text = replaced("queue_size=10", f"queue_size={queue}")
     package, facts = check_rules.python_facts_of(tmp_path, text)
     model = check_rules.model_of(package)
-    found = node_rules.findings(package, check_rules.PUB_SUB, model, None, facts)
+    found = check_rules.node_findings(package, model, facts)
     assert told(found, severity) == [("queue", 9)]
 
 
@@ -213,7 +212,7 @@ def test_missing_spin_belongs_to_the_end(indent, line, tmp_path):
         text = text.replace("    rospy.loginfo", "rospy.loginfo").replace("    node =", "node =")
     package, facts = check_rules.python_facts_of(tmp_path, text)
     model = check_rules.model_of(package)
-    (finding,) = node_rules.findings(package, check_rules.PUB_SUB, model, None, facts)
+    (finding,) = check_rules.node_findings(package, model, facts)
     assert (finding.id, text.splitlines()[finding.line - 1]) == ("spin", line)
 
 

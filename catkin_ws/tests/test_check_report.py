@@ -12,14 +12,17 @@ import check_rules
 import jsonschema
 import pytest
 import scratch
-from mrp_check import causes, check, classroom, resources
+from mrp_check import causes, check
 from mrp_check.case import Case
-from mrp_check.finding import CannotCheck, Finding
+from mrp_check.cli import classroom
+from mrp_check.contract import resources
+from mrp_check.contract.errors import CannotCheck
+from mrp_check.contract.finding import Finding
+from mrp_check.contract.requirements import Rule
 from mrp_check.report import console, json_, junit
 from mrp_check.report import html as html_report
-from mrp_check.requirements import REQUIREMENTS, Rule
-from mrp_check.stages import files, static
-from mrp_check.stages.static.facts import Facts
+from mrp_check.rules import REQUIREMENTS, RULES
+from mrp_check.sources.facts import Facts
 
 pytestmark = pytest.mark.quick
 
@@ -234,19 +237,19 @@ rospy.spin()
 
 
 def examined(folder, rules, monkeypatch, only=(), **files):
-    """Return the Report of a package of Python nodes, by these rules of each stage alone."""
-    monkeypatch.setattr(check, "RULES", {name: rules.get(name, ()) for name in check.RULES})
+    """Return the Report of a package of Python nodes, by these rules alone."""
+    monkeypatch.setattr(check, "RULES", rules)
     package = check_rules.make(folder / "some_pkg", **files)
     return check.check(package.root, check_rules.PUB_SUB, only, timeout=300)
 
 
-def rule(*found, ids=("text",), fails=None):
+def rule(*found, ids=("text",), fails=None, stage="files"):
     def findings(case):
         yield from found
         if fails:
             raise fails
 
-    return Rule(ids, (), findings)
+    return Rule(stage, 1, (), findings, also=ids)
 
 
 @pytest.mark.parametrize(
@@ -259,10 +262,11 @@ def rule(*found, ids=("text",), fails=None):
 )
 def test_a_rule_that_fails_costs_its_own_requirements_alone(fails, says, tmp_path, monkeypatch):
     wrong = Finding("cmake", "It is wrong.", "CMakeLists.txt", 1)
-    rules = {
-        "files": (rule(fails=fails), rule(wrong, ids=("cmake",))),
-        "static": (rule(ids=("manifest",)),),
-    }
+    rules = [
+        rule(fails=fails),
+        rule(wrong, ids=("cmake",)),
+        rule(ids=("manifest",), stage="static"),
+    ]
     one = examined(tmp_path, rules, monkeypatch, only=("text", "cmake", "manifest"))
     assert one.verdict == check.UNCHECKED
     assert one.requirements == {
@@ -279,7 +283,7 @@ def test_a_rule_that_fails_costs_its_own_requirements_alone(fails, says, tmp_pat
 
 def test_a_rule_reports_no_other_requirement_than_it_says(tmp_path, monkeypatch):
     other = rule(Finding("spin", "It never spins."), ids=("text",))
-    one = examined(tmp_path, {"files": (other,)}, monkeypatch, only=("text",))
+    one = examined(tmp_path, [other], monkeypatch, only=("text",))
     assert (one.verdict, one.findings) == (check.UNCHECKED, [])
     assert "a rule reports spin, and does not say so" in one.reason
 
@@ -292,20 +296,23 @@ def test_what_failed_once_is_not_tried_again(tmp_path, monkeypatch):
         raise CannotCheck("CMake did not end.")
 
     monkeypatch.setattr(Case, "model", property(model))
-    rules = {"files": [Rule(("text",), ("model",), list), Rule(("cmake",), ("facts",), list)]}
+    rules = [
+        Rule("files", 1, ("model",), list, also=("text",)),
+        Rule("files", 2, ("facts",), list, also=("cmake",)),
+    ]
     one = examined(tmp_path, rules, monkeypatch, only=("text", "cmake"))
     assert (one.reason, len(tried)) == ("CMake did not end.", 1)
     assert {*one.requirements.values()} == {check.UNCHECKED}
 
 
-STATIC = {"files": files.RULES, "static": static.RULES}
-STATIC_IDS = [id_ for id_, one in REQUIREMENTS.items() if one.stage in STATIC]
+STATIC = [rule for rule in RULES if rule.stage in ("files", "static")]
+STATIC_IDS = [id_ for rule in STATIC for id_ in rule.requirements]
 
 
 @pytest.mark.parametrize("id_", ["wrap", "launch-nodes"])
 def test_one_requirement_alone_is_checked_as_among_all(id_):
     """--only runs what the rules need that can report the requirement, in whichever stage."""
-    rules = [rule for rules in check.RULES.values() for rule in rules if id_ in rule.ids]
+    rules = [rule for rule in RULES if id_ in rule.ids]
     assert len(rules) > 1
     needs = check._needs([id_])
     assert "launch" in needs and "facts" in needs

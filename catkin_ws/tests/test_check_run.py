@@ -12,12 +12,14 @@ import textwrap
 
 import check_rules
 import pytest
-from mrp_check import confine, evidence, spec
-from mrp_check.finding import ERROR, NOTE, CannotCheck
-from mrp_check.package import Package
-from mrp_check.requirements import REQUIREMENTS
-from mrp_check.stages import observing, run, stop
-from mrp_check.stages.static.facts import Facts
+from mrp_check import check, confine
+from mrp_check.contract import spec
+from mrp_check.contract.errors import CannotCheck
+from mrp_check.contract.finding import ERROR, NOTE
+from mrp_check.rules import REQUIREMENTS, RULES
+from mrp_check.running import observing
+from mrp_check.sources.facts import Facts
+from mrp_check.student.package import Package
 
 pytestmark = pytest.mark.slow
 
@@ -254,11 +256,14 @@ def make_package(folder, publishers, subscribers):
     return folder
 
 
+OF_RUN = [rule for rule in RULES if rule.stage in ("run", "stop")]
+
+
 def findings_of(folder, contract, scratch):
     """Return what the stages run and stop find, without building anything."""
     case = check_rules.case_of(Package(folder), scratch, contract, built=None, facts=Facts())
     found = []
-    for rule in (*run.RULES, *stop.RULES):
+    for rule in OF_RUN:
         of_rule = list(rule.findings(case))
         assert {finding.id for finding in of_rule} <= {*rule.ids}
         found += of_rule
@@ -321,10 +326,10 @@ def test_texts_on_a_number_topic_are_found_and_no_fault_of_the_checker(tmp_path)
     launch = {"lines": [], "seen": seen, "asked": 5, "ending": "enough"}
     observed = observing.Observed(launch=launch, executables={"publisher_right": folder})
     case = observed_case(tmp_path, folder, observed)
-    found = [finding.id for rule in run.RULES for finding in rule.findings(case)]
+    found = [finding.id for rule in OF_RUN for finding in rule.findings(case)]
     case.catkin.close()
     assert "type" in found and "values" not in found
-    unseen = evidence.unseen(case, ["values", "rate", "latch", "exit", "type"])
+    unseen = check.unseen(case, ["values", "rate", "latch", "exit", "type"])
     assert unseen == {
         "values": "publisher_right published no number",
         "exit": "publisher_right was not seen to end",
@@ -347,7 +352,7 @@ def test_what_a_dead_node_would_do_was_never_seen(tmp_path):
     case = observed_case(tmp_path, folder, observed)
     case.catkin.close()
     of_run = [id_ for id_, one in REQUIREMENTS.items() if one.stage in ("run", "stop")]
-    unseen = evidence.unseen(case, of_run)
+    unseen = check.unseen(case, of_run)
     # Nobody asks it to hear anything.
     assert {*of_run} - {*unseen} == {"received"}
     assert {*unseen.values()} == {"publisher_right did not run"}
@@ -480,7 +485,7 @@ def attack():
         for process in os.listdir("/proc"):
             try:
                 with open(f"/proc/{process}/cmdline") as file:
-                    if "mrp_check.session" in file.read():
+                    if "mrp_check.confined.session" in file.read():
                         os.kill(int(process), signal.SIGKILL)
                         os.kill(int(process), signal.SIGSTOP)
             except (OSError, ValueError):

@@ -14,7 +14,7 @@ import check_sets
 import compiler_cache
 import pytest
 import scratch
-from mrp_check import defects
+from mrp_check.contract import defects
 
 pytestmark = pytest.mark.sets
 
@@ -39,14 +39,13 @@ def run_check(tmp_path):
 
     def run(folder, spec, *options):
         report = tmp_path / "report.json"
-        compiler_cache.FOLDER.mkdir(parents=True, exist_ok=True)
         env = scratch.environment()
         env.update(
             PYTHONPATH=str(CHECK / "src"),
             PYTHONDONTWRITEBYTECODE="1",
             # Only what a style or a defect changes is compiled anew.
             PATH=f"/usr/lib/ccache:{os.environ['PATH']}",
-            CCACHE_DIR=str(compiler_cache.FOLDER),
+            CCACHE_DIR=str(compiler_cache.FOLDER.with_name("ccache_of_checks")),
         )
         command = ["/usr/bin/python3", CHECK / "scripts" / "check", folder]
         done = subprocess.run(

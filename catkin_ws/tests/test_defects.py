@@ -9,8 +9,8 @@ import re
 import check_sets
 import errata
 import pytest
-from mrp_check import defects
-from mrp_check.requirements import REQUIREMENTS
+from mrp_check.contract import defects
+from mrp_check.rules import REQUIREMENTS
 
 pytestmark = pytest.mark.quick
 

@@ -33,7 +33,7 @@ WORKSPACE = pathlib.Path(__file__).resolve().parents[4]
 ROOT = WORKSPACE.parent
 sys.path.insert(0, str(WORKSPACE / "src" / "mrp_check" / "src"))
 
-from mrp_check import defects  # noqa: E402
+from mrp_check.contract import defects  # noqa: E402
 
 logger = logging.getLogger(__name__)
 

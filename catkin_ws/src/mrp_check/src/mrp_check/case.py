@@ -7,14 +7,17 @@ import functools
 import pathlib
 import shutil
 
-from mrp_check.package import Package
-from mrp_check.spec import Spec
-from mrp_check.stages import launching, observing, static
-from mrp_check.stages.catkin import Catkin
-from mrp_check.stages.files import launch_rules, manifest
-from mrp_check.stages.places import Places
-from mrp_check.stages.run.node import Node
-from mrp_check.stages.static import cpp_headers
+from mrp_check.build.catkin import Catkin
+from mrp_check.confined import cpp_headers
+from mrp_check.contract.spec import Spec
+from mrp_check.running import observing
+from mrp_check.running.node import Node
+from mrp_check.running.places import Places
+from mrp_check.sources import node as sources_node
+from mrp_check.sources import reading
+from mrp_check.student import launch as launching
+from mrp_check.student import manifest
+from mrp_check.student.package import Package
 
 
 class Case:
@@ -61,7 +64,7 @@ class Case:
     @functools.cached_property
     def launch_file(self):
         """The path of the launch file, or None; and the Findings that say why it cannot be read."""
-        return launch_rules.readable(self.package, self.spec)
+        return launching.readable(self.package, self.spec)
 
     @functools.cached_property
     def _loading(self):
@@ -96,8 +99,13 @@ class Case:
 
     @functools.cached_property
     def facts(self):
-        """What the sources say, a static.facts.Facts."""
-        return static.read(self)
+        """What the sources say, a facts.Facts."""
+        return reading.read(self)
+
+    @functools.cached_property
+    def coded(self):
+        """The nodes of the spec as their sources tell them, each a sources.node.Node."""
+        return sources_node.nodes(self.package, self.spec, self.model, self.launch, self.facts)
 
     @functools.cached_property
     def built(self):

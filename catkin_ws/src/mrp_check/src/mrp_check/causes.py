@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from mrp_check.finding import ERROR, NOTE
+from mrp_check.contract.finding import ERROR, NOTE
 
 # What keeps a node from running at all, or from being itself.
 _FATAL = set(
@@ -60,8 +60,8 @@ _OF_ALL = ("CMakeLists.txt", ".cmake", ".xml", ".launch", ".msg")
 def told_once(findings, facts=None, nodes=None):
     """Return the findings without repetitions, with consequences marked.
 
-    facts: a stages.static.facts.Facts, which says which files a node is made of; or None
-    nodes: name -> what was seen of a node of the spec, a run.node.Node; None if nothing has run
+    facts: a sources.facts.Facts, which says which files a node is made of; or None
+    nodes: name -> what was seen of a node of the spec, a running.node.Node; None if nothing has run
     """
     kept, seen = [], {}
     for finding in findings:

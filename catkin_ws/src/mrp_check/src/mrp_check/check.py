@@ -3,54 +3,25 @@
 
 from __future__ import annotations
 
-import dataclasses
+import itertools
 import pathlib
 import tempfile
 import traceback
 import typing
 
-from mrp_check import causes, confine, diff, evidence
+from mrp_check import causes, confine
+from mrp_check.build.catkin import missing_tool
 from mrp_check.case import Case
-from mrp_check.finding import ERROR, CannotCheck, Finding
-from mrp_check.package import Package
-from mrp_check.requirements import REQUIREMENTS, closure
-from mrp_check.spec import Spec
-from mrp_check.stages import build, files, run, static, stop
-from mrp_check.stages.catkin import missing_tool
-
-MET, FINDINGS, UNCHECKED = "met", "findings", "unchecked"
-BROKEN = "broken"
-
-RULES = {
-    "files": files.RULES,
-    "static": static.RULES,
-    "build": build.RULES,
-    "run": run.RULES,
-    "stop": stop.RULES,
-}
-
+from mrp_check.contract.errors import CannotCheck
+from mrp_check.contract.finding import ERROR
+from mrp_check.contract.requirements import closure
+from mrp_check.contract.spec import Spec
+from mrp_check.contract.verdict import BROKEN, FINDINGS, MET, UNCHECKED, Report
+from mrp_check.report import diff
+from mrp_check.rules import REQUIREMENTS, RULES
+from mrp_check.student.package import Package
 
 _FOLD = 3  # findings about files outside the exercise: more are folded into one
-
-
-@dataclasses.dataclass
-class Report:
-    """What came of a check.
-
-    verdict: MET, FINDINGS or UNCHECKED
-    findings: in the order in which the stages found them
-    requirements: id -> MET, BROKEN or UNCHECKED
-    reason: why it is UNCHECKED, in one sentence
-    unseen: id -> why nobody can say whether it is met, of those that are UNCHECKED
-    """
-
-    package: str
-    spec: str
-    verdict: str
-    findings: list[Finding]
-    requirements: dict[str, str]
-    reason: str = ""
-    unseen: dict[str, str] = dataclasses.field(default_factory=dict)
 
 
 def check(
@@ -99,24 +70,23 @@ class _Examination:
         needs = _needs(ids)
         if "facts" in needs:
             case.read_headers()  # while CMake configures
-        for stage, rules in RULES.items():
-            # Others that need no more are asked, too: they may know the cause.
-            chosen = [rule for rule in rules if needs.issuperset(rule.needs)]
-            if chosen:
-                case.progress(f"stage {stage}")
-            for rule in chosen:
-                self._ask(stage, rule)
+        # Others that need no more are asked, too: they may know the cause.
+        chosen = [rule for rule in RULES if needs.issuperset(rule.needs)]
+        for stage, rules in itertools.groupby(chosen, lambda rule: rule.stage):
+            case.progress(f"stage {stage}")
+            for rule in rules:
+                self._ask(rule)
         for said in self._absent():
             self._lose(("python-names",), said)
-        self._guarded(ids, lambda: self.failed.update(evidence.unseen(case, self._open())))
+        self._guarded(ids, lambda: self.failed.update(unseen(case, self._open())))
 
-    def _ask(self, stage, rule):
+    def _ask(self, rule):
         def findings():
             for need in rule.needs:
                 self._provide(need)
             for finding in rule.findings(self.case):
                 assert finding.id in rule.ids, f"a rule reports {finding.id}, and does not say so"
-                finding.stage = stage
+                finding.stage = rule.stage
                 self.findings.append(finding)
 
         self._guarded(rule.ids, findings)
@@ -210,7 +180,12 @@ def _folded(findings, facts):
     return [f for group in groups.values() for f in (group[:1] if len(group) > _FOLD else group)]
 
 
+def unseen(case, ids):
+    """Return id -> why nobody can say that the requirement is met, of those for which it is so."""
+    found = {id_: REQUIREMENTS[id_].seen(case) for id_ in ids}
+    return {id_: why for id_, why in found.items() if why}
+
+
 def _needs(ids):
     """Return all that must be known to check these requirements."""
-    rules = [rule for rules in RULES.values() for rule in rules]
-    return closure({need for rule in rules if {*rule.ids} & {*ids} for need in rule.needs})
+    return closure({need for rule in RULES if {*rule.ids} & {*ids} for need in rule.needs})

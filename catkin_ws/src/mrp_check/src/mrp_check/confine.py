@@ -44,7 +44,7 @@ from typing import List, Optional, Sequence
 
 import psutil
 
-from mrp_check import apart
+from mrp_check.confined import apart
 
 _HERE = pathlib.Path(__file__).resolve().parent
 _MARK = "MRP_CHECK_RUN"  # the environment variable that marks the processes of one run
@@ -231,14 +231,13 @@ def run(
 
 @functools.lru_cache(maxsize=None)
 def code():
-    """Return this package's folder, as a command can read it: a home of root's may be closed."""
+    """Return the folder `confined`, as a command can read it: a home of root's may be closed."""
     if isolation() is not Isolation.USER:
-        return _HERE
+        return _HERE / "confined"
     folder = tempfile.mkdtemp(prefix="mrp_check_code_")
     atexit.register(shutil.rmtree, folder, ignore_errors=True)
     os.chmod(folder, 0o755)
-    copied = shutil.copytree(_HERE, os.path.join(folder, _HERE.name))
-    return pathlib.Path(copied)
+    return pathlib.Path(shutil.copytree(_HERE / "confined", os.path.join(folder, "confined")))
 
 
 def stop():
@@ -312,7 +311,7 @@ def _run_warden(sandbox, task, limits, mark):
     task_read, task_write = os.pipe()
     report_read, report_write = os.pipe()
     # Debian's own Python, without the user's settings: the checker's may be anything.
-    warden_py = [*sandbox, "/usr/bin/python3", "-I", str(_HERE / "warden.py")]
+    warden_py = [*sandbox, "/usr/bin/python3", "-I", str(_HERE / "confined" / "warden.py")]
     try:
         warden = subprocess.Popen(
             [*warden_py, str(task_read), str(report_write)],

@@ -7,15 +7,16 @@ import os
 import re
 import textwrap
 
-from mrp_check import check
-from mrp_check.finding import ERROR, NOTE, WARNING
-from mrp_check.requirements import REQUIREMENTS, STAGES, page_of
+from mrp_check.contract.finding import ERROR, NOTE, WARNING
+from mrp_check.contract.requirements import STAGES
+from mrp_check.contract.verdict import BROKEN, MET, UNCHECKED
+from mrp_check.rules import REQUIREMENTS
 
-MARKS = {check.MET: "[OK]  ", check.BROKEN: "[FAIL]", check.UNCHECKED: "[--]  "}
+MARKS = {MET: "[OK]  ", BROKEN: "[FAIL]", UNCHECKED: "[--]  "}
 _COLOURS = {
-    check.MET: "32",
-    check.BROKEN: "31",
-    check.UNCHECKED: "33",
+    MET: "32",
+    BROKEN: "31",
+    UNCHECKED: "33",
     ERROR: "31",
     WARNING: "33",
     NOTE: "36",
@@ -118,7 +119,7 @@ def finding_lines(finding, report):
             f" ({finding.consequence_of})"
         )
     else:
-        lines.append(f"  page:     {page_of(finding.id)}")
+        lines.append(f"  page:     {REQUIREMENTS[finding.id].page}")
     return lines
 
 
@@ -138,8 +139,8 @@ def summary(report):
     if not report.requirements:
         return "Nothing could be checked."
     verdicts = list(report.requirements.values())
-    met, broken = verdicts.count(check.MET), verdicts.count(check.BROKEN)
-    unchecked = verdicts.count(check.UNCHECKED)
+    met, broken = verdicts.count(MET), verdicts.count(BROKEN)
+    unchecked = verdicts.count(UNCHECKED)
     rest = f"; {unchecked} could not be checked" if unchecked else ""
     warnings = sum(f.severity == WARNING and not f.consequence_of for f in report.findings)
     rest += f"; warnings: {warnings}" if warnings else ""

@@ -6,13 +6,14 @@ from __future__ import annotations
 import html
 import pathlib
 
-from mrp_check import check
-from mrp_check.finding import ERROR
+from mrp_check.contract.finding import ERROR
+from mrp_check.contract.requirements import STAGES
+from mrp_check.contract.verdict import BROKEN, FINDINGS, MET, UNCHECKED
 from mrp_check.report import console
-from mrp_check.requirements import REQUIREMENTS, STAGES, page_of
+from mrp_check.rules import REQUIREMENTS
 
 _SITE = pathlib.Path(__file__).resolve().parents[5] / "build" / "docs"
-_WORDS = {check.MET: "met", check.BROKEN: "not met", check.UNCHECKED: "not checked"}
+_WORDS = {MET: "met", BROKEN: "not met", UNCHECKED: "not checked"}
 
 STYLE = """
 :root { color-scheme: light dark; --text: #1c2126; --faint: #56606a; --back: #ffffff;
@@ -79,7 +80,7 @@ def text(report):
 
 
 def _body(report):
-    classes = {check.MET: "met", check.FINDINGS: "broken", check.UNCHECKED: "unchecked"}
+    classes = {MET: "met", FINDINGS: "broken", UNCHECKED: "unchecked"}
     parts = [
         f'<p class="faint">{_escaped(report.spec)}</p>',
         f'<p class="verdict {classes[report.verdict]}">{_escaped(console.summary(report))}</p>',
@@ -147,7 +148,7 @@ def _article(finding, report, following=()):
 
 def _link(id_):
     """Return the page that explains a requirement: a link where the pages have been built."""
-    page = page_of(id_)
+    page = REQUIREMENTS[id_].page
     if (_SITE / page.split("#")[0]).is_file():
         path, _, anchor = page.partition("#")
         address = (_SITE / path).as_uri() + (f"#{anchor}" if anchor else "")

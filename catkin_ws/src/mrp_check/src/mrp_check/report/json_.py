@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import json
 
-from mrp_check.requirements import REQUIREMENTS
+from mrp_check.rules import REQUIREMENTS
 
 FIELDS = ("id stage severity file line message expected seen fix section consequence_of").split()
 

@@ -6,10 +6,10 @@ from __future__ import annotations
 import re
 import xml.etree.ElementTree as ElementTree
 
-from mrp_check import check
-from mrp_check.finding import ERROR
+from mrp_check.contract.finding import ERROR
+from mrp_check.contract.verdict import BROKEN, UNCHECKED
 from mrp_check.report import console
-from mrp_check.requirements import REQUIREMENTS
+from mrp_check.rules import REQUIREMENTS
 
 # What XML 1.0 cannot hold: a student's program may print it.
 _NOT_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
@@ -25,18 +25,18 @@ def text(report):
         )
         findings = [finding for finding in report.findings if finding.id == id_]
         told = "\n\n".join("\n".join(console.finding_lines(f, report)) for f in findings)
-        if verdict == check.BROKEN:
+        if verdict == BROKEN:
             counts["failures"] += 1
             errors = [f for f in findings if f.severity == ERROR and not f.consequence_of]
             failure = ElementTree.SubElement(case, "failure", message=_xml(errors[0].message))
             failure.text = _xml(told)
-        elif verdict == check.UNCHECKED:
+        elif verdict == UNCHECKED:
             counts["skipped"] += 1
             reason = report.unseen.get(id_, "could not be checked")
             ElementTree.SubElement(case, "skipped", message=_xml(reason))
         elif told:
             ElementTree.SubElement(case, "system-out").text = _xml(told)
-    if report.verdict == check.UNCHECKED:
+    if report.verdict == UNCHECKED:
         counts["tests"] += 1
         counts["errors"] += 1
         case = ElementTree.SubElement(

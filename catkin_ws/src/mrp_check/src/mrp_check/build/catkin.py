@@ -1,0 +1,188 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""catkin_make on the package's copy: configuring first, then building, while other stages go on."""
+
+from __future__ import annotations
+
+import concurrent.futures
+import functools
+import json
+import os
+import pathlib
+import shlex
+import shutil
+import typing
+
+from mrp_check import confine
+from mrp_check.confined import written
+from mrp_check.contract.errors import CannotCheck
+from mrp_check.student import cmake
+
+# Of this machine's own ROS, whatever workspace the user's shell has sourced.
+NOETIC = pathlib.Path("/opt/ros/noetic/setup.bash")
+
+# program -> the Debian package that has it
+TOOLS = {
+    "bwrap": "bubblewrap",
+    "catkin_make": "catkin",
+    "cmake": "cmake",
+    "g++": "g++",
+    "make": "make",
+    "roslaunch": "python3-roslaunch",
+}
+
+
+class Step(typing.NamedTuple):
+    """What came of configuring or building: whether it succeeded, and what it printed."""
+
+    ok: bool
+    output: str
+    why_ended: str = ""  # the limit that it broke, as a sentence's part
+
+
+def missing_tool():
+    """Return a sentence that names a tool which is not installed, or None."""
+    for program, package in TOOLS.items():
+        if not shutil.which(program, path=search_path()):
+            return f"{program} is not installed: install Debian's package {package} (make deps)."
+    return None
+
+
+def search_path():
+    return "/usr/bin:/bin:/usr/sbin:/sbin" + (":/opt/ros/noetic/bin" if NOETIC.exists() else "")
+
+
+def sourced(command):
+    """Return a command that runs with this machine's own ROS."""
+    if not NOETIC.exists():
+        return list(command)
+    return ["bash", "-c", 'source "$0" && exec "$@"', str(NOETIC), *command]
+
+
+class Catkin:
+    """catkin_make in the scratch workspace of a check. Everything runs confined, and only once."""
+
+    def __init__(self, workspace):
+        self.workspace = workspace
+        self.folder = workspace.folder
+        self._building = None
+        self._pool = concurrent.futures.ThreadPoolExecutor(max_workers=3)
+
+    def close(self):
+        """Wait for what still runs."""
+        self._pool.shutdown(wait=True)
+
+    def run(self, *command, time=None, **variables):
+        """Run a command, confined, within the workspace; return a confine.Result."""
+        limits = confine.Limits(time=time or self.workspace.timeout)
+        cache = os.environ.get("CCACHE_DIR") if "ccache" in variables.get("PATH", "") else None
+        if cache:
+            os.makedirs(cache, exist_ok=True)  # within the confinement it could not be made
+            if os.getuid() == 0:
+                os.chmod(cache, 0o777)  # each check is another user's then
+        env = confine.environment(self.folder, **variables)
+        return confine.run(
+            sourced(command),
+            self.folder,
+            limits,
+            env,
+            readable=[self.workspace.given],
+            writable=[cache] if cache else [],
+        )
+
+    def _catkin_make(self, *arguments):
+        trace = self.folder / "trace.json"
+        package = self.workspace.package_folder
+        files = [*package.rglob("CMakeLists.txt"), *package.rglob("*.cmake")]
+        sources = [f"--trace-source={path.relative_to(package.parent)}" for path in files]
+        return self.run(
+            "catkin_make",
+            *("-C", str(self.folder)),
+            "--cmake-args",
+            "-DPYTHON_EXECUTABLE=/usr/bin/python3",
+            "-DCATKIN_ENABLE_TESTING=OFF",
+            "-DCMAKE_EXPORT_COMPILE_COMMANDS=ON",
+            "-Wno-dev",
+            *("--trace-expand", "--trace-format=json-v1", f"--trace-redirect={trace}", *sources),
+            "--make-args",
+            *arguments,
+            **self._compiler(),
+        )
+
+    def _step(self, result):
+        """Return the Step of a catkin_make. Raises CannotCheck if it took too long.
+
+        What computes without end is ended by the limit of its processor time, and is the package's
+        fault; what only lasts may be the machine's.
+        """
+        limits = confine.Limits(time=self.workspace.timeout)
+        if result.ended_by == "time":
+            raise CannotCheck(
+                f"catkin_make did not end within {limits.time:.0f} s: the machine is too busy, or"
+                " CMakeLists.txt waits for something; --timeout gives it more time."
+            )
+        why = result.limit_text(limits) or "" if result.ended_by else ""
+        return Step(result.code == 0, result.output + "\n" + result.errors, why)
+
+    @staticmethod
+    def _compiler():
+        """Return the variables with which the compiler's messages are plain, in English."""
+        variables = {"GCC_COLORS": "", "VERBOSE": "", "CLICOLOR": "0", "PATH": search_path()}
+        # With ccache, what is equal in many packages is compiled once. A package that means harm
+        # could put something wrong into it: so nobody has one who has not asked for it.
+        if os.environ.get("CCACHE_DIR") and shutil.which("ccache"):
+            variables["PATH"] = "/usr/lib/ccache:" + search_path()
+            variables.update(
+                CCACHE_DIR=os.environ["CCACHE_DIR"],
+                CCACHE_NOHASHDIR="1",
+                CCACHE_UMASK="000",
+                CCACHE_BASEDIR=str(pathlib.Path("/")),
+            )
+        return variables
+
+    @functools.cached_property
+    def configured(self):
+        """The Step of `catkin_make`'s first half: CMake."""
+        self.workspace.progress("configuring with CMake")
+        return self._step(self._catkin_make("help"))
+
+    @functools.cached_property
+    def model(self):
+        """What CMakeLists.txt says, as a cmake.Model."""
+        configured = self.configured
+        calls = cmake.traced(self.folder / "trace.json", self.workspace.package_folder)
+        return cmake.Model(self.workspace.package_folder, calls, complete=configured.ok)
+
+    def start_building(self):
+        """Begin to build in the background, if CMake succeeded."""
+        if self._building is None and self.configured.ok:
+            self._building = self._pool.submit(self._catkin_make, "-k", "-j2")
+
+    @functools.cached_property
+    def built(self):
+        """The Step of `catkin_make`'s second half, or None if CMake failed."""
+        self.start_building()
+        if self._building is None:
+            return None
+        self.workspace.progress("building")
+        return self._step(self._building.result())
+
+    def wait_until_built(self):
+        """Wait until building has ended, if CMake succeeded; `built` says how."""
+        self.start_building()
+        if self._building is not None:
+            concurrent.futures.wait([self._building])
+
+    def submit(self, function, *arguments):
+        """Run a function in the background; return its future."""
+        return self._pool.submit(function, *arguments)
+
+    def compile_commands(self):
+        """Return source (path within the copy) -> arguments of its compiler."""
+        path = self.folder / "build" / "compile_commands.json"
+        try:
+            entries = json.loads(written.read(path))
+        except (OSError, ValueError):
+            return {}
+        return {
+            entry["file"]: (entry["directory"], shlex.split(entry["command"])) for entry in entries
+        }

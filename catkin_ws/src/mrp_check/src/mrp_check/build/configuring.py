@@ -1,0 +1,245 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Why CMake stops, as a finding: its first error, the line, and plain words."""
+
+from __future__ import annotations
+
+import re
+
+from mrp_check.contract.finding import Finding
+from mrp_check.contract.words import nearest, perhaps
+from mrp_check.student.cmake import relative
+
+_CMAKE_ERROR = re.compile(
+    r"^CMake Error(?: \(dev\))? (?:at|in) (?P<file>[^:\n]+?):(?P<line>\d+)"
+    r"(?: \((?P<command>\w+)\))?:",
+    re.MULTILINE,
+)
+_STACK = re.compile(r"^  (?P<file>[^:\s]+):(?P<line>\d+) \((?P<command>\w+)\)", re.MULTILINE)
+
+
+def finding(package, output, copy, model):
+    """Return the Finding about why CMake failed, or None if its output does not say it."""
+    match = _CMAKE_ERROR.search(output)
+    if not match:
+        return None
+    rest = output[match.end() :]
+    following = re.search(r"^CMake Error|^-- Configuring incomplete", rest, re.MULTILINE)
+    block = rest[: following.start()] if following else rest[:4000]
+    file, line = _relative_any(match.group("file"), copy), int(match.group("line"))
+    command = match.group("command") or ""
+    if file is None:
+        for caller in _STACK.finditer(block):
+            own = _relative_any(caller.group("file"), copy)
+            if own:
+                file, line, command = own, int(caller.group("line")), caller.group("command")
+                break
+    text = " ".join(block.split("Call Stack")[0].split())
+    if file is None or file not in package.files:
+        file, line = "CMakeLists.txt", 1
+    undeclared = re.search(r"package '(\w+)' which must therefore be listed as a run dep", text)
+    if undeclared:
+        return _undeclared(package, undeclared.group(1), text)
+    said, fix = _in_words(package, text, command, model)
+    # An unknown command stands where it is called: what defines it is missing further up.
+    if (
+        "Unknown CMake command" in text
+        and model.catkin
+        and any(f'"{command}"' in text for command in _BRINGS_MESSAGES)
+    ):
+        file, line = model.catkin.file, model.catkin.line
+    line = max(1, min(line, len(package.lines(file))))
+    return Finding(
+        "configure",
+        f"CMake stops at line {line} of {file}: {said}",
+        file,
+        line,
+        expected="a CMakeLists.txt that CMake can follow",
+        seen=f"{package.lines(file)[line - 1].strip()}  (CMake: {text[:300]})",
+        fix=fix,
+    )
+
+
+def _undeclared(package, name, text):
+    """Return the Finding about what catkin_package() names and package.xml lacks at run time."""
+    line = package.find_line("package.xml", f">{name}<")
+    return Finding(
+        "configure",
+        f"catkin_package() names {name}, and package.xml does not say that it is needed when the"
+        " package runs.",
+        "package.xml",
+        line or package.find_line("package.xml", "depend>", 1),
+        expected=f"<depend>{name}</depend>, which is for building and for running",
+        seen=package.lines("package.xml")[line - 1].strip()
+        if line
+        else f"no {name}; CMake: {text}",
+        fix=f"Write <depend>{name}</depend>.",
+    )
+
+
+def _relative_any(path, copy):
+    """Return a path that CMake prints (absolute, or relative to src) as the package's."""
+    if path.startswith("/"):
+        return relative(path, copy)
+    return relative(str(copy.parent / path), copy)
+
+
+_COMMANDS = (
+    "cmake_minimum_required project find_package catkin_package include_directories add_executable"
+    " add_dependencies target_link_libraries install catkin_install_python add_compile_options set"
+    " add_message_files generate_messages catkin_python_setup add_library foreach endforeach"
+    " if endif"
+    " target_include_directories file function endfunction macro endmacro set_target_properties"
+).split()
+
+
+_PACKAGES = ["roscpp", "rospy", "std_msgs", "catkin", "message_generation", "roslib"]
+
+
+# Their group is the name of a package that CMake did not find.
+_NOT_FOUND = (
+    r'Could not find a package configuration file provided by "(\w+)"',
+    r"catkin_package\(\).*?on the catkin package '(\w+)'",
+    r"Could NOT find (\w+)",
+)
+
+
+def absent(package, output):
+    """Return the package that CMake did not find though package.xml asks for it, and that looks
+    like no other's misspelt name; or None."""
+    found = (re.search(shape, output) for shape in _NOT_FOUND)
+    name = next((match.group(1) for match in found if match), None)
+    asked = name and package.find_line("package.xml", f">{name}<")
+    return name if asked and not nearest(name, _PACKAGES) else None
+
+
+_BRINGS_MESSAGES = ("add_message_files", "generate_messages", "add_service_files")
+
+
+def _unknown_command(package, model, match, text):
+    name = match.group(1)
+    if name in _BRINGS_MESSAGES:
+        return (
+            f"{name}() is not known, as find_package(catkin ...) does not name"
+            " message_generation, which brings it.",
+            "Add message_generation to COMPONENTS.",
+        )
+    if name.startswith("catkin_") and model.catkin is None:
+        return (
+            f"{name}() is not known, as find_package(catkin REQUIRED ...) is missing above it.",
+            "Add find_package(catkin REQUIRED COMPONENTS ...).",
+        )
+    near = nearest(name.lower(), _COMMANDS)
+    said = f"there is no command {name}().{perhaps(near)}"
+    return said, f"Write {near}." if near else "Mend it."
+
+
+def _no_package(package, model, match, text):
+    name = match.group(1)
+    near = nearest(name, _PACKAGES)
+    return (
+        f"there is no package {name} on this machine.{perhaps(near)}",
+        f"Write {near} for {name}." if near else f"Install {name}, or take it out.",
+    )
+
+
+def _no_source(package, model, match, text):
+    near = nearest(match.group(1), package.of_kind("cpp"))
+    said = f"there is no source {match.group(1)}.{perhaps(near)}"
+    return said, "Name a file that is there."
+
+
+def _no_target(package, model, match, text):
+    name = match.group(1)
+    near = nearest(name, [] if name in model.targets else model.targets, 0.5)
+    hint = f" There is {near}." if near else ""
+    return (
+        f"there is no target {name} at this point.{hint} add_executable() has to come before.",
+        f"Write {near} for {name}." if near else f"Add add_executable({name} ...) above it.",
+    )
+
+
+def _no_script(package, model, match, text):
+    shown = "/".join(match.group(1).rsplit("/", 2)[1:])
+    near = nearest(shown, package.of_kind("python"))
+    return f"there is no script {shown}.{perhaps(near)}", "Name a file that is there."
+
+
+# (command or None for any, what CMake says) -> what it means and what to do: these words, or a
+# function that says them.
+_WORDS = (
+    (None, r'Unknown CMake command "(\w+)"', _unknown_command),
+    *(("find_package", shape, _no_package) for shape in _NOT_FOUND),
+    (
+        "catkin_package",
+        r"catkin_package\(\) .*?'(\w+)'",
+        lambda package, model, match, text: (
+            text,
+            "Let package.xml, find_package() and catkin_package() name the same.",
+        ),
+    ),
+    (None, r"Cannot find source file: (\S+)", _no_source),
+    (
+        None,
+        r'Cannot specify (?:link libraries|include directories|\w+ \w+) for target "(\S+)"',
+        _no_target,
+    ),
+    (
+        None,
+        r'add_dependencies Cannot add target-level dependencies to non-existent target "(\S+?)"',
+        _no_target,
+    ),
+    (
+        None,
+        r"because another target with the same name already exists",
+        ("a target of this name has been made already, further up.", "Give it its own name."),
+    ),
+    (None, r"non-existing file '([^']+)'", _no_script),
+    (
+        None,
+        r"Function missing ending",
+        ("the call that begins there has no closing parenthesis.", "Close it with a )."),
+    ),
+    (
+        None,
+        r"end of file|not closed",
+        (
+            "a bracket or a quotation mark that is opened there is never closed.",
+            "Close what was opened.",
+        ),
+    ),
+    (
+        None,
+        r"Parse error",
+        ("a bracket or a quotation mark is missing, or too much.", "Mend the call there."),
+    ),
+)
+
+
+def _in_words(package, text, command, model):
+    """Return (what it means, what to do)."""
+    for of_command, shape, words in _WORDS:
+        match = re.search(shape, text) if of_command in (None, command) else None
+        if match:
+            return words(package, model, match, text) if callable(words) else words
+    return text[:300], "Compare the line with the one on the page."
+
+
+def unknown(package, step, id_):
+    """Return a Finding about a failure whose output names no place in the package."""
+    lines = [line for line in step.output.splitlines() if line.strip()]
+    errors = [line for line in lines if "error" in line.lower()]
+    what = "CMake" if id_ == "configure" else "catkin_make"
+    if step.why_ended:
+        message, seen = f"{what} was ended: {step.why_ended}.", step.why_ended
+    else:
+        message = f"{what} failed; what it printed names no line of the package."
+        seen = " ".join((errors or lines)[-3:])[:500]
+    return Finding(
+        id_,
+        message,
+        "CMakeLists.txt" if "CMakeLists.txt" in package.files else None,
+        1 if "CMakeLists.txt" in package.files else None,
+        expected=f"{what} to succeed",
+        seen=seen,
+        fix="Run catkin_make yourself, and read what it prints from the top.",
+    )

@@ -1,0 +1,306 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Observes a ROS graph from its first moment on: a master, and a subscriber to every topic.
+
+The master is this process's own. A node that announces a topic has to wait for the master's
+answer; the master gives it when this observer is connected. So not even the first message is
+missed, however busy the machine is.
+
+    with Observer() as observer:
+        subprocess.Popen([...], env={**os.environ, "ROS_MASTER_URI": observer.uri})
+        ...
+        observer.messages, observer.logs, observer.publications, observer.subscriptions
+"""
+
+import io
+import logging
+import os
+import socket
+import threading
+import time
+import typing
+import xmlrpc.client
+
+import genpy
+import rosgraph
+import rosgraph.network
+import rosgraph.xmlrpc
+import rosmaster.master_api
+import rospy
+import rospy.impl.masterslave
+from rosgraph_msgs.msg import Log as LogMessage
+
+from mrp_check.confined import messages
+
+NAME = "/mrp_check_observer"
+
+_HOLD = 20.0  # seconds at most, for which the master lets a publisher wait
+_ANSWER = 5.0  # seconds within which a node must answer
+_KEEP = 3000  # messages of one publisher on one topic: of more, only the number is kept
+_FIELDS = 30  # of a message
+_TEXT = 500  # characters of a text in it
+_LAG_TICK = 0.05  # seconds
+
+
+class Registration(typing.NamedTuple):
+    """A node has announced to the master that it publishes or subscribes."""
+
+    node: str
+    topic: str
+    type: str
+    time: float
+
+
+class Message(typing.NamedTuple):
+    """A message, by the one who sent it.
+
+    latched: whether its publisher said so when it announced the topic; see Observer.is_latched
+    fields: path such as "data" or "header.seq" -> number or text; None if it cannot be read
+    """
+
+    node: str
+    topic: str
+    type: str
+    latched: bool
+    fields: typing.Optional[dict]
+    time: float
+
+
+class Log(typing.NamedTuple):
+    """A line that a node has logged, and where in its source. level: DEBUG, INFO, WARN, ..."""
+
+    node: str
+    level: str
+    text: str
+    file: str
+    line: int
+    function: str
+    time: float
+
+
+_LEVELS = {
+    LogMessage.DEBUG: "DEBUG",
+    LogMessage.INFO: "INFO",
+    LogMessage.WARN: "WARN",
+    LogMessage.ERROR: "ERROR",
+    LogMessage.FATAL: "FATAL",
+}
+
+
+class Observer:
+    """A master, and what is seen at it. Times are those of time.monotonic().
+
+    uri: of the master
+    publications, subscriptions: each Registration so far, also of what has ended since
+    messages: each Message so far, in order of arrival
+    logs: each Log so far
+    counts: (node, topic) -> number of messages, also of those that are not kept
+
+    There can be one in a process: it is rospy's node.
+    """
+
+    def __init__(self):
+        self.publications, self.subscriptions = [], []
+        self.messages, self.logs, self.counts = [], [], {}
+        self._subscribers, self._types = {}, {}
+        self._lock = threading.Lock()
+        self._lag = []
+        os.environ.setdefault("ROS_HOSTNAME", "localhost")
+        # rosmaster says much to the root logger, which writes it to standard error.
+        logging.getLogger("rosmaster").setLevel(logging.CRITICAL)
+        self._handler = _Master(self)
+        self._server = rosgraph.xmlrpc.XmlRpcNode(0, self._handler)
+        self._server.start()
+        while not self._server.uri:
+            time.sleep(0.01)
+        self.uri = self._server.uri
+        os.environ["ROS_MASTER_URI"] = self.uri
+        rospy.impl.masterslave.ROSHandler.shutdown = _refuse
+        rospy.init_node(NAME[1:], anonymous=False, disable_signals=True, disable_rosout=True)
+        self._subscribe("/rosout")
+        threading.Thread(target=self._measure_lag, daemon=True).start()
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        rospy.signal_shutdown("the observation has ended")
+        self._handler._shutdown("the observation has ended")
+        self._server.shutdown("the observation has ended")
+
+    # --- What the master hears
+
+    def registered_publisher(self, node, topic, type_):
+        """Called by the master before it answers: returns when this observer is connected."""
+        if node == NAME:
+            return
+        self.publications.append(Registration(node, topic, type_, time.monotonic()))
+
+    def subscribe_before(self, node, topic):
+        if node != NAME:
+            self._subscribe(topic)
+
+    def hold(self, node, topic):
+        """Wait until this observer is connected to a publisher, or for _HOLD seconds."""
+        if node == NAME:
+            return
+        end = time.monotonic() + _HOLD
+        while not self._is_connected(node, topic) and time.monotonic() < end:
+            time.sleep(0.002)
+        # A publisher answers a subscriber before it begins to send to it. It lets in one after the
+        # other: where the next one is answered, it sends to the one before.
+        self._shake_hands(node, topic)
+
+    def _is_connected(self, node, topic):
+        subscriber = self._subscribers.get(topic)
+        if subscriber is None:
+            return True
+        connections = subscriber.impl.connections if subscriber.impl else []
+        return any(getattr(c, "callerid_pub", None) == node for c in list(connections))
+
+    def is_registered(self, node):
+        """Return whether the master still knows anything of a node."""
+        handler = self._handler
+        kinds = (handler.publishers, handler.subscribers, handler.services)
+        return any(node in names for kind in kinds for _, names in kind.get_state())
+
+    def nodes(self):
+        """Return the names of all nodes that have registered anything so far."""
+        return {r.node for r in self.publications + self.subscriptions}
+
+    # --- What is published
+
+    def _subscribe(self, topic):
+        with self._lock:
+            if topic in self._subscribers:
+                return
+            self._subscribers[topic] = None
+        callback = self._log if topic == "/rosout" else self._message
+        self._subscribers[topic] = rospy.Subscriber(
+            topic, rospy.AnyMsg, callback, callback_args=topic, queue_size=None
+        )
+
+    def _message(self, message, topic):
+        now, header = time.monotonic(), message._connection_header
+        node = header.get("callerid", "")
+        if node == NAME:
+            return
+        count = self.counts[node, topic] = self.counts.get((node, topic), 0) + 1
+        if count <= _KEEP:
+            fields = self._fields(message, header)
+            latched = header.get("latching") == "1"
+            type_ = header.get("type", "")
+            self.messages.append(Message(node, topic, type_, latched, fields, now))
+
+    def _fields(self, message, header):
+        key = header.get("type"), header.get("md5sum")
+        try:
+            if key not in self._types:
+                self._types[key] = messages.of_definition(key[0], header["message_definition"])
+            result = {}
+            _flatten(self._types[key]().deserialize(message._buff), "", result)
+            return result
+        except Exception:  # whatever a package sends: it is no reason to stop
+            return None
+
+    def _log(self, message, topic):
+        try:
+            log = LogMessage().deserialize(message._buff)
+        except genpy.DeserializationError:
+            return
+        if len(self.logs) < 10 * _KEEP:
+            level = _LEVELS.get(log.level, str(log.level))
+            where = (log.file, log.line, log.function)
+            text = log.msg[: 4 * _TEXT]
+            self.logs.append(Log(log.name, level, text, *where, time.monotonic()))
+
+    def is_latched(self, node, topic):
+        """Return whether a node latches a topic, as one who subscribes now is told; None if it does
+        not answer.
+
+        What it tells its first subscribers may be too early: rospy latches after it has announced.
+        """
+        answer = self._shake_hands(node, topic)
+        return answer and answer.get("latching") == "1"
+
+    def _shake_hands(self, node, topic):
+        """Subscribe for a moment; return what the publisher says of it, or None."""
+        try:
+            api = self._handler.publishers.get_apis(topic)
+            by_node = dict(zip(self._publisher_names(topic), api))
+            with xmlrpc.client.ServerProxy(by_node[node]) as proxy:
+                code, _, found = proxy.requestTopic(NAME, topic, [["TCPROS"]])
+            if code != 1 or not found:
+                return None
+            with socket.create_connection(tuple(found[1:3]), _ANSWER) as connection:
+                header = {"topic": topic, "md5sum": "*", "type": "*", "callerid": NAME + "_late"}
+                rosgraph.network.write_ros_handshake_header(connection, header)
+                return rosgraph.network.read_ros_handshake_header(connection, io.BytesIO(), 2048)
+        except (KeyError, OSError, xmlrpc.client.Error, rosgraph.network.ROSHandshakeException):
+            return None
+
+    def _publisher_names(self, topic):
+        return dict(self._handler.publishers.get_state()).get(topic, [])
+
+    # --- Taking part
+
+    def publisher(self, topic, message_class):
+        """Return a publisher to nodes under observation."""
+        return rospy.Publisher(topic, message_class, queue_size=100)
+
+    # --- How busy the machine is
+
+    def _measure_lag(self):
+        while True:
+            before = time.monotonic()
+            time.sleep(_LAG_TICK)
+            self._lag.append(time.monotonic() - before - _LAG_TICK)
+
+    def lag(self):
+        """Return by how many seconds this process was scheduled late, of all times the worst but
+        one in ten."""
+        lag = sorted(self._lag)
+        return lag[len(lag) * 9 // 10] if lag else 0.0
+
+
+def _refuse(self, caller_id, reason=""):
+    """Answer to one who asks the observer, or its master, to shut down."""
+    return -1, "the observation is not over", 0
+
+
+class _Master(rosmaster.master_api.ROSMasterHandler):
+    """A master that tells the observer what it hears, and lets publishers wait for it."""
+
+    shutdown = _refuse
+
+    def __init__(self, observer):
+        super().__init__()
+        self._observer = observer
+
+    def registerPublisher(self, caller_id, topic, topic_type, caller_api):  # noqa: N802
+        self._observer.subscribe_before(caller_id, topic)
+        answer = super().registerPublisher(caller_id, topic, topic_type, caller_api)
+        if answer[0] == 1:
+            self._observer.registered_publisher(caller_id, topic, topic_type)
+            self._observer.hold(caller_id, topic)
+        return answer
+
+    def registerSubscriber(self, caller_id, topic, topic_type, caller_api):  # noqa: N802
+        answer = super().registerSubscriber(caller_id, topic, topic_type, caller_api)
+        if answer[0] == 1 and caller_id != NAME:
+            registration = Registration(caller_id, topic, topic_type, time.monotonic())
+            self._observer.subscriptions.append(registration)
+        return answer
+
+
+def _flatten(message, prefix, result):
+    """Put the plain fields of a message into `result`, by their paths."""
+    for name in message.__slots__:
+        value = getattr(message, name)
+        if len(result) >= _FIELDS:
+            return
+        if isinstance(value, (bool, int, float)):
+            result[prefix + name] = value
+        elif isinstance(value, str):
+            result[prefix + name] = value[:_TEXT]
+        elif hasattr(value, "__slots__"):
+            _flatten(value, prefix + name + ".", result)

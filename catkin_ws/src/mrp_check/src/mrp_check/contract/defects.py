@@ -1,0 +1,176 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The defects: each is a patch in the workspace's folder defects/, which breaks a correct package.
+
+The head of a patch says what it breaks, and who must find that:
+
+    Base: format1               the correct package; without this line it is mrp, the tutorial's
+    Breaks: a missing colon     what is wrong then
+    Erratum: E5                 the same mistake of the original page
+    Fails: stop.test test_end   the rostest and its test case that fail,
+    Says: != 0                  and what the test case says (a regular expression)
+    Finds: python-syntax|exit   the checker's requirements that are not met (a regular expression),
+    In: src/a.py: def .*        the file and its line of the finding (a regular expression),
+    Tells: colon                and what the finding says (a regular expression)
+    Missed: WHY                 the checker is known not to find it
+    Order: 7                    its number, if it is an exercise,
+    Task: # A title             what the student reads first,
+    Hint: Look at the end.      and what the student may ask for
+
+The value of a field goes on in the lines below it that are indented. There may be several lines In:
+each names a place that is right. The head ends where the diff begins.
+
+An exercise is the broken package. Its solution is the patch reversed.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import pathlib
+import re
+import textwrap
+
+from mrp_check.contract import resources
+
+_FIELD = re.compile(r"([A-Z][\w-]*):(?: (.*))?")
+# A patch has all fields of a group, or none.
+_GROUPS = (("Fails", "Says"), ("Finds", "In", "Tells"), ("Order", "Task", "Hint"))
+_FIELDS = ("Base", "Breaks", "Erratum", "Missed", *(field for group in _GROUPS for field in group))
+_FORMS = {
+    "Erratum": (r"[EP][1-9]\d*", "the number of an erratum, such as E5"),
+    "Fails": (r"\w+\.test \w+", "a rostest and a test case of it"),
+    "In": (r"\S+: .+", "a file, a colon, and a regular expression"),
+    "Order": (r"[1-9]\d*", "a number from 1 on"),
+    "Task": (r"# .+\n\n(?s:.+)", "a title such as '# A title', an empty line, and a text"),
+}
+_PATTERNS = ("Says", "Finds", "In", "Tells")
+
+
+class DefectError(Exception):
+    """A patch's head is not as it must be; the text is one sentence."""
+
+
+@dataclasses.dataclass(frozen=True)
+class Defect:
+    """A patch, and what its head says. What it does not say is empty."""
+
+    path: pathlib.Path
+    breaks: str
+    base: str = "mrp"
+    erratum: str = ""
+    fails: tuple[str, ...] = ()  # the rostest, the test case
+    says: str = ""
+    finds: str = ""
+    places: tuple[tuple[str, str], ...] = ()  # each a file, and a pattern of a line in it
+    tells: str = ""
+    missed: str = ""
+    order: int = 0
+    task: str = ""
+    hint: str = ""
+
+    @property
+    def name(self):
+        return self.path.stem
+
+    @property
+    def title(self):
+        """Of an exercise."""
+        return self.task.splitlines()[0].lstrip("# ")
+
+
+def fields(head, name):
+    """Return field -> its values, of the lines "Field: value" of a head.
+
+    name: of the file, for the DefectError
+    """
+    found = {}
+    values = None
+    for line in head.splitlines():
+        match = _FIELD.fullmatch(line)
+        if match:
+            values = found.setdefault(match.group(1), [])
+            values.append([match.group(2) or ""])
+        elif values is not None and (not line or line[0] == " "):
+            values[-1].append(line)
+        else:
+            raise DefectError(
+                f"{name}: expected 'Field: value' or an indented line; found {line!r}."
+            )
+    return {field: [_text(*lines) for lines in values] for field, values in found.items()}
+
+
+def _text(first, *others):
+    """Return a value: what stands beside the field, and the lines below without indentation."""
+    below = textwrap.dedent("\n".join(others)).strip()
+    return "\n".join(filter(None, (first, below)))
+
+
+def read(path):
+    """Return the Defect of a patch. Raises DefectError if its head is not as it must be."""
+    head = re.split(rb"^(?:--- |diff )", path.read_bytes(), maxsplit=1, flags=re.MULTILINE)[0]
+    found = fields(head.decode(), path.name)
+    for fault in _faults(found):
+        raise DefectError(f"{path.name}: {fault}.")
+    places = tuple(tuple(value.split(": ", 1)) for value in found.pop("In", ()))
+    values = {field.lower(): value for field, (value,) in found.items()}
+    values["fails"] = tuple(values.get("fails", "").split())
+    values["order"] = int(values.get("order", 0))
+    return Defect(path=path, places=places, **values)
+
+
+def _faults(found):
+    """Yield what is wrong with a head, each fault as a sentence without its full stop."""
+    for field, values in found.items():
+        if field not in _FIELDS:
+            yield f"there is no field {field}: expected one of {', '.join(_FIELDS)}"
+        elif len(values) > 1 and field != "In":
+            yield f"expected the field {field} once; found it {len(values)} times"
+        for value in values:
+            yield from _faults_of_value(field, value)
+    if "Breaks" not in found:
+        yield "the field Breaks is missing"
+    if "Fails" not in found and "Finds" not in found:
+        yield "one of the fields Fails and Finds is missing: nobody would find the defect"
+    for group in _GROUPS:
+        if not set(group) & set(found):
+            continue
+        # The checker checks an exercise, and its page links to the erratum.
+        needed = (*group, "Finds", "Erratum") if "Order" in group else group
+        for missing in (field for field in needed if field not in found):
+            yield f"the field {missing} is missing, as one of {', '.join(group)} is there"
+    if found.get("Base", ["mrp"]) != ["mrp"] and ("Fails" in found or "Order" in found):
+        yield "a patch with the field Fails or Order breaks mrp: expected no other Base"
+
+
+def _faults_of_value(field, value):
+    form, meaning = _FORMS.get(field, (r"(?s).+", "a value"))
+    if not re.fullmatch(form, value):
+        yield f"expected {meaning}, in the field {field}; found {value!r}"
+    elif field in _PATTERNS:
+        try:
+            re.compile(value.split(": ", 1)[-1] if field == "In" else value)
+        except re.error as error:
+            yield f"expected a regular expression in the field {field}; found {value!r}: {error}"
+
+
+def read_all(folder=None):
+    """Return all defects, by name. Raises DefectError if one is not as it must be.
+
+    folder: of the patches; without it, that of the workspace, or where it is installed
+    """
+    folder = folder or resources.folder("defects")
+    found = [read(path) for path in sorted(folder.glob("*.patch"))]
+    if not found:
+        raise DefectError(f"Expected patches in {folder}; there is none.")
+    orders = {}
+    for one in found:
+        if one.order and orders.setdefault(one.order, one) is not one:
+            raise DefectError(
+                f"{orders[one.order].path.name} and {one.path.name} are both exercise {one.order}: "
+                "expected one exercise for each number."
+            )
+    return found
+
+
+def exercises(folder=None):
+    """Return the defects that are exercises, in their order. Raises DefectError as read_all."""
+    return sorted((one for one in read_all(folder) if one.order), key=lambda one: one.order)

@@ -1,0 +1,40 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A finding: one thing that is wrong, where it is, and what to do."""
+
+from __future__ import annotations
+
+import dataclasses
+
+ERROR, WARNING, NOTE = "error", "warning", "note"
+
+
+@dataclasses.dataclass
+class Finding:
+    """One thing that is wrong.
+
+    id: the requirement that is not met, a key of requirements.REQUIREMENTS
+    message: what is wrong, in one or two full sentences that a beginner understands
+    file: relative to the package, or None if no file of the package is to blame
+    line: of that file, from 1, or None
+    severity: ERROR breaks the contract; WARNING works, but ...; NOTE is a hint
+    expected, seen: what the contract asks for, and what was found; may be empty
+    fix: what to do next; below it a unified diff, where the fix is certain
+    change: (old, new), a part of the line and what to write for it, if that is certain to mend it;
+            check.py makes the diff of it
+    consequence_of: the id of the finding that is the cause of this one, or None
+    stage: which stage found it; check.py fills it in
+    node: the name of the spec's node that it is about, or None: tells causes from consequences
+    """
+
+    id: str
+    message: str
+    file: str | None = None
+    line: int | None = None
+    severity: str = ERROR
+    expected: str = ""
+    seen: str = ""
+    fix: str = ""
+    consequence_of: str | None = None
+    stage: str = ""
+    node: str | None = None
+    change: tuple[str, str] | None = None

@@ -1,0 +1,31 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What comes of a check."""
+
+from __future__ import annotations
+
+import dataclasses
+
+from mrp_check.contract.finding import Finding
+
+MET, FINDINGS, UNCHECKED = "met", "findings", "unchecked"
+BROKEN = "broken"
+
+
+@dataclasses.dataclass
+class Report:
+    """What came of a check.
+
+    verdict: MET, FINDINGS or UNCHECKED
+    findings: in the order in which the stages found them
+    requirements: id -> MET, BROKEN or UNCHECKED
+    reason: why it is UNCHECKED, in one sentence
+    unseen: id -> why nobody can say whether it is met, of those that are UNCHECKED
+    """
+
+    package: str
+    spec: str
+    verdict: str
+    findings: list[Finding]
+    requirements: dict[str, str]
+    reason: str = ""
+    unseen: dict[str, str] = dataclasses.field(default_factory=dict)

@@ -1,0 +1,16 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Which of several names is meant by one that is misspelt, and how to say so."""
+
+from __future__ import annotations
+
+import difflib
+
+
+def nearest(name, names, alike=0.6):
+    """Return the name that is most like it, or None. alike: how much at least, up to 1."""
+    return next(iter(difflib.get_close_matches(name, list(names), 1, alike)), None)
+
+
+def perhaps(near):
+    """Return a hint that this name is meant, or an empty text if there is none."""
+    return f" Perhaps {near} is meant." if near else ""

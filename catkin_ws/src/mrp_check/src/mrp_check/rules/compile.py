@@ -1,0 +1,30 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Each source compiles, and each target can be linked."""
+
+from __future__ import annotations
+
+from mrp_check.build import compiler, configuring, linker
+from mrp_check.contract.requirements import Requirement, Rule
+from mrp_check.running import evidence
+
+
+def findings(case):
+    if not case.built or case.built.ok:
+        return
+    output, package = case.built.output, case.package
+    problems = compiler.problems(output, case.package_folder)
+    found = [compiler.finding(package, problem) for problem in problems]
+    found += linker.findings(package, output, case.model)
+    yield from found or [configuring.unknown(package, case.built, "compile")]
+
+
+RULE = Rule(
+    stage="build",
+    order=20,
+    needs=("built",),
+    findings=findings,
+    requirements={
+        "compile": Requirement("The C++ code compiles", "building#catkin-make", evidence.compiled),
+        "link": Requirement("The executables can be linked", "building", evidence.built),
+    },
+)

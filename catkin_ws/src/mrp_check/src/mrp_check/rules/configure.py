@@ -1,0 +1,33 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""CMake can configure the package."""
+
+from __future__ import annotations
+
+from mrp_check.build import configuring
+from mrp_check.contract.errors import CannotCheck
+from mrp_check.contract.requirements import Requirement, Rule
+from mrp_check.running import evidence
+from mrp_check.sources import uses
+
+
+def findings(case):
+    if case.built is not None:
+        return
+    package, step = case.package, case.catkin.configured
+    missing = configuring.absent(package, step.output)
+    if missing:
+        raise CannotCheck(uses.absent(missing, "cpp"))
+    output = "" if step.why_ended else step.output
+    finding = configuring.finding(package, output, case.package_folder, case.catkin.model)
+    yield finding or configuring.unknown(package, step, "configure")
+
+
+RULE = Rule(
+    stage="build",
+    order=10,
+    needs=("built",),
+    findings=findings,
+    requirements={
+        "configure": Requirement("CMake can configure the package", "building", evidence.cmake)
+    },
+)

@@ -1,0 +1,177 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The console shows the right lines."""
+
+from __future__ import annotations
+
+import difflib
+import re
+
+from mrp_check.contract import spec as specs
+from mrp_check.contract.requirements import Requirement, Rule
+from mrp_check.running import evidence
+from mrp_check.running.node import each_node, received_line
+from mrp_check.running.words import PREFIX
+
+_NEAR = 0.6  # how alike two lines are, from 0 to 1, to call one of them a misspelling
+_FLOOD = 2000  # lines that a node prints in its few seconds
+
+
+def _of(node):
+    """Yield a Finding for each line that the node should log otherwise, or prints too many."""
+    printed = (node.direct or {}).get("line_count", 0)
+    if printed > _FLOOD:
+        yield node.finding(
+            "console",
+            f"{node.name} floods the console: it printed {printed} lines in a few seconds.",
+            node.places.of(node.name, "print", "log"),
+            expected="the lines of the contract, and few others",
+            seen=f"{printed} lines",
+        )
+    for line in node.wanted.prints:
+        if "{value}" in line and node.wanted.subscribes:
+            yield from _level_findings(node, line)
+            continue
+        yield from _line_findings(node, line)
+
+
+def _runs_of(node):
+    """Return (full name, logs, lines of the console), by the launch file and by itself."""
+    if node.in_launch:
+        yield node.path, node.of("logs"), node.console
+    if node.direct and node.direct.get("name"):
+        lines = [text for _, _, text in node.direct.get("lines", [])]
+        yield node.direct["name"], node.direct_of("logs"), lines
+
+
+def _line_findings(node, line):
+    runs = [(path, logs, lines, specs.pattern(line, path)) for path, logs, lines in _runs_of(node)]
+    if not runs:
+        return
+    good = [
+        log for path, logs, _, pattern in runs for log in logs if pattern.fullmatch(log["text"])
+    ]
+    path, logs, lines, pattern = runs[0]
+    wanted = sample(line, None, path)
+    if good:
+        yield from _level_finding(node, good[0], wanted)
+        return
+    if any(_is_logged(text, p) for _, _, texts, p in runs for text in texts):
+        return  # on a busy machine, a node's very first line can miss /rosout
+    printed = [t for t in lines if pattern.search(t) and not PREFIX.match(t)]
+    if printed:
+        yield not_logged(node, printed[0], wanted)
+        return
+    near = _nearest(node, wanted, logs)
+    if near:
+        yield other_words(node, near, wanted, _name_hint(near["text"], wanted, path))
+        return
+    shown = [t for t in lines if _ratio(t, wanted) > 0.8 and not PREFIX.match(t)]
+    yield node.finding(
+        "console",
+        f"{node.name} does not log the line “{wanted}”."
+        + (f" It prints “{shown[0]}”." if shown else ""),
+        node.places.of(node.name, "print" if shown else "log", "init"),
+        expected=wanted,
+        seen=shown[0] if shown else "no such line",
+    )
+
+
+def not_logged(node, text, wanted):
+    """Return the finding about a line that is printed, and should be logged."""
+    return node.finding(
+        "console",
+        f"{node.name} prints “{text}” without logging it: it does not reach /rosout, and has"
+        " neither level nor time.",
+        node.places.of(node.name, "print", "subscriber", "init"),
+        expected=f"[INFO] [time]: {wanted}",
+        seen=text,
+    )
+
+
+def other_words(node, log, wanted, fix=""):
+    """Return the finding about a line that is logged in other words than the contract's."""
+    return node.finding(
+        "console",
+        f"{node.name} logs “{log['text']}”, where the contract says “{wanted}”, as the whole line.",
+        node.places.of_log(node.name, log),
+        expected=wanted,
+        seen=log["text"],
+        fix=fix,
+    )
+
+
+def _name_hint(text, wanted, path):
+    """Say how to get a node's full name, if that alone is wrong."""
+    group = path.rsplit("/", 1)[0]
+    start = wanted[: -len(path)] if wanted.endswith(path) else None
+    if start is None or text not in (start + group, start + group + "/"):
+        return ""
+    return (
+        "That is the group's name alone. The node's full name is rospy.get_name() in Python,"
+        ' and ros::NodeHandle("~").getNamespace() in C++.'
+    )
+
+
+def _nearest(node, wanted, logs):
+    others = [specs.pattern(line) for line in node.wanted.prints]
+    taken = [log for log in logs if any(p.fullmatch(log["text"]) for p in others)]
+    rest = [log for log in logs if log not in taken or _ratio(log["text"], wanted) > _NEAR]
+    best = max(rest, key=lambda log: _ratio(log["text"], wanted), default=None)
+    return best if best and _ratio(best["text"], wanted) > _NEAR else None
+
+
+def _level_findings(node, line):
+    """The line of a received value: is it a whole line, and of the right level?"""
+    pattern = specs.pattern(line)
+    logs = [log for log in node.of("logs") + node.direct_of("logs") if pattern.search(log["text"])]
+    if not logs:
+        return
+    log, wanted = logs[0], sample(line, int(pattern.search(logs[0]["text"])["value"]))
+    if not pattern.fullmatch(log["text"]):
+        yield other_words(node, log, wanted)
+    else:
+        yield from _level_finding(node, log, wanted)
+
+
+def _level_finding(node, log, wanted):
+    if log["level"] != "INFO":
+        yield node.finding(
+            "console",
+            f"{node.name} logs “{log['text']}” as {log['level']}, not as INFO.",
+            node.places.of_log(node.name, log),
+            expected=f"[INFO] [time]: {wanted}",
+            seen=f"[{log['level']}] [time]: {log['text']}",
+        )
+
+
+def sample(line, value, path=""):
+    """Return a line of the spec as it reads on the console."""
+    text = line.replace("{name}", path).replace("{value}", str(value))
+    return re.sub(r"\\(.)", r"\1", text)
+
+
+def received_pattern(node):
+    """Return the compiled pattern of received_line, or None."""
+    line = received_line(node)
+    return specs.pattern(line) if line else None
+
+
+def _is_logged(text, pattern):
+    """Return whether a line of the console is what the pattern says, logged as INFO."""
+    prefix = PREFIX.match(text)
+    return bool(prefix and prefix["level"] == "INFO" and pattern.fullmatch(text[prefix.end() :]))
+
+
+def _ratio(a, b):
+    return difflib.SequenceMatcher(None, a, b, autojunk=False).ratio()
+
+
+RULE = Rule(
+    stage="run",
+    order=70,
+    needs=("nodes",),
+    findings=each_node(_of),
+    requirements={
+        "console": Requirement("The console shows the right lines", "launching", evidence.up)
+    },
+)

@@ -1,0 +1,158 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Does the package declare each ROS package that its code uses, in package.xml and in CMake?"""
+
+from __future__ import annotations
+
+from mrp_check.contract.finding import NOTE, WARNING, Finding
+from mrp_check.contract.requirements import Requirement, Rule
+from mrp_check.contract.words import nearest
+from mrp_check.running import evidence
+from mrp_check.sources import uses
+from mrp_check.student.manifest import FILE, declared, last_dependency
+
+
+def findings(package, spec, manifest, model):
+    """Yield findings; manifest is catkin_pkg's, or None if it cannot be read."""
+    used = uses.of(package, model)
+    # Which packages the exercise is about: to leave one of them out is the manifest's fault. Any
+    # other is the fault of the line that uses it.
+    own = {"roscpp", "rospy"} | {topic.type.split("/")[0] for topic in spec.topics.values()}
+    for name, use in sorted(used.items()):
+        in_manifest = manifest is None or name in _all(manifest, tests=not use.firm)
+        in_cmake = model.catkin is None or name in model.components
+        if in_manifest and manifest is not None:
+            yield from _kind(package, name, use, manifest)
+        if not in_manifest and not in_cmake and name not in own:
+            yield _foreign(package, name, use)
+            continue
+        if not in_manifest:
+            yield _not_in_manifest(package, name, use, manifest, used)
+        if not in_cmake:
+            yield _not_in_cmake(package, name, use, model)
+    if manifest is not None:
+        yield from _passed_on(used, manifest, model)
+
+
+def _all(manifest, tests):
+    known = declared(manifest)
+    return set().union(*(names for kind, names in known.items() if kind != "test" or tests))
+
+
+def _foreign(package, name, use):
+    return Finding(
+        "dependencies",
+        f"{use.file} uses the package {name}, which neither package.xml nor CMakeLists.txt names."
+        " Where it is not installed, this package cannot be built.",
+        use.file,
+        use.line,
+        severity="error" if use.firm else WARNING,
+        expected=f"no use of {name}; or <depend>{name}</depend>, and {name} in COMPONENTS",
+        seen=package.lines(use.file)[use.line - 1].strip(),
+        fix="Take the line out if nothing of it is used; else declare the package.",
+    )
+
+
+def _kind(package, name, use, manifest):
+    """Yield a finding if package.xml names a package for the wrong time."""
+    known = declared(manifest)
+    if use.language == "cpp" and name not in known["build"]:
+        when = "when it is built"
+    elif use.language == "python" and name not in known["exec"]:
+        when = "when it runs"
+    else:
+        return
+    line = package.find_line(FILE, f">{name}<", 1)
+    yield Finding(
+        "dependencies",
+        f"package.xml names {name}, but not as something that the package needs {when}:"
+        f" {use.file} uses it.",
+        FILE,
+        line,
+        WARNING,
+        expected=f"<depend>{name}</depend>",
+        seen=package.lines(FILE)[line - 1].strip(),
+        fix=f"Write <depend>{name}</depend>.",
+    )
+
+
+def _misspelt(name, names, used):
+    """Return the name in `names` that is no package and looks like this one, or None."""
+    others = [one for one in names if one not in used and not uses.is_ros_package(one)]
+    return nearest(name, others, 0.75)
+
+
+def _not_in_manifest(package, name, use, manifest, used):
+    near = _misspelt(name, _all(manifest, tests=True), used)
+    line = (near and package.find_line(FILE, f">{near}<")) or last_dependency(package)
+    text = package.lines(FILE)[line - 1]
+    added = f"{text}\n{text[: len(text) - len(text.lstrip())]}<depend>{name}</depend>"
+    return Finding(
+        "dependencies",
+        f"package.xml does not name {name}, which {use.file} uses in line {use.line}."
+        + (f" It names {near}, and there is no such package." if near else ""),
+        FILE,
+        line,
+        severity="error" if use.firm else WARNING,
+        expected=f"<depend>{name}</depend>",
+        seen=f"<depend>{near}</depend>" if near else f"no dependency on {name}",
+        fix=f"Write {name} for {near}." if near else f"Add the line <depend>{name}</depend>.",
+        change=(f">{near}<", f">{name}<") if near else (text, added) if "depend>" in text else None,
+    )
+
+
+def _not_in_cmake(package, name, use, model):
+    near = _misspelt(name, model.components, ())
+    is_cpp = use.language == "cpp"
+    return Finding(
+        "dependencies",
+        f"find_package(catkin ...) does not name {name}, which {use.file} uses in line {use.line}. "
+        + (
+            "Its headers and libraries may then not be found."
+            if is_cpp
+            else "Python finds it all the same; catkin does not know of it."
+        )
+        + (f" It names {near}, and there is no such package." if near else ""),
+        model.catkin.file,
+        model.catkin.line,
+        severity="error" if is_cpp and use.firm else NOTE,
+        expected=f"find_package(catkin REQUIRED COMPONENTS ... {name} ...)",
+        seen=", ".join(model.components) or "no COMPONENTS",
+        fix=f"Write {name} for {near}." if near else f"Add {name} to COMPONENTS.",
+        change=(near, name) if near else None,
+    )
+
+
+def _passed_on(used, manifest, model):
+    """Yield a finding about CATKIN_DEPENDS."""
+    call = model.catkin_package
+    if call is None or not model.complete:
+        return
+    cpp = {n for n, use in used.items() if use.language == "cpp" and use.firm}
+    missing = sorted((cpp & declared(manifest)["build"]) - set(model.depends))
+    if missing:
+        yield Finding(
+            "dependencies",
+            "catkin_package() does not pass on what the package's code depends on: CATKIN_DEPENDS"
+            f" has no {', no '.join(missing)}. Within this package it works all the same.",
+            call.file,
+            call.line,
+            NOTE,
+            expected=f"catkin_package(CATKIN_DEPENDS {' '.join([*model.depends, *missing])})",
+            seen=f"catkin_package({' '.join(call.arguments)})",
+            fix=f"Add {' '.join(missing)} to CATKIN_DEPENDS.",
+        )
+
+
+RULE = Rule(
+    stage="files",
+    order=20,
+    needs=("manifest", "model"),
+    findings=lambda case: findings(case.package, case.spec, case.manifest[0], case.model),
+    requirements={
+        "dependencies": Requirement(
+            "Each package that the code uses is declared in package.xml and CMakeLists.txt",
+            "building#package-xml",
+            evidence.code,
+        )
+    },
+)

@@ -1,0 +1,134 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The launch file: is it there, and can roslaunch read it?"""
+
+from __future__ import annotations
+
+import re
+
+from mrp_check.contract.finding import WARNING, Finding
+from mrp_check.contract.requirements import Requirement, Rule
+from mrp_check.contract.words import nearest
+from mrp_check.running import evidence
+
+_TAGS = ("launch node group arg param rosparam remap include env machine test master").split()
+
+
+def findings(package, launch):
+    """Yield findings about a launch file that is XML, from a launch.Launch."""
+    tags = launch.elements(package)
+    if launch.error:
+        yield _error(launch, tags)
+    else:
+        yield from _unknown(tags)
+
+
+def _unknown(tags):
+    """roslaunch passes over elements and attributes that it does not know."""
+    for file, element in tags:
+        if element.tag not in _TAGS:
+            near = nearest(element.tag, _TAGS, 0.5)
+            yield Finding(
+                "launch-file",
+                f"roslaunch knows no element <{element.tag}>, and passes over it.",
+                file,
+                element.line,
+                WARNING,
+                expected=f"<{near}>" if near else "an element of roslaunch",
+                seen=f"<{element.tag}>",
+                fix=f"Write <{near}>." if near else "Take it out.",
+            )
+
+
+class _Said:
+    """What roslaunch said instead of loading a file; finds the element that is to blame."""
+
+    def __init__(self, launch, tags):
+        self.text = " ".join(launch.error.split())
+        self.tags, self.start = tags, (launch.file, 1)
+
+    def first(self, condition):
+        """Return the place of the first element for which the condition holds."""
+        return next(((f, e.line) for f, e in self.tags if condition(e)), self.start)
+
+    def named(self, tag, name):
+        """Return the places of the elements of that tag and name."""
+        same = ((f, e) for f, e in self.tags if e.tag == tag and e.attributes.get("name") == name)
+        return [(file, element.line) for file, element in same]
+
+    def not_understood(self, name=None):
+        words = [name] if name else re.findall(r"[\w./$()-]+", self.text)
+        place = self.first(lambda e: any(v in words for v in e.attributes.values()))
+        return place, f"roslaunch cannot load the launch file: {self.text}", None
+
+
+def _twice(said, name):
+    name = name.rsplit("/", 1)[-1]
+    place = [said.start, *said.named("node", name)][-1]
+    message = f"Two nodes of the launch file have the name {name}; each needs its own."
+    return place, message, "Give each <node> its own name."
+
+
+def _attribute(said, tag, name):
+    place = said.first(lambda e: e.tag == tag and name not in e.attributes)
+    message = f'A <{tag}> in the launch file has no {name}="...".'
+    return place, message, f'Add {name}="...".'
+
+
+def _not_there(said, name):
+    name = name.strip("'\".,")
+    place = said.first(lambda e: any(name in v for v in e.attributes.values()))
+    message = f"The launch file names a package or a file that is not there: {name}."
+    return place, message, None
+
+
+def _argument(said, name):
+    declared = said.named("arg", name)
+    if declared:
+        message = f"The launch file's argument {name} has no value: roslaunch asks for one."
+        return declared[0], message, 'Give it one for when no other is given: default="...".'
+    place = said.first(lambda e: any(f"arg {name}" in v for v in e.attributes.values()))
+    return place, f"roslaunch cannot load the launch file: {said.text}", None
+
+
+# What roslaunch says -> the function of _Said and of its groups that returns (place, message, fix).
+_WORDS = (
+    (r"multiple nodes named \[(\S+?)\]", _twice),
+    (r"<(\w+)> tag is missing required attribute:? ?'(\w+)'", _attribute),
+    (r"Resource ?[Nn]ot ?[Ff]ound: (\S+)", _not_there),
+    (r"arg (?:to be set|named)? ?\[?'?(\w+)'?\]?|requires the '(\w+)' arg", _argument),
+    (r"unknown .*?'(\w+)'|\[(\w+)\] is not a valid|$", _Said.not_understood),
+)
+
+
+def _error(launch, tags):
+    """Return the Finding about what roslaunch said instead of loading the file."""
+    said = _Said(launch, tags)
+    match, words = next((m, w) for shape, w in _WORDS for m in [re.search(shape, said.text)] if m)
+    place, message, fix = words(said, *filter(None, match.groups()))
+    return Finding(
+        "launch-file",
+        message,
+        *place,
+        expected="a file that roslaunch can load",
+        seen=said.text[:500],
+        fix=fix or "Mend this line, and try again: roslaunch --nodes says whether it can be read.",
+    )
+
+
+def _findings(case):
+    yield from case.launch_file[1]
+    if case.launch:
+        yield from findings(case.package, case.launch)
+
+
+RULE = Rule(
+    stage="files",
+    order=90,
+    needs=("launch",),
+    findings=_findings,
+    requirements={
+        "launch-file": Requirement(
+            "The launch file is there and roslaunch can read it", "launching", evidence.always
+        )
+    },
+)

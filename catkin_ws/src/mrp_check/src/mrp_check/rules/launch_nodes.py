@@ -1,0 +1,159 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The launch file starts each node of the spec, by what the package has."""
+
+from __future__ import annotations
+
+import os
+
+from mrp_check.contract.finding import Finding
+from mrp_check.contract.requirements import Requirement, Rule
+from mrp_check.contract.words import nearest
+from mrp_check.running import evidence
+from mrp_check.sources import uses
+from mrp_check.student.xml_file import elements
+
+
+def findings(package, spec, model, launch):
+    """Yield findings about the <node>s of a launch.Launch that roslaunch has read."""
+    for name in spec.nodes:
+        found = [node for node in launch.nodes if node.name == name]
+        if not found:
+            yield _missing(package, spec, model, launch, name)
+        for node in found[:1]:
+            yield from _can_start(package, model, node, name)
+    for node in launch.nodes:
+        if node.name not in spec.nodes and node.package == package.name:
+            yield from _can_start(package, model, node)
+
+
+def _missing(package, spec, model, launch, name):
+    """Return the Finding about a node that the launch file does not start."""
+    spare = [n for n in launch.nodes if n.name not in spec.nodes and n.package == package.name]
+    # What is started by another name has, most of all, the executable of that name.
+    near = [n for n in spare if os.path.splitext(n.type)[0] == name]
+    near = near or [n for n in spare if nearest(name, [n.name], 0.8)]
+    if near:
+        node = near[0]
+        return Finding(
+            "launch-nodes",
+            f"The launch file starts {node.type} under the name {node.name}; expected {name}.",
+            node.file,
+            node.line,
+            node=name,
+            expected=f'name="{name}"',
+            seen=f'name="{node.name}"',
+            fix=f'Write name="{name}".',
+        )
+    return Finding(
+        "launch-nodes",
+        f"The launch file does not start the node {name}.",
+        launch.file,
+        _last_line(package, launch),
+        node=name,
+        expected=f'a <node> with name="{name}"',
+        seen=", ".join(n.name for n in launch.nodes) or "no node",
+        fix=f'Add a <node> with name="{name}".',
+    )
+
+
+def _last_line(package, launch):
+    lines = [
+        e.line for e in elements(package.bytes(launch.file)) if e.tag in ("node", "group", "launch")
+    ]
+    return lines[-1] if lines else 1
+
+
+def _executables(package, model):
+    """Return the names that roslaunch can find in the package: built ones and scripts."""
+    names = set(model.executables())
+    names |= {script.path.rsplit("/", 1)[-1] for script in model.scripts}
+    names |= {path.rsplit("/", 1)[-1] for path in package.of_kind("python")}
+    return names
+
+
+def _can_start(package, model, node, spec_node=None):
+    """Yield a finding if roslaunch cannot find what a <node> names."""
+    if node.package != package.name:
+        if spec_node and not uses.is_ros_package(node.package):
+            manifest_line = package.find_line("package.xml", "<name>", 1)
+            # CMakeLists.txt says the same: then package.xml is wrong, which has been said.
+            same = model.project and model.project[0] == node.package
+            yield Finding(
+                "package-name",
+                f"The launch file looks for {node.type} in the package {node.package};"
+                f" package.xml calls this package {package.name} (line {manifest_line}).",
+                node.file,
+                node.line,
+                node=spec_node,
+                expected=f'pkg="{package.name}"',
+                seen=f'pkg="{node.package}"',
+                fix=f'Write pkg="{package.name}".',
+                consequence_of="package-name" if same else None,
+            )
+        return
+    names = _executables(package, model)
+    # Where CMake failed, nobody knows what it would have made.
+    if node.type in names or not model.complete:
+        return
+    stems = {os.path.splitext(name)[0]: name for name in names}
+    near = stems.get(os.path.splitext(node.type)[0])
+    near = near or nearest(node.type, names, 0.75)
+    built = _source_of(package, model, node.type)
+    if built and near is None and model.complete:
+        yield Finding(
+            "targets",
+            f"The launch file starts {node.type}, and CMakeLists.txt makes no executable of that"
+            f" name: {built} is built by no add_executable().",
+            "CMakeLists.txt",
+            _targets_line(model),
+            node=spec_node,
+            expected=f"add_executable({node.type} {built})",
+            seen=", ".join(model.executables()) or "no executable",
+            fix=f"Add add_executable({node.type} {built}), and link it with ${{catkin_LIBRARIES}}.",
+        )
+        return
+    yield Finding(
+        "launch-nodes",
+        f"The launch file starts {node.type}, and the package has no executable of that name."
+        + (f" It has {near}." if near else ""),
+        node.file,
+        node.line,
+        node=spec_node,
+        expected=f'type="{near}"' if near else "the name of an executable or a script",
+        seen=f'type="{node.type}"',
+        fix=f'Write type="{near}".' if near else "Name an executable that is built.",
+    )
+
+
+def _source_of(package, model, name):
+    """Return a C++ source that no target is made of and that is called like the executable."""
+    built = {source for target in model.targets.values() for source in target.sources}
+    spare = [path for path in package.of_kind("cpp") if path not in built]
+    for path in spare:
+        if os.path.splitext(path.rsplit("/", 1)[-1])[0] == name:
+            return path
+    return spare[0] if len(spare) == 1 else None
+
+
+def _targets_line(model):
+    lines = [target.line for target in model.targets.values() if target.file == "CMakeLists.txt"]
+    return max(lines) if lines else model.catkin_package.line if model.catkin_package else 1
+
+
+def _findings(case):
+    if case.launch and not case.launch.error:
+        yield from findings(case.package, case.spec, case.model, case.launch)
+
+
+RULE = Rule(
+    stage="files",
+    order=100,
+    needs=("model", "launch"),
+    findings=_findings,
+    requirements={
+        "launch-nodes": Requirement(
+            "The launch file starts each node under its name", "launching", evidence.launch
+        )
+    },
+    also=("package-name", "targets"),
+)

@@ -1,0 +1,50 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The launch file renames no topic on which the nodes are to meet."""
+
+from __future__ import annotations
+
+from mrp_check.contract.finding import Finding
+from mrp_check.contract.requirements import Rule
+from mrp_check.student.xml_file import elements
+
+
+def findings(case):
+    for node in case.launch.of_spec(case.spec) if case.launch else ():
+        yield from _of(case.package, case.spec, node)
+
+
+def _of(package, spec, node):
+    topics = {
+        topic
+        for topic in (spec.nodes[node.name].publishing, spec.nodes[node.name].subscribing)
+        if topic
+    }
+    for topic in topics:
+        base = node.namespace.rstrip("/") + "/"
+        own = {topic.name, base + topic.name}
+        for old, new in node.remaps:
+            if old in own and new not in own:
+                yield Finding(
+                    "topic",
+                    f"The launch file renames the topic {old} of {node.name} to {new}:"
+                    " the nodes do not meet there.",
+                    node.file,
+                    _remap_line(package, node, old, new),
+                    node=node.name,
+                    expected=f"the topic {topic.name}",
+                    seen=f"{old} renamed to {new}",
+                    fix="Take the <remap> out.",
+                )
+
+
+def _remap_line(package, node, old, new):
+    for element in elements(package.bytes(node.file)):
+        if element.tag == "remap" and old.endswith(
+            element.attributes.get("from", "?").lstrip("~/")
+        ):
+            if new.endswith(element.attributes.get("to", "?").lstrip("~/")):
+                return element.line
+    return node.line
+
+
+RULE = Rule(stage="files", order=125, needs=("launch",), findings=findings, also=("topic",))

@@ -1,0 +1,53 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""roscpp: what is not kept ends. (rospy keeps it.)"""
+
+from __future__ import annotations
+
+from mrp_check.contract.requirements import Requirement, Rule
+from mrp_check.running import evidence
+from mrp_check.sources.node import each_node
+
+
+def _of(node):
+    topics = {"subscribe": node.wanted.subscribing, "advertise": node.wanted.publishing}
+    kinds = {"subscribe": "subscriber", "advertise": "publisher"}
+    for place in node.places("discarded", "local"):
+        call = place.text
+        if call in kinds:
+            same = [
+                p
+                for p in node.on_topic(kinds[call], topics[call])
+                if p.file == place.file and p.line == place.line
+            ]
+            if not same:
+                continue
+        what = {"subscribe": "subscriber", "advertise": "publisher"}.get(call, "timer")
+        if place.kind == "discarded":
+            how = "is kept nowhere: it ends with this very line"
+        else:
+            how = (
+                f"is kept in {place.values['name']}, a variable of"
+                f" {place.values['function']}(): it ends when that returns"
+            )
+        yield node.finding(
+            "lifetime",
+            f"The {what} that {call}() makes {how}.",
+            place,
+            expected=f"a {what} that lives as long as the node, such as a member of the class",
+            fix=f"Keep it as a member: {what}_ = ...{call}(...);",
+        )
+
+
+RULE = Rule(
+    stage="static",
+    order=70,
+    needs=("facts",),
+    findings=each_node(_of),
+    requirements={
+        "lifetime": Requirement(
+            "Publishers, subscribers and timers live as long as the node, and no longer",
+            "subscriber",
+            evidence.read,
+        )
+    },
+)

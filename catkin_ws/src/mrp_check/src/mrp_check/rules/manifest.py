@@ -1,0 +1,42 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""package.xml: is it complete and valid?"""
+
+from __future__ import annotations
+
+from mrp_check.contract.finding import Finding
+from mrp_check.contract.requirements import Requirement, Rule
+from mrp_check.running import evidence
+from mrp_check.student.manifest import FILE
+
+
+def findings(package, manifest):
+    """Yield findings about a manifest that catkin_pkg can read."""
+    if "catkin" not in {d.name for d in manifest.buildtool_depends}:
+        yield Finding(
+            "manifest",
+            "package.xml does not say that the package is built with catkin.",
+            FILE,
+            # Where it belongs: at the first of the dependencies.
+            package.find_line(FILE, "depend>", package.find_line(FILE, "<package", 1)),
+            expected="<buildtool_depend>catkin</buildtool_depend>",
+            seen=", ".join(d.name for d in manifest.buildtool_depends) or "no buildtool_depend",
+            fix="Add the line <buildtool_depend>catkin</buildtool_depend>.",
+        )
+
+
+def _findings(case):
+    parsed, problem = case.manifest
+    return [problem] if problem else findings(case.package, parsed)
+
+
+RULE = Rule(
+    stage="files",
+    order=10,
+    needs=("manifest",),
+    findings=_findings,
+    requirements={
+        "manifest": Requirement(
+            "package.xml is complete and valid", "building#package-xml", evidence.always
+        )
+    },
+)

@@ -1,0 +1,172 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The package's own messages: their definitions, and what makes code of them."""
+
+from __future__ import annotations
+
+from mrp_check.contract.finding import ERROR, WARNING, Finding
+from mrp_check.contract.requirements import Requirement, Rule
+from mrp_check.contract.spec import PACKAGE
+from mrp_check.contract.words import nearest
+from mrp_check.running import evidence
+from mrp_check.sources import uses
+from mrp_check.student.manifest import declared, last_dependency
+
+FILE = "CMakeLists.txt"
+
+
+def findings(package, spec, model, manifest):
+    """Yield findings about the messages of the package itself."""
+    files = {path: path for path in package.of_kind("message") if path.count("/") <= 1}
+    for name, fields in spec.messages.items():
+        yield from _definition(package, name, fields)
+    if not files and not model.message_files:
+        return
+    if not model.complete and model.catkin is None:
+        return
+    catkin_line = model.catkin.line if model.catkin else 1
+    brings = {"message_generation", "genmsg"}  # the first is all of it; the second builds, too
+    if not brings & {*model.components} and files and model.catkin:
+        yield _message_finding(
+            "find_package(catkin ...) does not name message_generation, which makes code of the"
+            " package's own messages.",
+            FILE,
+            catkin_line,
+            "find_package(catkin REQUIRED COMPONENTS message_generation ...)",
+            "Add message_generation to COMPONENTS.",
+        )
+    needed = [path for path in files if path.rsplit("/", 1)[-1][:-4] in (spec.messages or files)]
+    for path in files if not spec.messages else needed:
+        if path not in model.message_files:
+            call = model.add_message_files
+            yield _message_finding(
+                f"{path} is not named in add_message_files(): no code is made of it.",
+                FILE,
+                call.line if call else catkin_line,
+                f"add_message_files(FILES {path.rsplit('/', 1)[-1]})",
+                f"Add {path.rsplit('/', 1)[-1]} to add_message_files(FILES ...).",
+            )
+    if model.message_files and model.generate is None:
+        yield _message_finding(
+            "CMakeLists.txt never calls generate_messages(): no code is made of the messages.",
+            FILE,
+            model.add_message_files.line,
+            "generate_messages(...) after add_message_files(...)",
+            "Add generate_messages(DEPENDENCIES std_msgs).",
+        )
+    if manifest is not None:
+        known = declared(manifest)
+        for name, kind, tag in (
+            ("message_generation", "build", "build_depend"),
+            ("message_runtime", "exec", "exec_depend"),
+        ):
+            builds = kind == "build" and "genmsg" in known[kind]
+            if name not in known[kind]:
+                yield Finding(
+                    "dependencies",
+                    f"package.xml does not name {name} as a <{tag}>: the package has a message of"
+                    " its own, and needs it.",
+                    "package.xml",
+                    last_dependency(package),
+                    severity=WARNING if builds else ERROR,
+                    expected=f"<{tag}>{name}</{tag}>",
+                    seen=f"no <{tag}> with {name}",
+                    fix=f"Add the line <{tag}>{name}</{tag}>.",
+                )
+    yield from _order(package, model)
+
+
+def _message_finding(message, file, line, expected, fix):
+    return Finding(
+        "messages", message, file, line, expected=expected, seen="no such entry", fix=fix
+    )
+
+
+def _definition(package, name, fields):
+    path = f"msg/{name}.msg"
+    expected = "; ".join(f"{kind} {field}" for field, kind in fields.items())
+    if path not in package.files:
+        near = nearest(path, package.of_kind("message"))
+        yield Finding(
+            "messages",
+            f"There is no message {PACKAGE.lower()}/{name}: the file {path} is missing."
+            + (f" There is {near}." if near else ""),
+            near if near else None,
+            1 if near else None,
+            expected=f"{path} with: {expected}",
+            seen=near if near else "no such file",
+            fix=f"Name the file {path}." if near else f"Write {path}.",
+        )
+        return
+    seen = {}
+    for number, text in enumerate(package.lines(path), 1):
+        words = text.split("#")[0].split()
+        if len(words) == 2 and "=" not in text:
+            seen[words[1]] = (words[0], number)
+    for field, kind in fields.items():
+        if field not in seen or seen[field][0] != kind:
+            near = nearest(field, seen, 0.5)
+            number = seen[field][1] if field in seen else seen[near][1] if near else 1
+            yield Finding(
+                "messages",
+                f"The message {name} has no field '{kind} {field}'.",
+                path,
+                number,
+                expected=f"{kind} {field}",
+                seen=package.lines(path)[number - 1].strip() or "nothing",
+                fix=f"Write the line: {kind} {field}",
+            )
+
+
+def _order(package, model):
+    """Yield a finding for each target that uses a message's header before it is made."""
+    own = {path.rsplit("/", 1)[-1][:-4] for path in package.of_kind("message")}
+    for target in model.targets.values():
+        used = [
+            (file, line, header)
+            for file in [*target.sources, *_headers(package, model, target)]
+            if file in package.files
+            for header, line in uses.includes(package, file)
+            if header.split("/")[0] == package.name and header.split("/")[-1][:-2] in own
+        ]
+        waits = any(
+            word.startswith(f"{package.name}_") and "gen" in word or "EXPORTED_TARGETS" in word
+            for word in target.dependencies
+        )
+        if used and not waits and model.complete and model.generate is not None:
+            file, line, header = used[0]
+            yield Finding(
+                "messages",
+                f"The target {target.name} does not wait until {header}, which {file} includes in"
+                f" line {line}, has been made. It then depends on chance whether it can be built.",
+                target.file,
+                target.line,
+                expected=f"add_dependencies({target.name} ${{${{PROJECT_NAME}}_EXPORTED_TARGETS}})",
+                seen="no such call",
+                fix=f"Add add_dependencies({target.name} ${{${{PROJECT_NAME}}_EXPORTED_TARGETS}})"
+                " after its add_executable().",
+            )
+
+
+def _headers(package, model, target):
+    """Return the package's headers that a target's sources include, directly."""
+    names = {
+        header.rsplit("/", 1)[-1]
+        for file in target.sources
+        if file in package.files
+        for header, _ in uses.includes(package, file)
+    }
+    return [path for path in package.of_kind("header") if path.rsplit("/", 1)[-1] in names]
+
+
+RULE = Rule(
+    stage="files",
+    order=60,
+    needs=("manifest", "model"),
+    findings=lambda case: findings(case.package, case.spec, case.model, case.manifest[0]),
+    requirements={
+        "messages": Requirement(
+            "The package's own messages are generated", "message_types", evidence.cmake
+        )
+    },
+    also=("dependencies",),
+)

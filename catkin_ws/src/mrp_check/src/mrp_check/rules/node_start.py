@@ -1,0 +1,79 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Each node starts ROS, and does so first."""
+
+from __future__ import annotations
+
+from mrp_check.contract.requirements import Requirement, Rule
+from mrp_check.running import evidence
+from mrp_check.sources.node import each_node
+
+
+def _of(node):
+    inits = node.places("init")
+    if not inits:
+        yield _no_init(node)
+        return
+    yield from _at_file_scope(node)
+    if len(inits) == 1:
+        yield from _too_early(node, inits[0])
+
+
+def _no_init(node):
+    call = "rospy.init_node(...)" if node.is_python else "ros::init(...)"
+    where = [p for p in node.places("function") if p.text == "main"] or node.places(
+        "publisher", "subscriber", "timer"
+    )
+    return node.finding(
+        "node-start",
+        f"{node.main} never calls {call}: without it, there is no node.",
+        where[0] if where else (node.main, 1),
+        expected=f"{call}, with the name {node.name}, before all other calls of ROS",
+        seen="no such call",
+        fix=f'Add rospy.init_node("{node.name}").'
+        if node.is_python
+        else f'Add ros::init(argc, argv, "{node.name}"); as the first line of main.',
+    )
+
+
+def _at_file_scope(node):
+    for place in node.places("global"):
+        if "ros::NodeHandle" in (place.text, *place.values.get("holds", ())):
+            yield node.finding(
+                "node-start",
+                f"{place.values.get('name')} is made before main begins, and so before"
+                " ros::init(): a ros::NodeHandle then ends the program.",
+                place,
+                expected="no NodeHandle at file scope",
+                fix="Make it in main, after ros::init().",
+            )
+
+
+def _too_early(node, init):
+    early = [
+        p
+        for p in node.places("handle")
+        if p.file == init.file
+        and p.values.get("function") == "main"
+        and p.values["offset"] < init.values.get("offset", 0)
+        and "ros::NodeHandle" in (p.text, *p.values.get("holds", ()))
+    ]
+    if early:
+        yield node.finding(
+            "node-start",
+            f"{early[0].values.get('name')} is made in line {early[0].line}, before"
+            f" ros::init() in line {init.line}: that ends the program.",
+            early[0],
+            expected="ros::init() before the first ros::NodeHandle",
+            fix="Move ros::init() to the beginning of main.",
+        )
+
+
+RULE = Rule(
+    stage="static",
+    order=30,
+    needs=("facts",),
+    findings=each_node(_of),
+    requirements={
+        "node-start": Requirement("Each node starts ROS first", "publisher", evidence.read)
+    },
+)

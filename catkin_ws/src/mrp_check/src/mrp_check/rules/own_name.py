@@ -1,0 +1,39 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A node has its own name, too, where no launch file gives it one."""
+
+from __future__ import annotations
+
+import re
+
+from mrp_check.contract.finding import WARNING
+from mrp_check.contract.requirements import Rule
+from mrp_check.running.node import each_node
+
+
+def _of(node):
+    own = node.own_name
+    if not own:
+        return
+    name = own.rsplit("/", 1)[-1]
+    if re.fullmatch(rf"{re.escape(node.name)}_\d+(_\d+)?", name):
+        yield node.finding(
+            "node-name",
+            "The node asks for an anonymous name: rosrun starts it under another name each time;"
+            " the launch file gives it its own.",
+            node.places.of(node.name, "init"),
+            WARNING,
+            expected=node.name,
+            seen=name,
+        )
+    elif name != node.name:
+        yield node.finding(
+            "node-name",
+            f"Started by itself, {node.name} calls itself {name}: the launch file hides it, but"
+            " with rosrun the node has the wrong name.",
+            node.places.of(node.name, "init"),
+            expected=node.name,
+            seen=name,
+        )
+
+
+RULE = Rule("run", 11, ("nodes",), each_node(_of, also_dead=True), also=("node-name",))

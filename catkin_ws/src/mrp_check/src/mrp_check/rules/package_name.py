@@ -1,0 +1,58 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The package's name, which stands in package.xml, in CMakeLists.txt and in the launch file."""
+
+from __future__ import annotations
+
+import collections
+
+from mrp_check.contract.finding import Finding
+from mrp_check.contract.requirements import Requirement, Rule
+from mrp_check.running import evidence
+
+
+def findings(package, model, launch):
+    """Yield a finding if package.xml and CMakeLists.txt disagree; the others say who is right."""
+    if model.project is None:
+        return
+    project, call = model.project
+    if project == package.name or "$" in project:
+        return
+    votes = collections.Counter([package.root.resolve().name])
+    votes.update(node.package for node in (launch.nodes if launch else []))
+    if votes[project] > votes[package.name]:
+        file, line, wrong, right = "package.xml", None, package.name, project
+        line = package.find_line(file, f">{package.name}<") or package.find_line(file, "<name", 1)
+        expected, seen = f"<name>{right}</name>", f"<name>{wrong}</name>"
+    else:
+        file, line, wrong, right = call.file, call.line, project, package.name
+        expected, seen = f"project({right})", f"project({wrong})"
+    other = "CMakeLists.txt calls" if file == "package.xml" else "package.xml calls"
+    yield Finding(
+        "package-name",
+        f"{file} calls the package {wrong}, {other} it {right}: catkin cannot build it.",
+        file,
+        line,
+        expected=expected,
+        seen=seen,
+        fix=f"Write {expected}.",
+        change=(wrong, right),
+    )
+
+
+def _findings(case):
+    return findings(case.package, case.model, case.launch) if case.manifest[0] else ()
+
+
+RULE = Rule(
+    stage="files",
+    order=30,
+    needs=("manifest", "model", "launch"),
+    findings=_findings,
+    requirements={
+        "package-name": Requirement(
+            "The package has one name, in package.xml, CMake and launch file",
+            "package",
+            evidence.manifest,
+        )
+    },
+)

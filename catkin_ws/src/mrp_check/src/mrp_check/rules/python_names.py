@@ -1,0 +1,307 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What a Python source names and nothing has: modules, names, members."""
+
+from __future__ import annotations
+
+import ast
+import re
+import sys
+
+from pyflakes import checker, messages
+
+from mrp_check.contract.finding import NOTE
+from mrp_check.contract.requirements import Requirement, Rule
+from mrp_check.contract.words import nearest, perhaps
+from mrp_check.running import evidence
+from mrp_check.sources import uses
+from mrp_check.sources.python_facts import last_line
+from mrp_check.sources.python_modules import is_module, is_ros, load, resolve, ros_modules
+from mrp_check.sources.python_rule import PythonRule, of_sources
+
+# Names of Python 2, which old code mentions where Python 3 does not come by.
+_PYTHON2 = {"unicode", "xrange", "raw_input", "long", "basestring", "reduce", "unichr", "file"}
+
+
+class Names(PythonRule):
+    def __init__(self, package, source):
+        super().__init__(package, source)
+        self.not_imported = []  # names whose import fails
+        self.message_names = {path.rsplit("/", 1)[-1][:-4] for path in package.of_kind("message")}
+
+    def findings(self):
+        yield from [*self.imports()]
+        undefined = [*self.undefined_names()]
+        for finding in undefined:
+            # What was to be imported under its right name is not there under it, either.
+            if nearest(finding.expected, self.not_imported):
+                finding.consequence_of = "python-names"
+        yield from undefined
+        yield from self.attributes()
+        yield from self.own_attributes()
+
+    def imports(self):
+        for node in self.source.import_nodes:
+            if self.source.is_guarded(node, "ImportError", "ModuleNotFoundError"):
+                continue
+            if isinstance(node, ast.Import):
+                for alias in node.names:
+                    yield from self._module(node, alias.name)
+            elif not node.level and node.module:
+                problem = list(self._module(node, node.module))
+                yield from problem
+                if not problem:
+                    yield from self._imported(node)
+
+    def _module(self, node, name):
+        if self.is_own(name):
+            return
+        missing, parent = None, None
+        for length in range(1, name.count(".") + 2):
+            part = ".".join(name.split(".")[:length])
+            # Only ROS's own packages are imported: importing runs what is imported.
+            if length > 1 and not is_ros(part):
+                break
+            if not is_module(part):
+                missing = part
+                break
+            parent = part
+        if missing is None:
+            return
+        self.not_imported.append(name.split(".")[-1])
+        if parent is None:
+            known = set(sys.modules) | ros_modules()
+            # Of short names many are alike: cv2 is no misspelt csv.
+            near = nearest(missing, {n for n in known if "." not in n}, 0.75)
+            if not near:
+                yield self._absent(node, missing)
+                return
+        else:
+            near = nearest(missing.rsplit(".", 1)[-1], {"msg", "srv", "exceptions"})
+        yield self.finding(
+            "python-names",
+            f"There is no Python module {missing}: Python ends with a ModuleNotFoundError."
+            + perhaps(near),
+            node,
+            expected="a module that is installed",
+            fix=f"Write {near}." if near else "Mend the name of the module.",
+        )
+
+    def _absent(self, node, module):
+        self.source.absent[module] = said = uses.absent(module, "python")
+        return self.finding("python-names", said, node, severity=NOTE)
+
+    def _imported(self, node):
+        if node.module == f"{self.package.name}.msg":
+            names = self.message_names
+        elif self.is_own(node.module) or not is_ros(node.module):
+            return
+        else:
+            module = load(node.module)
+            if module is None:
+                return
+            names = set(dir(module))
+        for alias in node.names:
+            if alias.name == "*" or alias.name in names:
+                continue
+            if is_module(f"{node.module}.{alias.name}"):
+                continue
+            self.not_imported.append(alias.name)
+            near = nearest(alias.name, {n for n in names if not n.startswith("_")})
+            hint = perhaps(near)
+            messages_ = load(f"{node.module}.msg") if is_module(f"{node.module}.msg") else None
+            if hasattr(messages_, alias.name):
+                hint = f" It is in {node.module}.msg."
+            yield self.finding(
+                "python-names",
+                f"{node.module} has no {alias.name}: Python ends with an ImportError.{hint}",
+                node,
+                expected=f"a name that {node.module} has",
+                fix=f"Write {near} for {alias.name}." if near else "Mend the name.",
+            )
+
+    def undefined_names(self):
+        try:
+            found = checker.Checker(self.source.tree, self.file).messages
+        except RecursionError:
+            return
+        said = set()
+        for message in sorted(found, key=lambda message: message.lineno):
+            if not isinstance(message, (messages.UndefinedName, messages.UndefinedLocal)):
+                continue
+            name = message.message_args[0]
+            if name in _PYTHON2 or name in said or self.source.has_star:
+                continue
+            said.add(name)
+            yield self._undefined(name, message)
+
+    def _undefined(self, name, message):
+        names = {
+            node.id
+            for node in ast.walk(self.source.tree)
+            if isinstance(node, ast.Name) and node.id != name
+        }
+        names |= set(self.source.imports) | {"print", "range", "str", "int", "len", "True", "False"}
+        names |= {
+            n.name
+            for n in ast.walk(self.source.tree)
+            if isinstance(n, (ast.FunctionDef, ast.ClassDef))
+        }
+        hint = perhaps(nearest(name, names))
+        fix = "Mend the name, or define it before it is used."
+        if isinstance(message, messages.UndefinedLocal):
+            return self.finding(
+                "python-names",
+                f"{name} is used in this function before the function gives it a value: as it"
+                " assigns to it further down, Python takes it for a variable of the function.",
+                message.lineno,
+                expected=f"self.{name}, or 'global {name}' at the beginning of the function",
+                fix=f"Make it a member of the class (self.{name}), or declare it global.",
+            )
+        attributes = {
+            node.attr
+            for node in ast.walk(self.source.tree)
+            if isinstance(node, ast.Attribute)
+            and isinstance(node.value, ast.Name)
+            and node.value.id == "self"
+        }
+        methods = {
+            n.name
+            for n in ast.walk(self.source.tree)
+            if isinstance(n, ast.FunctionDef) and self.source.class_(n)
+        }
+        if name in attributes | methods:
+            hint, fix = f" Perhaps self.{name} is meant.", f"Write self.{name}."
+        elif name == "self":
+            return self._no_self(message)
+        elif uses.is_ros_package(name) or is_module(name):
+            hint, fix = f" The import of {name} is missing.", f"Add the line: import {name}"
+        elif re.fullmatch(r"U?Int\d+|Float\d+|String|Bool|Empty|Header|Char|Byte", name):
+            hint = f" The import of {name} is missing."
+            fix = f"Add the line: from std_msgs.msg import {name}"
+        return self.finding(
+            "python-names",
+            f"Nothing is called {name}: Python ends with a NameError when it comes here.{hint}",
+            message.lineno,
+            expected=name,
+            fix=fix,
+        )
+
+    def _no_self(self, message):
+        """Return the finding about a method without self: its def line is to blame."""
+        around = [
+            node
+            for node in ast.walk(self.source.tree)
+            if isinstance(node, ast.FunctionDef)
+            and node.lineno <= message.lineno <= last_line(node)
+        ]
+        method = max(around, key=lambda node: node.lineno, default=None)
+        return self.finding(
+            "python-names",
+            "Nothing is called self here: a method's first parameter has to be self.",
+            method.lineno if method else message.lineno,
+            expected=f"def {method.name}(self, ...)" if method else "self as the first parameter",
+            fix="Write self as the first parameter of the method.",
+            change=_self_first(method) if method else None,
+        )
+
+    def attributes(self):
+        """Names of ROS's own modules that do not exist, such as rospy.spln."""
+        for node in ast.walk(self.source.tree):
+            if not isinstance(node, ast.Attribute) or isinstance(
+                self.source.parents.get(node), ast.Attribute
+            ):
+                continue
+            name = self.source.dotted(node)
+            if not name or not is_ros(name) or self.is_own(name):
+                continue
+            if self.source.is_guarded(node, "AttributeError") or isinstance(node.ctx, ast.Store):
+                continue
+            owner, missing = resolve(name)
+            if missing is None:
+                continue
+            near = nearest(missing, [n for n in dir(owner) if not n.startswith("_")])
+            called = getattr(owner, "__name__", name.rsplit(".", 1)[0])
+            yield self.finding(
+                "python-names",
+                f"{called} has no {missing}: Python ends with an AttributeError when it comes"
+                " here." + perhaps(near),
+                node,
+                expected=f"a name that {called} has",
+                fix=f"Write {near} for {missing}." if near else "Mend the name.",
+            )
+
+    def own_attributes(self):
+        """self.NAME that no method ever sets."""
+        for class_ in ast.walk(self.source.tree):
+            if not isinstance(class_, ast.ClassDef) or class_.keywords or class_.decorator_list:
+                continue
+            if any(not isinstance(b, ast.Name) or b.id != "object" for b in class_.bases):
+                continue
+            inside = list(ast.walk(class_))
+            if any(
+                isinstance(n, ast.Name)
+                and n.id in ("setattr", "vars", "globals")
+                or isinstance(n, ast.Attribute)
+                and n.attr in ("__dict__", "update")
+                or isinstance(n, ast.FunctionDef)
+                and n.name in ("__getattr__", "__getattribute__")
+                for n in inside
+            ):
+                continue
+            yield from self._of_class(class_, inside)
+
+    def _of_class(self, class_, inside):
+        known = set(dir(object)) | {"__dict__", "__class__", "__name__", "__module__"}
+        # Whoever sets an attribute of any object may set it of this one.
+        known |= {
+            n.attr
+            for n in ast.walk(self.source.tree)
+            if isinstance(n, ast.Attribute) and isinstance(n.ctx, ast.Store)
+        }
+        for node in class_.body:
+            if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)):
+                known.add(node.name)
+            for one in ast.walk(node):
+                if isinstance(one, ast.Name) and isinstance(one.ctx, ast.Store):
+                    known.add(one.id)
+        said = set()
+        for node in inside:
+            if not (
+                isinstance(node, ast.Attribute)
+                and isinstance(node.value, ast.Name)
+                and node.value.id == "self"
+                and isinstance(node.ctx, ast.Load)
+            ):
+                continue
+            if node.attr in known or node.attr in said or self.source.class_(node) is not class_:
+                continue
+            if self.source.is_guarded(node, "AttributeError"):
+                continue
+            said.add(node.attr)
+            near = nearest(f"self.{node.attr}", {f"self.{n}" for n in known - set(dir(object))})
+            yield self.finding(
+                "python-names",
+                f"No method of {class_.name} ever sets self.{node.attr}: Python ends with an"
+                " AttributeError when it comes here." + perhaps(near),
+                node,
+                expected="a member that is set, or a method that is defined",
+                fix=f"Write {near}." if near else f"Set self.{node.attr} in __init__.",
+            )
+
+
+def _self_first(method):
+    rest = ", " if method.args.args or method.args.vararg or method.args.kwarg else ""
+    return f"def {method.name}(", f"def {method.name}(self{rest}"
+
+
+RULE = Rule(
+    stage="static",
+    order=20,
+    needs=("facts",),
+    findings=of_sources(Names),
+    requirements={
+        "python-names": Requirement(
+            "Each name in Python code exists", "wrong", evidence.python_read
+        )
+    },
+)

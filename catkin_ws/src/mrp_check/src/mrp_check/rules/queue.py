@@ -1,0 +1,81 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Each queue is as long as the contract says, as far as the source says it plainly."""
+
+from __future__ import annotations
+
+from mrp_check.contract.finding import ERROR, WARNING
+from mrp_check.contract.requirements import Requirement, Rule
+from mrp_check.running import evidence
+from mrp_check.sources.node import each_node
+
+
+def _of(node):
+    wanted = node.wanted
+    for kind, topic, role in (
+        ("subscriber", wanted.subscribing, wanted.subscribes or wanted.relays),
+        ("publisher", wanted.publishing, wanted.publishes or wanted.relays),
+    ):
+        asked = role and role.queue
+        for place in node.on_topic(kind, topic) if asked else ():
+            queue = place.values.get("queue")
+            if isinstance(queue, int) and queue is not True and queue != asked:
+                yield _other_queue(node, place, kind, queue, asked)
+            elif node.is_python and kind == "publisher" and _says_none(node, place):
+                yield node.finding(
+                    "queue",
+                    "rospy.Publisher() is given no queue_size: it then sends each message"
+                    " before it returns, and warns of it.",
+                    place,
+                    severity=WARNING,
+                    expected=f"queue_size={asked}",
+                    fix=f"Add queue_size={asked}.",
+                )
+
+
+def _other_queue(node, place, kind, queue, asked):
+    why = {
+        (True, "subscriber", 0): "rospy.Subscriber() takes no queue_size of 0: it raises an error.",
+        (True, "subscriber", 1): "The subscriber's queue has room for one message. In rospy"
+        " each publisher has a queue of its own; a callback that is late loses messages all"
+        " the same.",
+        (False, "subscriber", 1): "The subscriber's queue has room for one message. All"
+        " publishers of the topic share it: two that publish at the same moment push out each"
+        " other's values.",
+    }
+    rooms = f"has room for {queue} messages" if queue else "has no limit"
+    return node.finding(
+        "queue",
+        why.get((node.is_python, kind, queue))
+        or f"The {kind}'s queue {rooms}; the contract asks for {asked}.",
+        (place.file, place.values.get("queue_line", place.line)),
+        # A longer one loses nothing, and one that is little shorter hardly ever.
+        severity=ERROR if queue == 1 or (node.is_python, kind, queue) in why else WARNING,
+        expected=f"queue_size={asked}" if node.is_python else f"a queue of {asked}",
+        fix=f"Write {asked} for {queue}.",
+        change=(f"queue_size={queue}", f"queue_size={asked}")
+        if node.is_python
+        else (f", {queue}", f", {asked}"),
+    )
+
+
+def _says_none(node, place):
+    """Return whether a call that begins in a line has no queue_size in its lines."""
+    lines = node.package.lines(place.file)[place.line - 1 : place.line + 6]
+    text, depth = "", 0
+    for line in lines:
+        text += line + "\n"
+        depth += line.count("(") - line.count(")")
+        if depth <= 0:
+            break
+    if "queue" in place.values:
+        return False
+    return "queue_size" not in text and "**" not in text and text.count(",") < 6
+
+
+RULE = Rule(
+    stage="static",
+    order=80,
+    needs=("facts",),
+    findings=each_node(_of),
+    requirements={"queue": Requirement("Queues are long enough", "queues", evidence.read)},
+)

@@ -1,0 +1,88 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Publishers publish as often as the contract says."""
+
+from __future__ import annotations
+
+import statistics
+
+from mrp_check.contract.requirements import Requirement, Rule
+from mrp_check.running import evidence
+from mrp_check.running.node import Node, each_node
+
+
+def _of(node):
+    role = node.wanted.publishes
+    messages = node.published() if role and role.period else ()
+    if not messages:
+        return
+    place = node.places.of(node.name, "rate", "timer", "publish")
+    expected = f"a message every {role.period:g} s"
+    times = [m["time"] for m in messages]
+    if not node.has_rate():
+        waited = node.asked - times[-1]
+        if waited > 3 * role.period + 10 * node.all.get("lag", 0):
+            count = "once" if len(times) == 1 else f"{len(times)} messages"
+            slow = len(times) > 1 and times[-1] - times[0] > 2 * role.period
+            yield node.finding(
+                "rate",
+                f"{node.name} published {count}"
+                + (
+                    " in all, far too seldom."
+                    if slow
+                    else f", and then no more for {waited:.0f} s."
+                ),
+                place,
+                expected=expected,
+                seen=count,
+            )
+        return
+    gaps = [b - a for a, b in zip(times, times[1:])]
+    # A busy machine can delay messages, and let them come in a burst after that; it can change
+    # neither the middle one of all gaps by much, nor the time that all together take.
+    middle, mean = statistics.median(gaps), (times[-1] - times[0]) / len(gaps)
+    low, high = role.period * (1 - role.tolerance), role.period * (1 + role.tolerance)
+    lag = node.all.get("lag", 0)
+    too_fast = middle < low and mean < low
+    too_slow = middle > high + 2 * lag and mean > high + 2 * lag
+    if too_slow and not _is_slow_by_itself(node, role, high):
+        return
+    if too_fast or too_slow:
+        seen = f"a message every {middle:.2g} s"
+        # Beside a timer: a loop's own sleep is what its rate is made of.
+        timer = "Timer" in (node.package.lines(place[0])[place[1] - 1] if place[0] else "")
+        sleep = too_slow and timer and node.places.sleep_beside(node.name, "publish")
+        yield node.finding(
+            "rate",
+            f"{node.name} publishes too {'often' if too_fast else 'seldom'}: {seen}, where the"
+            f" contract says every {role.period:g} s."
+            + (" Its callback sleeps, and the timer waits for it." if sleep else ""),
+            sleep or place,
+            expected=expected,
+            seen=seen,
+        )
+
+
+def _is_slow_by_itself(node, role, high):
+    """Return whether the node was as slow when it ran by itself: two runs agree."""
+    messages = node.direct_of("messages")
+    topics = {m["topic"] for m in messages if m["topic"].endswith("/" + role.topic.name)}
+    times = [m["time"] for m in messages if m["topic"] in topics]
+    gaps = [b - a for a, b in zip(times, times[1:])]
+    return not gaps or statistics.median(gaps) > high
+
+
+RULE = Rule(
+    stage="run",
+    order=40,
+    needs=("nodes",),
+    findings=each_node(_of),
+    requirements={
+        "rate": Requirement(
+            "The rate is right",
+            "publisher",
+            evidence.of_publisher(
+                lambda role: role.period, Node.has_rate, "published too few messages"
+            ),
+        )
+    },
+)

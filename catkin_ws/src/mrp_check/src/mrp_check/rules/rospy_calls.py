@@ -1,0 +1,232 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Calls of rospy that cannot work, and callbacks that cannot be called."""
+
+from __future__ import annotations
+
+import ast
+import inspect
+import re
+
+from mrp_check.contract.requirements import Rule
+from mrp_check.contract.words import nearest, perhaps
+from mrp_check.sources.python_facts import argument
+from mrp_check.sources.python_modules import cannot_bind, resolve, signature
+from mrp_check.sources.python_rule import PythonRule, ast_text, of_sources
+from mrp_check.sources.python_source import UNKNOWN
+
+
+class Calls(PythonRule):
+    def findings(self):
+        for node in ast.walk(self.source.tree):
+            if not isinstance(node, ast.Call):
+                continue
+            name = self.source.dotted(node.func)
+            if name and name.startswith("rospy.") and not self.is_own("rospy"):
+                yield from self._call(node, name)
+
+    def _call(self, node, name):
+        function, missing = resolve(name)
+        if missing is not None or not callable(function):
+            return
+        problem = cannot_bind(function, node)
+        if problem:
+            hint = ""
+            match = re.search(r"unexpected keyword argument '(\w+)'", problem)
+            if match:
+                hint = perhaps(nearest(match.group(1), inspect.signature(function).parameters))
+            yield self.finding(
+                "callbacks" if name == "rospy.Timer" else "python-names",
+                f"{name}() is called with the wrong arguments: {problem}.{hint}",
+                node,
+                expected=f"{name}{signature(function)}",
+                fix="Compare the call with the one on the page.",
+            )
+            return
+        if name in _CHECKED:
+            yield from _CHECKED[name](self, node)
+
+    def _init_node(self, node):
+        given = argument(node, 0, "name")
+        value = self.source.value(given)
+        if value is not UNKNOWN and not isinstance(value, str) or self._is_type(given):
+            yield self.finding(
+                "node-start",
+                "rospy.init_node() takes the node's name, a text, as its first argument.",
+                node,
+                expected='rospy.init_node("NAME")',
+                fix="Hand the node's name over first.",
+            )
+
+    def _is_type(self, node):
+        return self.message_class(node) is not None or isinstance(
+            self.source.definition(node), (ast.FunctionDef, ast.ClassDef)
+        )
+
+    def _topic_and_type(self, node, what):
+        topic, class_ = argument(node, 0, "name"), argument(node, 1, "data_class")
+        value = self.source.value(class_)
+        is_text = isinstance(value, str)
+        swapped = self.message_class(topic) is not None
+        own = self.source.definition(class_) if class_ is not None else None
+        if (
+            swapped
+            or is_text
+            or isinstance(own, (ast.FunctionDef, ast.Lambda))
+            or isinstance(class_, ast.Call)
+            and self.message_class(class_.func)
+        ):
+            why = (
+                "the topic's name comes first, and then the type"
+                if swapped
+                else "the second argument has to be the type of the message, a class"
+            )
+            yield self.finding(
+                "type",
+                f"rospy.{what}() gets its arguments wrong: {why}.",
+                node,
+                expected=f'rospy.{what}("TOPIC", UInt32, ...)',
+                fix="Compare the call with the one on the page.",
+            )
+
+    def _publisher(self, node):
+        yield from self._topic_and_type(node, "Publisher")
+
+    def _subscriber(self, node):
+        yield from self._topic_and_type(node, "Subscriber")
+        class_ = self.message_class(argument(node, 1, "data_class"))
+        extra = argument(node, 3, "callback_args")
+        more = 0 if extra is None or self.source.value(extra) is None else 1
+        callback = argument(node, 2, "callback")
+        if callback is not None:
+            given = f"a message {class_._type}" if class_ else "a message"
+            yield from self._callback(callback, 1 + more, "rospy.Subscriber", given)
+        elif not any(keyword.arg is None for keyword in node.keywords):
+            parent = self.source.parents.get(node)
+            if not self._callback_added(parent):
+                yield self.finding(
+                    "callbacks",
+                    "rospy.Subscriber() is given no callback: nothing happens when a message"
+                    " arrives.",
+                    node,
+                    expected="the callback as the third argument",
+                    fix="Hand the callback over, without calling it.",
+                )
+
+    def _callback_added(self, parent):
+        names = {n.attr for n in ast.walk(self.source.tree) if isinstance(n, ast.Attribute)}
+        return bool(names & {"add_callback", "registerCallback"}) or not isinstance(
+            parent, (ast.Assign, ast.Expr)
+        )
+
+    def _timer(self, node):
+        period, callback = argument(node, 0, "period"), argument(node, 1, "callback")
+        is_number = isinstance(period, ast.Constant) and isinstance(period.value, (int, float))
+        if (
+            is_number
+            or isinstance(self.source.value(period), (int, float))
+            and isinstance(period, (ast.BinOp, ast.UnaryOp))
+        ):
+            yield self.finding(
+                "callbacks",
+                "rospy.Timer() takes a rospy.Duration, not a number: the timer's thread ends with"
+                " an error, and nothing is ever called.",
+                node,
+                expected="rospy.Timer(rospy.Duration(0.5), ...)",
+                fix="Write rospy.Duration(...) around the number.",
+                change=(self.written(period) + ",", f"rospy.Duration({self.written(period)}),"),
+            )
+        yield from self._callback(callback, 1, "rospy.Timer", "a TimerEvent")
+
+    def _callback(self, callback, count, taker, given):
+        """Yield a finding if what is handed over as a callback cannot be called with `count`."""
+        if isinstance(callback, ast.Call):
+            called = self.source.definition(callback.func)
+            if isinstance(called, ast.FunctionDef) and not _returns(called):
+                yield self.finding(
+                    "callbacks",
+                    f"{called.name}() is called here, once, and what it returns, nothing, is handed"
+                    f" over to {taker}(): it is never called again.",
+                    callback,
+                    expected=f"{ast_text(callback.func)}, without brackets",
+                    fix=f"Write {ast_text(callback.func)} for {ast_text(callback.func)}(...).",
+                    change=(self.written(callback), self.written(callback.func)),
+                )
+            return
+        value = self.source.value(callback)
+        if isinstance(value, (str, int, float)):
+            yield self.finding(
+                "callbacks",
+                f"{taker}() takes a function to call, and is given a plain value.",
+                callback,
+                expected="the name of a function",
+                fix="Hand the function over, without quotation marks and without calling it.",
+            )
+            return
+        function = self.source.definition(callback)
+        if not isinstance(function, (ast.FunctionDef, ast.Lambda)):
+            return
+        if getattr(function, "decorator_list", None):
+            decorators = {getattr(d, "id", "") for d in function.decorator_list}
+            if decorators - {"staticmethod"}:
+                return
+            bound = 0 if "staticmethod" in decorators else 1
+        else:
+            bound = 1
+        is_method = isinstance(callback, ast.Attribute)
+        gets = count + (
+            bound
+            if is_method
+            and isinstance(function, ast.FunctionDef)
+            and isinstance(self.source.parents.get(function), ast.ClassDef)
+            else 0
+        )
+        takes = function.args
+        most = len(getattr(takes, "posonlyargs", [])) + len(takes.args)
+        least = most - len(takes.defaults)
+        if (
+            (gets > most and not takes.vararg)
+            or gets < least
+            or any(default is None for default in takes.kw_defaults)
+        ):
+            name = getattr(function, "name", "the lambda")
+            yield self.finding(
+                "callbacks",
+                f"{taker}() calls {name}() with {given}; {name}() takes"
+                f" {_count(max(0, least - (gets - count)))}. Python ends the call with a TypeError,"
+                " each time.",
+                function,
+                expected=f"{count} parameter{'s' if count > 1 else ''}"
+                + (" besides self" if gets > count else ""),
+                fix=f"Give {name} the parameter{'s' if count > 1 else ''} that it is called with.",
+            )
+
+
+_CHECKED = {
+    "rospy.init_node": Calls._init_node,
+    "rospy.Publisher": Calls._publisher,
+    "rospy.Subscriber": Calls._subscriber,
+    "rospy.Timer": Calls._timer,
+}
+
+
+def _count(number):
+    return {0: "no argument", 1: "one argument"}.get(number, f"{number} arguments")
+
+
+def _returns(function):
+    """Return whether a function returns or yields anything."""
+    return any(
+        isinstance(n, ast.Return)
+        and n.value is not None
+        or isinstance(n, (ast.Yield, ast.YieldFrom))
+        for n in ast.walk(function)
+    ) or bool(function.decorator_list)
+
+
+RULE = Rule(
+    stage="static",
+    order=22,
+    needs=("facts",),
+    findings=of_sources(Calls),
+    also=("python-names", "node-start", "type", "callbacks"),
+)

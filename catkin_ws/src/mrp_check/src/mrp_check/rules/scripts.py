@@ -1,0 +1,208 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Can each Python node be started: is it installed, is it executable, is its first line right?"""
+
+from __future__ import annotations
+
+import ast
+import codecs
+import functools
+import os
+import shutil
+import subprocess
+
+from mrp_check.build.catkin import search_path
+from mrp_check.contract.finding import NOTE, Finding
+from mrp_check.contract.requirements import Requirement, Rule
+from mrp_check.contract.words import nearest, perhaps
+from mrp_check.running import evidence
+from mrp_check.sources.uses import is_test
+
+_MARKS = (codecs.BOM_UTF8, codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)
+PYTHON = "python"  # what catkin_install_python replaces in the first line
+
+
+def names_no_program(shebang):
+    """Return the program that a first line names and this machine has not, or None."""
+    words = shebang[2:].strip().split()
+    if not words:
+        return "nothing"
+    if os.path.basename(words[0]) == "env":
+        rest = [word for word in words[1:] if not word.startswith("-") and "=" not in word]
+        program = rest[0] if rest else "nothing"
+        return None if shutil.which(program, path=search_path()) else program
+    return None if os.access(words[0], os.X_OK) and os.path.isfile(words[0]) else words[0]
+
+
+def findings(package, model, started):
+    """Yield findings about the scripts.
+
+    started: file -> the launch.Started node that it is, for the scripts that the launch file starts
+    """
+    relayed = {s.path for s in model.scripts if s.by == "catkin_install_python"}
+    yield from _listed(package, model)
+    for path in package.of_kind("python"):
+        if is_test(path) or path == "setup.py":
+            continue
+        shebang = package.shebang(path) or ""
+        is_node = path in started or path in {s.path for s in model.scripts}
+        if is_node or shebang and _is_node(package, path):
+            yield from _of(package, model, path, shebang, path in relayed)
+            yield from _shadowing(path)
+
+
+@functools.lru_cache(maxsize=None)
+def _modules_of_rospy():
+    """Return the names of the modules that Python loads when a node imports rospy."""
+    code = "import sys, rospy, std_msgs.msg; print(*(n for n in sys.modules if '.' not in n))"
+    done = subprocess.run(["/usr/bin/python3", "-c", code], stdout=subprocess.PIPE, text=True)
+    return set(done.stdout.split()) - {"__main__"}
+
+
+def _shadowing(path):
+    """Yield a finding if a script is found where a module that rospy imports is looked for."""
+    folder, name = os.path.split(path)
+    stem, ending = os.path.splitext(name)
+    if ending == ".py" and stem in _modules_of_rospy():
+        yield Finding(
+            "scripts",
+            f"The script is called {name}, and rospy imports a module {stem}: Python looks first in"
+            " the script's own folder, and takes the script for the module.",
+            path,
+            1,
+            expected="a name that no module has",
+            seen=name,
+            fix=f"Rename the script, to {stem}_node.py for example.",
+        )
+
+
+def _is_node(package, path):
+    """Return whether a script calls rospy.init_node: others may be anything."""
+    try:
+        tree = ast.parse(package.text(path))
+    except (SyntaxError, ValueError, RecursionError, MemoryError):
+        return False
+    names = {
+        getattr(n.func, "attr", getattr(n.func, "id", ""))
+        for n in ast.walk(tree)
+        if isinstance(n, ast.Call)
+    }
+    return "init_node" in names
+
+
+def _listed(package, model):
+    """Yield a finding for each script that CMakeLists.txt names and that is not there."""
+    for script in model.scripts:
+        if script.path in package.files or "$" in script.path or script.path.startswith("/"):
+            continue
+        near = nearest(script.path, package.of_kind("python"))
+        yield Finding(
+            "scripts",
+            f"CMakeLists.txt installs {script.path}, and there is no such file." + perhaps(near),
+            script.file,
+            script.line,
+            expected="the name of a file, relative to CMakeLists.txt",
+            seen=script.path,
+            fix=f"Write {near} for {script.path}." if near else "Name a file that is there.",
+        )
+
+
+def _other_program(path, plain, relayed, what):
+    """Return the finding about a first line that asks for the wrong program."""
+    wanted = "#!/usr/bin/env python" + ("" if relayed else "3")
+    return Finding(
+        "scripts",
+        f"The first line of {path} {what}.",
+        path,
+        1,
+        expected=wanted,
+        seen=plain,
+        fix=f"Make {wanted} the first line.",
+        change=(plain, wanted),
+    )
+
+
+def _install_place(model, path):
+    """Return where a script would be handed to catkin_install_python()."""
+    calls = [s for s in model.scripts if s.by == "catkin_install_python"]
+    calls += [s for s in model.scripts if s.path == path]
+    return (calls[0].file, calls[0].line) if calls else (path, 1)
+
+
+def _of(package, model, path, shebang, relayed):
+    plain = shebang.rstrip("\r")
+    absent = names_no_program(plain) if plain else None
+    install = next((s for s in model.scripts if s.by == "catkin_install_python"), None)
+    if not plain and package.bytes(path).startswith(_MARKS):
+        pass  # a byte order mark hides it: the rules about text say so
+    elif not plain:
+        first = package.lines(path)[0].strip()
+        hidden = next(
+            (n for n, text in enumerate(package.lines(path)[:20], 1) if text.startswith("#!")), None
+        )
+        yield Finding(
+            "scripts",
+            f"{path} does not begin with #!: Linux does not know that Python is to run it."
+            + (f" The #! is in line {hidden}, and has to be in the first." if hidden else ""),
+            path,
+            1,
+            expected="#!/usr/bin/env python",
+            seen=first or "an empty line",
+            fix="Make #!/usr/bin/env python the first line.",
+        )
+    elif absent == PYTHON and not relayed:
+        # Debian has no `python`: it takes catkin_install_python to put the right one there.
+        yield Finding(
+            "scripts",
+            f"{path} is not made to run by catkin_install_python(), and its first line asks for"
+            " 'python', which this system does not have: it has python3.",
+            *_install_place(model, path),
+            expected=f"catkin_install_python(PROGRAMS ... {path} ...) in CMakeLists.txt",
+            seen=plain,
+            fix=f"Add {path} to catkin_install_python(PROGRAMS ...)."
+            if install
+            else f"Add catkin_install_python(PROGRAMS {path} DESTINATION"
+            " ${CATKIN_PACKAGE_BIN_DESTINATION}) to CMakeLists.txt; or write"
+            " #!/usr/bin/env python3.",
+        )
+        return
+    elif absent and absent != PYTHON:
+        what = f"names {absent}, a program that is not there"
+        yield _other_program(path, plain, relayed, what)
+    elif "python" not in plain:
+        what = "hands the Python script to another program"
+        yield _other_program(path, plain, relayed, what)
+    elif "python2" in plain:
+        what = "asks for Python 2, for which there is no rospy"
+        yield _other_program(path, plain, relayed, what)
+    if not package.is_executable(path):
+        yield Finding(
+            "scripts",
+            f"{path} is not executable"
+            + (
+                "; roslaunch and rosrun start it all the same, as catkin_install_python() has"
+                " made an executable of it."
+                if relayed
+                else ": roslaunch and rosrun do not find it."
+            ),
+            path,
+            1,
+            severity=NOTE if relayed else "error",
+            expected="permission to execute it",
+            seen=f"mode {(package.root / path).stat().st_mode & 0o777:o}",
+            fix=f"chmod +x {path}",
+        )
+
+
+RULE = Rule(
+    stage="files",
+    order=70,
+    needs=("model", "launch"),
+    findings=lambda case: findings(case.package, case.model, case.started),
+    requirements={
+        "scripts": Requirement(
+            "Each script is there, executable, and can be started",
+            "wrong#the-script-is-not-executable",
+            evidence.python,
+        )
+    },
+)

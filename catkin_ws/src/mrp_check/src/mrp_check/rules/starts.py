@@ -1,0 +1,84 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Each node starts and stays up."""
+
+from __future__ import annotations
+
+import re
+
+from mrp_check.contract.finding import Finding
+from mrp_check.contract.requirements import Requirement, Rule
+from mrp_check.running import evidence
+
+
+def findings(case):
+    yield from _problems(case)
+    yield from _launch_findings(case.package, case.spec, case.observed)
+    for node in case.nodes.values():
+        if not node.has_executable:
+            yield _no_executable(node)
+    for node in case.nodes.values():
+        yield from node.not_up
+
+
+def _problems(case):
+    for problem in case.observed.problems:
+        yield Finding(
+            "starts",
+            f"The nodes could not be run: {problem}.",
+            *_launch_place(case.package, case.spec, case.observed),
+            expected="nodes that can be started",
+        )
+
+
+def _launch_findings(package, spec, seen):
+    """Yield a Finding if roslaunch gives up, and ends what it has started."""
+    if not seen.own_launch or not seen.launch or seen.launch["ending"] != "itself":
+        return
+    texts = [text for _, _, text in seen.launch["lines"] if text.strip()]
+    for index, text in enumerate(texts):
+        if not text.startswith("RLException: "):
+            continue
+        said = " ".join(texts[index : index + 2]).partition(": ")[2]
+        named = re.search(r"__name:=(\w+)", said)
+        why = said.partition(" __name:=")[0]
+        started = seen.started.get(named.group(1)) if named else None
+        place = _launch_place(package, spec, seen)
+        if started and started.file:
+            place = started.file, started.line
+        prefix = f' launch-prefix="{started.prefix}"' if started and started.prefix else ""
+        yield Finding(
+            "starts",
+            f"roslaunch gives up, and ends all nodes: {why}",
+            *place,
+            expected="a command that can be run for each node",
+            seen=why,
+            fix=f"Take{prefix} away: it starts the node by another program." if prefix else "",
+            node=named.group(1) if named else None,
+        )
+        return
+
+
+def _launch_place(package, spec, seen):
+    for started in seen.started.values():
+        if started.file:
+            return started.file, started.line
+    return ("CMakeLists.txt" if "CMakeLists.txt" in package.files else "package.xml"), 1
+
+
+def _no_executable(node):
+    return node.finding(
+        "starts",
+        f"{node.name} could not be run: it has no executable.",
+        node.places.in_launch_file(node.name),
+        expected=f"an executable for {node.name}",
+    )
+
+
+RULE = Rule(
+    stage="run",
+    order=10,
+    needs=("nodes",),
+    findings=findings,
+    requirements={"starts": Requirement("Each node starts and stays up", "launching", evidence.up)},
+    also=("spin", "scripts", "python-names", "python-syntax", "type", "node-start"),
+)

@@ -1,0 +1,41 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The sources of each target are there."""
+
+from __future__ import annotations
+
+from mrp_check.contract.finding import Finding
+from mrp_check.contract.requirements import Requirement, Rule
+from mrp_check.contract.words import nearest, perhaps
+from mrp_check.running import evidence
+
+
+def findings(package, model):
+    """Yield a finding for each source that CMakeLists.txt names and that is not there."""
+    for target in model.targets.values():
+        for source, file, line in target.missing:
+            near = nearest(source, package.of_kind("cpp"))
+            yield Finding(
+                "targets",
+                f"The target {target.name} is made of {source}, and there is no such file."
+                + perhaps(near),
+                file,
+                line,
+                expected="the name of a file, relative to CMakeLists.txt",
+                seen=source,
+                fix=f"Write {near} for {source}." if near else "Name a file that is there.",
+            )
+
+
+RULE = Rule(
+    stage="files",
+    order=50,
+    needs=("model",),
+    findings=lambda case: findings(case.package, case.model),
+    requirements={
+        "targets": Requirement(
+            "Each executable is built of its own sources",
+            "wrong#a-target-is-made-of-another-node-s-source",
+            evidence.cpp,
+        )
+    },
+)

@@ -1,0 +1,158 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Publishers and subscribers meet on the topic, with messages of the right type."""
+
+from __future__ import annotations
+
+import difflib
+
+from mrp_check.contract.requirements import Requirement, Rule
+from mrp_check.running import evidence
+from mrp_check.running.node import each_node
+from mrp_check.running.observing import resolved
+
+
+def _of(node):
+    """Yield a Finding for each topic of the node with another name, type or namespace."""
+    roles = (
+        ("publishes on", "publications", "publisher", node.wanted.publishing),
+        ("subscribes to", "subscriptions", "subscriber", node.wanted.subscribing),
+    )
+    for verb, kind, place_kind, topic in roles:
+        seen = node.topics(kind)
+        if topic is None:
+            yield from _unexpected_topic(node, seen, kind, verb, place_kind)
+        elif node.in_launch:
+            yield from _topic_finding(node, seen, topic, kind, verb, place_kind)
+        else:
+            yield from _direct_topic_finding(node, topic, kind, verb, place_kind)
+
+
+def _unexpected_topic(node, seen, kind, verb, place_kind):
+    for topic in node.spec.topics.values():
+        name = resolved(topic, node.path)
+        if name in seen:
+            yield node.finding(
+                "topic",
+                f"{node.name} {verb} {name}, which is not what it is for.",
+                node.places.of_topic(node.name, place_kind, name),
+                expected=f"no {place_kind} in this node",
+                seen=name,
+            )
+
+
+def _topic_finding(node, seen, topic, kind, verb, place_kind):
+    expected = resolved(topic, node.path)
+    if expected in seen:
+        yield from _type_finding(node, seen[expected], topic, kind, verb, place_kind)
+        yield from _namespace_finding(node, topic, kind, verb, place_kind)
+        return
+    others = sorted(seen)
+    if others:
+        nearest = max(others, key=lambda o: difflib.SequenceMatcher(None, o, expected).ratio())
+        yield node.finding(
+            "topic",
+            f"{node.name} {verb} {nearest}, not {expected}." + _topic_hint(node, nearest, topic),
+            _topic_place(node, place_kind, nearest, topic),
+            expected=expected,
+            seen=", ".join(others),
+        )
+    elif node.topics(kind, direct=True):  # it was late under the launch file: a busy machine
+        yield from _direct_topic_finding(node, topic, kind, verb, place_kind)
+    else:
+        yield node.finding(
+            "topic",
+            f"{node.name} {verb} no topic.",
+            node.places.of(node.name, place_kind, "init"),
+            expected=expected,
+            seen="no topic",
+        )
+
+
+def _topic_place(node, place_kind, seen, topic):
+    """Return the place that names a wrong topic: a remap in the launch file, or the source."""
+    for old, new in node.started.remaps if node.started else ():
+        renamed = new.rsplit("/", 1)[-1] == seen.rsplit("/", 1)[-1]
+        if renamed and old.rsplit("/", 1)[-1] == topic.name and old != new:
+            file = node.started.file
+            line = node.package.find_line(file, f'"{new}"', node.started.line)
+            for number, text in enumerate(node.package.lines(file), 1):
+                if "remap" in text and new in text:
+                    line = number
+            return file, line
+    return node.places.of_topic(node.name, place_kind, seen)
+
+
+def _topic_hint(node, seen, topic):
+    if topic.namespace != "group" or seen.rsplit("/", 1)[-1] != topic.name:
+        return ""
+    if seen == node.path + "/" + topic.name:
+        return ' A name with ~, or of a handle made with "~", is the node\'s own.'
+    return " A name that begins with / does not follow the group."
+
+
+def _direct_topic_finding(node, topic, kind, verb, place_kind):
+    name = node.direct and node.direct.get("name")
+    if not name:
+        return
+    seen, expected = node.topics(kind, direct=True), resolved(topic, name)
+    if expected in seen:
+        yield from _type_finding(node, seen[expected], topic, kind, verb, place_kind)
+        return
+    others = ", ".join(sorted(seen)) or "no topic"
+    yield node.finding(
+        "topic",
+        f"{node.name} {verb} {others}, not {topic.name}.",
+        node.places.of_topic(node.name, place_kind, others),
+        expected=topic.name,
+        seen=others,
+    )
+
+
+def _type_finding(node, seen, topic, kind, verb, place_kind):
+    expected = topic.type_in(node.package.name)
+    if seen in (expected, "*"):
+        return
+    place = node.places.of_topic(node.name, place_kind, topic.name)
+    yield node.finding(
+        "type",
+        f"{node.name} {verb} {topic.name} with messages of type {seen}: nothing arrives where"
+        f" {expected} is expected.",
+        place,
+        expected=expected,
+        seen=seen,
+    )
+
+
+def _namespace_finding(node, topic, kind, verb, place_kind):
+    """In a namespace of its own, the node must take its relative topic with it."""
+    name = node.direct and node.direct.get("name")
+    if not name or topic.namespace != "group":
+        return
+    seen, expected = node.topics(kind, direct=True), resolved(topic, name)
+    if seen and expected not in seen:
+        nearest = next((t for t in seen if t.endswith("/" + topic.name)), sorted(seen)[0])
+        yield node.finding(
+            "namespace",
+            f"{node.name} {verb} {nearest} in whatever group it runs: the name is written down"
+            " with its group, and so two robots would share it.",
+            node.places.of_topic(node.name, place_kind, nearest),
+            expected=f"the relative name {topic.name}",
+            seen=nearest,
+        )
+
+
+RULE = Rule(
+    stage="run",
+    order=20,
+    needs=("nodes",),
+    findings=each_node(_of),
+    requirements={
+        "topic": Requirement(
+            "Publishers and subscribers meet on the topic", "publisher", evidence.meets
+        ),
+        "type": Requirement("The messages have the right type", "publisher", evidence.meets),
+        "namespace": Requirement(
+            "The nodes can be moved to another namespace", "namespaces", evidence.alone, shown=75
+        ),
+    },
+)

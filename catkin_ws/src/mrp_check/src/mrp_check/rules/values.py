@@ -1,0 +1,144 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Publishers publish the right values."""
+
+from __future__ import annotations
+
+from mrp_check.contract.requirements import Requirement, Rule
+from mrp_check.running import evidence
+from mrp_check.running.node import Node, each_node
+from mrp_check.running.observing import resolved
+from mrp_check.running.words import few
+
+
+def _of(node):
+    yield from _relayed(node)
+    role = node.wanted.publishes
+    if role is None:
+        return
+    messages = node.published()
+    announced = resolved(role.topic, node.path) in node.topics("publications")
+    if announced and not messages:
+        silent = _silent_seconds(node)
+        waits = _long_period(node, role)
+        if silent < 6 * (role.period or 0.5):
+            return  # the machine was too busy to tell
+        yield node.finding(
+            "values",
+            f"{node.name} announces {role.topic.name}, but published nothing in {silent:.0f} s"
+            + (f": a timer of it waits {waits:g} s." if waits else "."),
+            node.places.of(node.name, "timer", "rate", "publish", "publisher"),
+            expected=_rule_text(role) + (f", every {role.period:g} s" if role.period else ""),
+            seen="no message",
+        )
+    values = [node.value(m, role.topic) for m in messages]
+    if role.values and values and None not in values:
+        yield from _value_findings(node, values, role)
+
+
+def _silent_seconds(node):
+    last = max([p["time"] for p in node.of("publications")] or [0])
+    return max(node.asked - last, 0)
+
+
+def _long_period(node, role):
+    """Return the period of a timer of the node that is far too long, or None."""
+    periods = [p.values.get("period") for p in node.places.facts_of(node.name, "timer", "rate")]
+    numbers = [p for p in periods if isinstance(p, (int, float))]
+    return next((p for p in numbers if p > 3 * (role.period or p)), None)
+
+
+def _value_findings(node, values, role):
+    rule = role.values
+    shown = ", ".join(map(str, values[:5]))
+    expected = _rule_text(role)
+    file_line = node.places.of_counter(node.name, node.counter_names())
+    publish = node.places.of(node.name, "publish")
+    wrong = [(a, b) for a, b in zip(values, values[1:]) if b != rule.after(a)]
+    if wrong:
+        before, after = wrong[0]
+        if all(b == a for a, b in wrong) and len(wrong) < len(values) - 1:
+            said = f"{node.name} publishes a value more than once: {shown}."
+            place = publish
+        elif all(b == a for a, b in zip(values, values[1:])):
+            said = f"{node.name} publishes the same value again and again: {shown}."
+            place = file_line
+        else:
+            said = f"{node.name} publishes {shown}: after {before} came {after}."
+            skips = rule.step and (after - before) % rule.step == 0 and after > before
+            place = skips and node.places.condition_of_publish(node.name) or file_line
+        yield node.finding("values", said, place, expected=expected, seen=shown)
+    elif values[0] != rule.start:
+        yield node.finding(
+            "values",
+            f"{node.name} begins with {values[0]}, not with {rule.start}: it publishes {shown}.",
+            _start_place(node, values[0], publish),
+            expected=expected,
+            seen=shown,
+        )
+
+
+def _start_place(node, first, publish):
+    """Return the place at which the counter gets its first value."""
+    for kind in ("counter", "start"):
+        for place in node.places.facts_of(node.name, kind):
+            return place.file, place.line
+    if node.places.facts_of(node.name, "step"):
+        place = node.places.facts_of(node.name, "step")[0]
+        return place.file, place.line
+    return publish
+
+
+def _relayed(node):
+    """Yield a Finding if a node that relays publishes something else for what it is sent."""
+    relay = node.wanted.relays
+    if relay is None:
+        return
+    sent = node.sent()
+    name = node.own_name
+    if not sent or not name:
+        return
+    target = resolved(relay.target, name)
+    published = [m for m in node.direct_of("messages") if m["topic"] == target]
+    values = [node.value(m, relay.target) for m in published]
+    expected = [relay.of(value) for value in sent]
+    if values == expected or None in values:
+        return
+    place = node.places.of(node.name, "publish", "publisher")
+    if not values:
+        if target not in node.topics("publications", direct=True):
+            return  # another topic: said elsewhere
+        said = f"{node.name} was sent {len(sent)} messages, and published none."
+    else:
+        said = f"{node.name} was sent {few(sent)}, and published {few(values)}."
+    yield node.finding(
+        "values", said, place, expected=few(expected), seen=few(values) or "no message"
+    )
+
+
+def _rule_text(role):
+    rule = role.values
+    if not rule:
+        return f"messages on {role.topic.name}"
+    values = [rule.start, rule.start + rule.step, rule.start + 2 * rule.step]
+    return ", ".join(map(str, values)) + ", ..."
+
+
+_published = evidence.of_publisher(
+    lambda role: role.values, Node.published_numbers, "published no number"
+)
+_sent = evidence.when(Node.sent, "was sent nothing", lambda wanted: wanted.relays)
+
+
+RULE = Rule(
+    stage="run",
+    order=30,
+    needs=("nodes",),
+    findings=each_node(_of),
+    requirements={
+        "values": Requirement(
+            "Publishers publish the right values",
+            "publisher",
+            lambda case: _sent(case) or _published(case),
+        )
+    },
+)

@@ -1,0 +1,205 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Where in the package's sources the cause is of what was seen to happen."""
+
+from __future__ import annotations
+
+import ast
+import re
+
+from mrp_check.running.observing import WRAP
+
+# Of a traceback, and of what faulthandler prints.
+_FRAME = re.compile(r'^\s*File "(?P<path>[^"]+)", line (?P<line>\d+)')
+_ERROR = re.compile(r"^(?:[a-z_]\w*\.)*(?P<kind>[A-Z]\w*)(?:: (?P<text>.*))?$")
+_ARGUMENTS = re.compile(
+    r"TypeError: (?P<text>(?:[\w<>]+\.)*(?P<name>\w+)\(\) (?:takes|missing) .*argument.*)"
+)
+
+
+class Places:
+    """Finds places: each is (file relative to the package, line), or (None, None).
+
+    What the node itself told while it ran (see confined/hook) is sure; next come the facts
+    of the sources.
+    """
+
+    def __init__(self, case):
+        self.package, self.spec, self.observed = case.package, case.spec, case.observed
+        self.copy = str(case.package_folder.resolve()) + "/"
+        self.facts = case.facts
+
+    def sources(self, node):
+        """Return the source files of a node of the spec, the main one first."""
+        found = list(self.facts.sources.get(node, []))
+        executable = self.observed.executables.get(node)
+        stems = {node} | ({executable.stem, executable.name} if executable else set())
+        for file in self.package.of_kind("python", "cpp"):
+            name = file.rsplit("/", 1)[-1]
+            if (name in stems or name.rsplit(".", 1)[0] in stems) and file not in found:
+                found.append(file)
+        return found
+
+    def of(self, node, *kinds):
+        """Return the place of the first kind that there is: of what the node did, or its sources
+        say. In the end it is the line at which the node's main source begins to do something."""
+        for kind in kinds:
+            for event in self.events(node):
+                if event["event"] == kind and event.get("file"):
+                    return event["file"], event["line"]
+            for place in self.facts.of(node, kind):
+                return place.file, place.line
+        for kind in ("main", "init", "handle"):
+            for place in self.facts.of(node, kind):
+                return place.file, place.line
+        for file in self.sources(node):
+            return file, self.first_statement(file)
+        return self.in_launch_file(node)
+
+    def facts_of(self, node, *kinds):
+        return self.facts.of(node, *kinds)
+
+    def sleep_beside(self, node, *kinds):
+        """Return the place of a sleep in the same function as a place of these kinds, or None."""
+        places, sleeps = self.facts_of(node, *kinds), self.facts_of(node, "sleep")
+        for function in self.facts_of(node, "function"):
+            beside = [sleep for sleep in sleeps if function.is_around(sleep)]
+            if beside and any(function.is_around(place) for place in places):
+                return beside[0].file, beside[0].line
+        return None
+
+    def of_topic(self, node, kind, topic):
+        """Return the place at which a node names a topic: the kind is publisher or subscriber."""
+        base = topic.rsplit("/", 1)[-1]
+        for event in self.events(node):
+            if event["event"] == kind and event.get("topic", "").rsplit("/", 1)[-1] == base:
+                return event["file"], event["line"]
+        for place in self.facts_of(node, kind):
+            if place.text and place.text.rsplit("/", 1)[-1] == base:
+                return place.file, place.line
+        return self.of(node, kind)
+
+    def in_launch_file(self, node):
+        started = self.observed.started.get(node)
+        if started and started.file:
+            return started.file, started.line
+        return self.facts.launch.get(node, (None, None))
+
+    def events(self, node):
+        """Return what the node told while it ran by itself."""
+        runs = (self.observed.alone(node), self.observed.alone(WRAP + node))
+        return [event for run in runs if run for event in run.get("events", [])]
+
+    def first_statement(self, file):
+        """Return the line of a source at which something is done: main(), or the first statement
+        that is no import."""
+        if self.package.kind(file) == "python":
+            try:
+                body = ast.parse(self.package.text(file)).body
+            except (SyntaxError, ValueError):
+                return 1
+            skip = (ast.Import, ast.ImportFrom, ast.Expr)
+            return next((s.lineno for s in body if not isinstance(s, skip)), 1)
+        return self.package.find_line(file, " main(", 1)
+
+    def condition_of_publish(self, node):
+        """Return the place of the condition before publish() in the same function, or None."""
+        publish = self.facts_of(node, "publish")[:1]
+        functions = [
+            f for f in self.facts_of(node, "function") if publish and f.is_around(publish[0])
+        ]
+        for function in functions[-1:]:
+            lines = self.package.lines(function.file)[function.line - 1 : publish[0].line]
+            for number, text in reversed([*enumerate(lines, function.line)]):
+                if re.match(r"\s*\}?\s*(if|elif|else if)\b", text):
+                    return function.file, number
+        return None
+
+    def of_log(self, node, log):
+        """Return the place of a line that a node has logged: /rosout says it."""
+        path = log["file"]
+        if path.startswith(self.copy):
+            return path[len(self.copy) :], log["line"]
+        files = [f for f in self.package.files if f.rsplit("/", 1)[-1] == path.rsplit("/", 1)[-1]]
+        own = self.sources(node)
+        files.sort(key=lambda file: (file not in own, file))
+        return (files[0], log["line"]) if files else self.of(node, "log")
+
+    def of_counter(self, node, names=(), reset=None):
+        """Return the place at which the counter of a publisher is counted on; or is set back to
+        `reset`, if there is such a place."""
+        for file in self.sources(node):
+            if self.package.kind(file) == "python":
+                line = _counting_line(self.package.text(file), names, reset)
+                if line:
+                    return file, line
+        return self.of(node, "step", "counter", "publish")
+
+    def traceback(self, lines):
+        """Return (place, error's class, its text) of the last traceback that has a line of the
+        package's own code in it, or None."""
+        found, place, inside = None, None, False
+        for text in lines:
+            frame = _FRAME.match(text)
+            if text.startswith("Traceback (most recent call last)"):
+                inside, place = True, None
+            elif frame and (inside or "SyntaxError" not in text):
+                own = self.own(frame["path"])
+                place = (own, int(frame["line"])) if own else place
+                inside = True
+            elif inside and text and not text.startswith(" "):
+                error = _ERROR.match(text.strip())
+                if error:
+                    if place:
+                        found = (place, error["kind"], error["text"] or "")
+                    inside = False
+        return found
+
+    def wrong_arguments(self, lines):
+        """Return (place of the function, text) of a call of one of the package's own functions with
+        too many or too few arguments, though no line of the package made it; or None."""
+        for text in lines:
+            found = _ARGUMENTS.match(text.strip())
+            if found:
+                for file in self.package.of_kind("python"):
+                    line = self.package.find_line(file, f"def {found['name']}(")
+                    if line:
+                        return (file, line), found["text"]
+        return None
+
+    def stack(self, lines):
+        """Return the first own place in what faulthandler printed, or None."""
+        for text in lines:
+            frame = _FRAME.match(text)
+            own = self.own(frame["path"]) if frame else None
+            if own:
+                return own, int(frame["line"])
+        return None
+
+    def own(self, path):
+        """Return a path relative to the package, if it is the package's own, or None."""
+        return path[len(self.copy) :] if path.startswith(self.copy) else None
+
+
+def _counting_line(text, names, reset):
+    """Return the line at which a name is counted on, as in `counter += 2`, or None."""
+    try:
+        tree = ast.parse(text)
+    except (SyntaxError, ValueError):
+        return None
+    for condition in [node for node in ast.walk(tree) if isinstance(node, (ast.If, ast.IfExp))]:
+        for node in ast.walk(condition):
+            if isinstance(node, ast.Assign) and _last_name(node.targets[0]) in names:
+                if isinstance(node.value, ast.Constant) and node.value.value == reset:
+                    return node.lineno
+    for node in ast.walk(tree):
+        if isinstance(node, ast.AugAssign) and _last_name(node.target) in names:
+            return node.lineno
+        if isinstance(node, ast.Assign) and _last_name(node.targets[0]) in names:
+            used = {_last_name(one) for one in ast.walk(node.value)}
+            if _last_name(node.targets[0]) in used:
+                return node.lineno
+    return None
+
+
+def _last_name(node):
+    return getattr(node, "attr", None) or getattr(node, "id", None)

@@ -1,0 +1,84 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Which modules Python finds on this machine, and what those of ROS have."""
+
+from __future__ import annotations
+
+import ast
+import importlib
+import importlib.util
+import inspect
+import pathlib
+import sys
+import types
+
+from mrp_check.contract.resources import SHARES
+from mrp_check.sources import uses
+
+
+def is_ros(name):
+    return uses.is_ros_package(name.split(".")[0])
+
+
+def ros_modules():
+    return {
+        path.parent.name for share in SHARES for path in pathlib.Path(share).glob("*/package.xml")
+    }
+
+
+def is_module(name):
+    """Return whether Python can find a module; its parents are imported if they are ROS's own."""
+    if "." in name and not is_ros(name):
+        return True
+    try:
+        return name in sys.modules or importlib.util.find_spec(name) is not None
+    except (ImportError, ValueError, AttributeError):
+        return False
+
+
+def load(name):
+    try:
+        return importlib.import_module(name)
+    except Exception:  # a module of this machine that is broken is not the student's fault
+        return None
+
+
+def resolve(name):
+    """Return (object, None) of a dotted name in ROS's own modules, or (owner, what it lacks)."""
+    parts = name.split(".")
+    found = load(parts[0])
+    if found is None:
+        return None, None
+    for index, part in enumerate(parts[1:], 1):
+        if not hasattr(found, part) and isinstance(found, types.ModuleType):
+            load(".".join(parts[: index + 1]))
+        if not hasattr(found, part):
+            # What an object has that is made at run time, nobody knows.
+            if not isinstance(found, (types.ModuleType, type)):
+                return None, None
+            return found, part
+        found = getattr(found, part)
+    return found, None
+
+
+def cannot_bind(function, call):
+    """Return why a function cannot be called with a call's arguments, or None."""
+    if any(isinstance(a, ast.Starred) for a in call.args) or any(
+        k.arg is None for k in call.keywords
+    ):
+        return None
+    try:
+        signature = inspect.signature(function)
+    except (TypeError, ValueError):
+        return None
+    try:
+        signature.bind(*call.args, **{keyword.arg: keyword.value for keyword in call.keywords})
+    except TypeError as error:
+        return str(error)
+    return None
+
+
+def signature(function):
+    try:
+        return str(inspect.signature(function))
+    except (TypeError, ValueError):
+        return "(...)"

@@ -1,0 +1,83 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Reads a Python source; or says why Python cannot read it."""
+
+from __future__ import annotations
+
+import re
+
+from mrp_check.contract.finding import Finding
+from mrp_check.sources.python_source import Source
+
+_SYNTAX = (
+    (r"was never closed|unexpected EOF", "A bracket is opened there and never closed."),
+    (r"unmatched|does not match opening", "A bracket is closed that is not open, or another one."),
+    (r"expected ':'", "A colon is missing at the end of the line."),
+    (r"unterminated|EOL while", "A text is begun with a quotation mark and not ended with one."),
+    (r"expected an indented block", "The lines that belong to this one must be indented."),
+    (r"unindent does not match|unexpected indent", "The line is not indented as those around it."),
+    (r"inconsistent use of tabs", "Tabs and spaces are mixed: use four spaces for each level."),
+    (r"Missing parentheses in call to 'print'", "In Python 3, print is a function: print(...)."),
+    (r"Maybe you meant '=='|cannot assign to", "= gives a value, == compares."),
+    (r"forgot a comma", "A comma is missing, or a bracket is not closed."),
+    (
+        r"invalid character|invalid non-printable",
+        "A character stands there that is no part of Python:"
+        " perhaps it was copied from a page or a document.",
+    ),
+)
+
+
+def read(package, file):
+    """Return (the Source or None, the Finding that says why there is none, or None)."""
+    data = package.bytes(file)
+    try:
+        if b"\0" not in data:
+            data.decode("utf-8")
+        return Source(file, package.text(file)), None
+    except UnicodeDecodeError:
+        try:
+            return Source(file, data), None  # Python itself reads the coding line
+        except (SyntaxError, ValueError, UnicodeDecodeError):
+            return None, None  # the stage files has said it
+    except SyntaxError as error:
+        return None, _syntax(package, file, error)
+    except (ValueError, RecursionError, MemoryError) as error:
+        return None, Finding(
+            "python-syntax",
+            f"Python cannot read {file}: {error}.",
+            file,
+            1,
+            expected="Python",
+            seen=str(error),
+        )
+
+
+def _syntax(package, file, error):
+    text, line = error.msg or "invalid syntax", error.lineno or 1
+    lines = package.lines(file)
+    line = min(line, len(lines))
+    shown = lines[line - 1].strip()
+    hint = next((said for shape, said in _SYNTAX if re.search(shape, text)), "")
+    if text == "invalid syntax":
+        if shown.startswith("//"):
+            hint = "A comment begins with # in Python, not with //."
+        elif re.match(r"global\s+\w+\s*=", shown):
+            hint = "'global NAME' and 'NAME = ...' are two statements, on two lines."
+        elif re.match(r"(def|class|if|for|while|else|elif|try|with)\b", shown) and ":" not in shown:
+            hint = "A colon is missing at the end of the line."
+        elif line > 1 and _opens_bracket(lines[line - 2]):
+            line, hint = line - 1, "A bracket is opened there and never closed."
+    return Finding(
+        "python-syntax",
+        f"Python cannot read {file}: {text}, in line {line}. {hint}".strip(),
+        file,
+        line,
+        expected="valid Python 3",
+        seen=lines[line - 1].strip(),
+        fix=f"Mend the line; `python3 -m py_compile {file}` says whether Python can read the file.",
+    )
+
+
+def _opens_bracket(text):
+    text = re.sub(r"\"[^\"]*\"|'[^']*'|#.*", "", text)
+    return sum(map(text.count, "([{")) > sum(map(text.count, ")]}"))

@@ -1,0 +1,68 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What all rules about a Python source have in common."""
+
+from __future__ import annotations
+
+import ast
+
+from mrp_check.contract.finding import NOTE, Finding
+from mrp_check.sources.python_modules import is_ros, resolve
+
+
+class PythonRule:
+    """A rule about one source; `findings` yields what it finds."""
+
+    def __init__(self, package, source):
+        self.package = package
+        self.source = source
+        self.file = source.file
+
+    def finding(self, id_, message, node, **more):
+        line = node if isinstance(node, int) else node.lineno
+        more.setdefault("seen", self.package.lines(self.file)[line - 1].strip())
+        finding = Finding(id_, message, self.file, line, **more)
+        # Of several findings about one line, the first is the cause.
+        cause = self.source.told.setdefault((line, finding.severity), finding)
+        if cause is not finding and finding.severity != NOTE:
+            finding.consequence_of = cause.id
+        return finding
+
+    def is_own(self, name):
+        """Return whether a module is the package's own (made, or generated of its messages)."""
+        top = name.split(".")[0]
+        return top == self.package.name or any(
+            path.endswith((f"/{top}.py", f"/{top}/__init__.py"))
+            or path == f"{top}.py"
+            or f"/{top}/" in f"/{path}"
+            for path in self.package.of_kind("python")
+        )
+
+    def message_class(self, node):
+        """Return the class of a message that an expression names, or None."""
+        name = self.source.dotted(node) if isinstance(node, (ast.Name, ast.Attribute)) else None
+        if not name or ".msg." not in name or not is_ros(name) or self.is_own(name):
+            return None
+        found, missing = resolve(name)
+        return found if missing is None and hasattr(found, "__slots__") else None
+
+    def written(self, node):
+        """Return an expression as it is written."""
+        return ast.get_source_segment(self.package.text(self.file), node)
+
+
+def ast_text(node):
+    """Return the source of a short expression."""
+    if isinstance(node, ast.Attribute):
+        return f"{ast_text(node.value)}.{node.attr}"
+    return node.id if isinstance(node, ast.Name) else "..."
+
+
+def of_sources(rule):
+    """Return the function of a case.Case that asks a PythonRule of each source that matters."""
+
+    def findings(case):
+        for file in case.facts.relevant:
+            if file in case.facts.python:
+                yield from rule(case.package, case.facts.python[file]).findings()
+
+    return findings

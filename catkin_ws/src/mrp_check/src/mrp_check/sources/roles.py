@@ -1,0 +1,84 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Which sources each node of the spec is made of, whatever they are called."""
+
+from __future__ import annotations
+
+import ast
+import os
+
+from mrp_check.sources import uses
+
+
+def sources(package, spec, model, launch, python):
+    """Return name of a spec's node -> its files, the main one first.
+
+    python: file -> python_source.Source
+    """
+    started = {node.name: node for node in (launch.nodes if launch else [])}
+    result = {}
+    for name, node in spec.nodes.items():
+        files = []
+        if name in started and started[name].package == package.name:
+            files = of_executable(package, model, started[name].type)
+        result[name] = files or _by_name(package, model, node)
+    return {name: with_own(package, files, python) for name, files in result.items()}
+
+
+def of_executable(package, model, executable):
+    """Return the sources of what roslaunch calls `executable`: of a target, or a script."""
+    target = model.executables().get(executable)
+    if target is not None:
+        return model.all_sources(target)
+    scripts = [s.path for s in model.scripts if s.path.rsplit("/", 1)[-1] == executable]
+    scripts += [p for p in package.of_kind("python") if p.rsplit("/", 1)[-1] == executable]
+    return [path for path in scripts if path in package.files][:1]
+
+
+def _by_name(package, model, node):
+    if node.language != "python":
+        for name, target in model.executables().items():
+            if name == node.name:
+                return model.all_sources(target)
+    kinds = {"cpp": ("cpp",), "python": ("python",)}.get(node.language, ("cpp", "python"))
+    return [
+        path
+        for path in package.of_kind(*kinds)
+        if os.path.splitext(path.rsplit("/", 1)[-1])[0] == node.name and not uses.is_test(path)
+    ][:1]
+
+
+def with_own(package, files, python):
+    """Return the files and, after them, what of the package they include or import."""
+    found, queue = [], list(files)
+    while queue:
+        file = queue.pop(0)
+        if file in found or file not in package.files:
+            continue
+        found.append(file)
+        if file in python:
+            queue += _imported(package, python[file])
+        elif package.kind(file) in ("cpp", "header"):
+            queue += _included(package, file)
+    return found
+
+
+def _included(package, file):
+    for header, _ in uses.includes(package, file):
+        for path in package.of_kind("header", "cpp"):
+            if f"/{path}".endswith(f"/{header}") and path != file:
+                yield path
+
+
+def _imported(package, source):
+    names = set()
+    for node in source.import_nodes:
+        if isinstance(node, ast.Import):
+            names |= {alias.name for alias in node.names}
+        else:
+            module = node.module or ""
+            names |= {module} | {f"{module}.{alias.name}".strip(".") for alias in node.names}
+    for name in sorted(names - {""}):
+        path = name.replace(".", "/")
+        for file in package.of_kind("python"):
+            if f"/{file}".endswith((f"/{path}.py", f"/{path}/__init__.py")) and file != source.file:
+                yield file

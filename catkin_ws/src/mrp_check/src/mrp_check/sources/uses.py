@@ -1,0 +1,107 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Which ROS packages the sources use: by their #include and import lines."""
+
+from __future__ import annotations
+
+import ast
+import functools
+import pathlib
+import re
+import typing
+
+from mrp_check.contract.resources import SHARES
+
+# Headers whose folder is not called like the package that has them.
+_HEADERS = {"ros/package.h": "roslib", "ros/package.hpp": "roslib"}
+_INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*[<"]([\w./+-]+)[>"]', re.MULTILINE)
+_COMMENT = re.compile(r"/\*.*?\*/|//[^\n]*", re.DOTALL)
+
+# They come with roscpp or rospy: whoever does not name them has them all the same.
+_LOOSE = set(
+    (
+        "roslib rosgraph rosconsole rostime roscpp_serialization genpy roscpp_traits"
+        " rosnode rostopic rosservice roslaunch rosunit rostest rospkg message_filters"
+        " xmlrpcpp cpp_common rosgraph_msgs"
+    ).split()
+)
+
+
+class Use(typing.NamedTuple):
+    file: str
+    line: int
+    language: str
+    firm: bool  # whether not to declare it is an error: of some, others bring them along
+
+
+# Python modules whose Debian package is called otherwise.
+_DEBIAN = {"cv2": "python3-opencv", "PIL": "python3-pil", "OpenGL": "python3-opengl"}
+
+
+def absent(name, language):
+    """Return the sentence about a package or a module that this machine has not."""
+    plain = name.lower().replace("_", "-")
+    guess = _DEBIAN.get(name, f"python3-{plain}") if language == "python" else f"lib{plain}-dev"
+    return (
+        f"{name} is not on this machine (Debian package {guess}): what needs it could not be"
+        " checked. Install it, and check again."
+    )
+
+
+@functools.lru_cache(maxsize=None)
+def is_ros_package(name):
+    """Return whether this machine has a ROS package of that name."""
+    return any((pathlib.Path(share) / name / "package.xml").is_file() for share in SHARES)
+
+
+def includes(package, file):
+    """Yield (header, line) of each #include that is no comment."""
+    text = _COMMENT.sub(lambda m: re.sub(r"[^\n]", " ", m.group()), package.text(file))
+    for match in _INCLUDE.finditer(text):
+        yield match.group(1), text.count("\n", 0, match.start(1)) + 1
+
+
+def package_of_header(header):
+    if header in _HEADERS:
+        return _HEADERS[header]
+    folder = header.split("/")[0] if "/" in header else ""
+    return "roscpp" if folder == "ros" else folder
+
+
+def is_test(path):
+    return path.split("/")[0] in ("test", "tests")
+
+
+def of(package, model):
+    """Return name -> Use of the ROS packages that the sources use; tests are left out."""
+    built = {s for target in model.targets.values() for s in target.sources}
+    found = {}
+    for file in package.of_kind("cpp", "header"):
+        # What is compiled into nothing needs nothing.
+        if is_test(file) or package.kind(file) == "cpp" and model.complete and file not in built:
+            continue
+        for header, line in includes(package, file):
+            _add(found, package, package_of_header(header), Use(file, line, "cpp", True))
+    for file in package.of_kind("python"):
+        if is_test(file) or file == "setup.py":
+            continue
+        try:
+            tree = ast.parse(package.text(file))
+        except (SyntaxError, ValueError, RecursionError, MemoryError):
+            continue
+        for node in ast.walk(tree):
+            names = []
+            if isinstance(node, ast.Import):
+                names = [alias.name for alias in node.names]
+            elif isinstance(node, ast.ImportFrom) and not node.level and node.module:
+                names = [node.module]
+            for name in names:
+                _add(found, package, name.split(".")[0], Use(file, node.lineno, "python", True))
+    return found
+
+
+def _add(found, package, name, use):
+    if name == package.name or not name or not is_ros_package(name):
+        return
+    use = use._replace(firm=name not in _LOOSE or use.language == "cpp" and name == "roslib")
+    if name not in found or found[name].language == "python" and use.language == "cpp":
+        found[name] = use

@@ -1,0 +1,77 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""package.xml: can catkin read it, and what does it name?"""
+
+from __future__ import annotations
+
+import re
+import xml.parsers.expat
+import xml.sax.saxutils
+
+from catkin_pkg.package import InvalidPackage, parse_package_string
+
+from mrp_check.contract.finding import Finding
+from mrp_check.student.xml_file import elements, xml_finding
+
+FILE = "package.xml"
+
+
+def parse(package):
+    """Return (catkin_pkg's Package or None, the Finding that says why not, or None)."""
+    data = package.bytes(FILE)
+    try:
+        elements(data)
+    except xml.parsers.expat.ExpatError as error:
+        return None, xml_finding("manifest", package, FILE, error)
+    try:
+        return parse_package_string(data.decode("utf-8", "replace").lstrip("\ufeff"), FILE), None
+    except (InvalidPackage, AssertionError, ValueError) as error:
+        text = " ".join(str(error).replace(f"Error(s) in package '{FILE}':", "").split())
+        return None, Finding(
+            "manifest",
+            f"package.xml is not valid: {text}",
+            FILE,
+            _line_of(package, text),
+            expected="a manifest as catkin reads it",
+            seen=text,
+            fix="Compare it with the package.xml of the tutorial's package.",
+        )
+
+
+def _line_of(package, text):
+    """Return the line of the first tag, attribute or value that a message names."""
+    words = re.findall(r"following tags: ([\w, ]+)", text) or re.findall(r"\"([^\"]+)\"", text)
+    for word in ",".join(words).replace(" ", "").split(","):
+        line = package.find_line(FILE, f"<{word}") or package.find_line(FILE, f">{word}<")
+        if word.strip() and line:
+            return line
+    return package.find_line(FILE, "<package", 1)
+
+
+def replace(workspace, name):
+    """Put a valid package.xml into the copy, so that what comes after can be checked."""
+    (workspace.package_folder / FILE).write_text(
+        f'<package format="3"><name>{xml.sax.saxutils.escape(name)}</name><version>0.0.0</version>'
+        '<description>x</description><maintainer email="x@x.example">x</maintainer>'
+        "<license>x</license><buildtool_depend>catkin</buildtool_depend>"
+        + "".join(f"<depend>{one}</depend>" for one in ("roscpp", "rospy", "std_msgs"))
+        + "<depend>message_generation</depend><depend>message_runtime</depend></package>"
+    )
+
+
+def declared(manifest):
+    """Return kind -> names of the packages that a manifest declares."""
+    return {
+        "build": {d.name for d in manifest.build_depends},
+        "exec": {d.name for d in [*manifest.exec_depends, *manifest.run_depends]},
+        "export": {d.name for d in manifest.build_export_depends},
+        "test": {d.name for d in manifest.test_depends},
+    }
+
+
+_DEPEND = re.compile(r"<\w*depend\b")
+
+
+def last_dependency(package):
+    """Return the line of the last dependency in package.xml: where a missing one would stand."""
+    lines = [n for n, text in enumerate(package.lines(FILE), 1) if _DEPEND.search(text)]
+    return max(lines, default=package.find_line(FILE, "<package", 1))

@@ -1,0 +1,178 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A student's package as a folder that is only read."""
+
+from __future__ import annotations
+
+import codecs
+import functools
+import os
+import pathlib
+import re
+import stat
+import xml.etree.ElementTree as ElementTree
+
+from mrp_check.contract.errors import PackageError
+
+# What is built or kept by tools, and no part of a package.
+NOT_SOURCES = {".git", ".svn", ".vscode", ".idea", "__pycache__", ".pytest_cache", "CMakeFiles"}
+# What an editor keeps of a file that it has changed.
+_BACKUP = re.compile(r"(~|#|\.(save|bak|orig|old|rej|sw[op]|tmp)(\.\d+)?)$")
+MAX_FILES = 2000
+MAX_BYTES = 50_000_000  # in all
+MAX_TEXT = 1_000_000  # of one file that is read as text
+
+KINDS = {
+    ".py": "python",
+    ".cpp": "cpp",
+    ".cc": "cpp",
+    ".cxx": "cpp",
+    ".c++": "cpp",
+    ".C": "cpp",
+    ".h": "header",
+    ".hpp": "header",
+    ".hh": "header",
+    ".hxx": "header",
+    ".launch": "launch",
+    ".msg": "message",
+    ".cmake": "cmake",
+}
+
+
+class Package:
+    """A folder with a package.xml.
+
+    root: its path
+    name: as package.xml says, or the folder's name if package.xml cannot be read
+    files: the paths of its files, relative to root, with "/" between folders, in order
+
+    Raises PackageError if there is no such folder, no package.xml, or too much of it.
+    """
+
+    def __init__(self, root):
+        self.root = pathlib.Path(root).absolute()
+        if not self.root.exists():
+            raise PackageError(f"There is no folder {root}.")
+        if not self.root.is_dir():
+            raise PackageError(f"{root} is no folder; expected the folder of a package.")
+        self._bytes = {}
+        self.files = self._list()
+        self._known = {*self.files}
+        if "package.xml" not in self.files:
+            raise PackageError(self._no_manifest())
+
+    def _list(self):
+        paths, size = [], 0
+        for folder, folders, names in os.walk(self.root):
+            folders[:] = sorted(set(folders) - NOT_SOURCES)
+            for name in sorted(names):
+                path = pathlib.Path(folder) / name
+                # What is no regular file (a pipe, a link out of the folder) is never opened.
+                if not self._is_inside(path):
+                    continue
+                size += path.stat().st_size
+                paths.append(path.relative_to(self.root).as_posix())
+                if len(paths) > MAX_FILES or size > MAX_BYTES:
+                    raise PackageError(
+                        f"{self.root} has more than {MAX_FILES} files or {MAX_BYTES // 10**6} MB: "
+                        "expected the folder of one package, without what was built."
+                    )
+        return paths
+
+    def _is_inside(self, path):
+        try:
+            real = path.resolve(strict=True)
+            return self.root.resolve() in real.parents and stat.S_ISREG(real.stat().st_mode)
+        except (OSError, RuntimeError):
+            return False
+
+    def _no_manifest(self):
+        below = sorted(path for path in self.files if path.endswith("/package.xml"))
+        text = f"{self.root} has no package.xml: expected the folder of a catkin package."
+        if below:
+            text += f" Did you mean {self.root / below[0][: -len('/package.xml')]}?"
+        return text
+
+    def bytes(self, path):
+        """Return a file's bytes, cut at MAX_TEXT; none of a file that is not the package's."""
+        if path not in self._bytes and path not in self._known:
+            return b""
+        if path not in self._bytes:
+            with open(self.root / path, "rb") as file:
+                self._bytes[path] = file.read(MAX_TEXT)
+        return self._bytes[path]
+
+    def text(self, path):
+        """Return a file's text. What is no UTF-8 is replaced; line ends become newlines."""
+        data = self.bytes(path)
+        if data.startswith(codecs.BOM_UTF8):
+            data = data[len(codecs.BOM_UTF8) :]
+        return data.decode("utf-8", "replace").replace("\r\n", "\n").replace("\r", "\n")
+
+    def lines(self, path):
+        """Return a file's lines, without their ends."""
+        return self.text(path).split("\n")
+
+    def kind(self, path):
+        """Return python, cpp, header, launch, message, cmake, or other."""
+        name = path.rsplit("/", 1)[-1]
+        if name == "CMakeLists.txt":
+            return "cmake"
+        if _BACKUP.search(name):
+            return "other"
+        kind = KINDS.get(pathlib.PurePosixPath(path).suffix)
+        if (
+            kind == "python"
+            or kind is None
+            and self.shebang(path)
+            and "python" in self.shebang(path)
+        ):
+            return "python"
+        if kind is None and path.endswith((".launch.xml", "_launch.xml")):
+            return "launch"
+        return kind or "other"
+
+    def of_kind(self, *kinds):
+        """Return the paths of these kinds."""
+        return [path for path in self.files if self.kind(path) in kinds]
+
+    def shebang(self, path):
+        """Return the first line if it begins with #! (whatever its end), or None."""
+        first = self.bytes(path)[:200].split(b"\n")[0]
+        return first.decode("utf-8", "replace") if first.startswith(b"#!") else None
+
+    def is_executable(self, path):
+        """Return whether the file's owner may execute it."""
+        return bool((self.root / path).stat().st_mode & stat.S_IXUSR)
+
+    def find_line(self, path, text, default=None):
+        """Return the number of the first line that has `text`, or `default`."""
+        for number, line in enumerate(self.lines(path), 1):
+            if text in line:
+                return number
+        return default
+
+    def first_match(self, files, pattern):
+        """Return the place of the first line in which a pattern is found, or None."""
+        for file in files:
+            for number, text in enumerate(self.lines(file), 1):
+                if re.search(pattern, text):
+                    return file, number
+        return None
+
+    @functools.cached_property
+    def manifest(self):
+        """The root element of package.xml, or None if it is no XML."""
+        try:
+            return ElementTree.fromstring(self.bytes("package.xml"))
+        except (ElementTree.ParseError, ValueError, LookupError):
+            return None
+
+    @functools.cached_property
+    def name(self):
+        element = self.manifest.find("name") if self.manifest is not None else None
+        text = (element.text or "").strip() if element is not None else ""
+        if self.manifest is None:
+            # It is no XML; its name can be read all the same.
+            found = re.search(r"<name>\s*(\w+)\s*</name>", self.text("package.xml"))
+            text = found.group(1) if found else ""
+        return text or self.root.resolve().name

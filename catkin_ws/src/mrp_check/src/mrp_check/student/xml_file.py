@@ -1,0 +1,106 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""XML with its lines: the elements of a file, or why it is no XML."""
+
+from __future__ import annotations
+
+import dataclasses
+import re
+import xml.parsers.expat
+
+from mrp_check.contract.finding import Finding
+
+
+@dataclasses.dataclass
+class Element:
+    """One XML element; line: where it begins."""
+
+    tag: str
+    attributes: dict
+    line: int
+    parents: list
+
+
+def elements(data):
+    """Return the Elements of an XML file's bytes. Raises xml.parsers.expat.ExpatError."""
+    found, stack = [], []
+    parser = xml.parsers.expat.ParserCreate()
+
+    def start(tag, attributes):
+        element = Element(tag, attributes, parser.CurrentLineNumber, list(stack))
+        found.append(element)
+        stack.append(element)
+
+    parser.StartElementHandler = start
+    parser.EndElementHandler = lambda tag: stack.pop()
+    parser.Parse(data, True)
+    return found
+
+
+def xml_finding(id_, package, path, error):
+    """Return the Finding about a file that is no XML."""
+    what = xml.parsers.expat.ErrorString(error.code)
+    line = error.lineno
+    hint, cause = "", line
+    if what == "mismatched tag":
+        cause, hint = _unclosed(package, path, line)
+    elif what == "no element found":
+        cause, hint = _unclosed(package, path, None)
+        cause = cause or len(package.lines(path))
+    elif what == "not well-formed (invalid token)":
+        cause, hint = _bad_token(package, path, line)
+    return Finding(
+        id_,
+        f"{path} is no valid XML: {what}, noticed in line {line}. {hint}".strip(),
+        path,
+        cause,
+        expected="XML in which each tag that is opened is closed, and each value is in quotes",
+        seen=package.lines(path)[min(cause, len(package.lines(path))) - 1].strip(),
+        fix="Mend this line; `xmllint --noout` says whether the file is well-formed.",
+    )
+
+
+def _bad_token(package, path, line):
+    """Return the line that is to blame for a character that cannot stand where it does."""
+    lines = package.lines(path)
+    for number in range(line, 0, -1):
+        text = lines[number - 1] if number <= len(lines) else ""
+        if number == line and re.search(r"<!--(?:(?!-->).)*--(?!>)", text):
+            return line, "Within a comment there must be no two hyphens (--)."
+        # A tag that never ends swallows the lines below it.
+        if number < line and text.count("<") > text.count(">"):
+            return number, "The tag that begins there has no end."
+        if text.count('"') % 2:
+            return number, "A quotation mark is missing there."
+        if number < line and ">" in text:
+            break
+    return line, "Perhaps a quotation mark, a > or an = is missing, or & stands for &amp;."
+
+
+_TAG = re.compile(
+    r"<!--.*?-->|<\?.*?\?>|<!.*?>|<(?P<close>/)?(?P<name>[\w:-]+)[^<>]*?(?P<end>/)?>", re.DOTALL
+)
+
+
+def _unclosed(package, path, noticed):
+    """Return (line of the tag that is opened and not closed, what to say of it)."""
+    text, stack = package.text(path), []
+    for match in _TAG.finditer(text):
+        if not match.group("name") or match.group("end"):
+            continue
+        name, line = match.group("name"), text.count("\n", 0, match.start()) + 1
+        if not match.group("close"):
+            stack.append((name, line))
+            continue
+        if stack and stack[-1][0] == name:
+            stack.pop()
+            continue
+        if any(name == opened for opened, _ in stack):
+            opened, where = stack[-1]
+            return where, f"<{opened}> is opened there and not closed."
+        if stack:
+            opened, where = stack[-1]
+            return line, f"<{opened}> of line {where} is closed by </{name}>."
+        return line, f"</{name}> closes what is not open."
+    if stack:
+        return stack[-1][1], f"<{stack[-1][0]}> is opened there and not closed."
+    return noticed or 1, ""
