@@ -62,7 +62,7 @@ def _resets(node, used, values):
                 f" the message could hold up to {values.modulus - 1}.",
                 place,
                 expected=f"the next value up to {values.modulus - 1}",
-                fix="Take the limit away: a uint32_t begins again at 0 by itnode.",
+                fix="Take the limit away: a uint32_t begins again at 0 by itself.",
             )
 
 
