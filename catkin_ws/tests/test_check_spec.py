@@ -2,9 +2,11 @@
 """The checker's specs: ours can be read, and a wrong one is told by file, line and place."""
 
 import json
+import pathlib
 import re
 
 import pytest
+from mrp_check import rules
 from mrp_check.contract import resources, spec
 from mrp_check.contract.errors import SpecError
 from mrp_check.contract.requirements import STAGES
@@ -123,3 +125,17 @@ def test_requirements_point_to_pages_that_exist():
         titles = [line for line, below in zip(lines, lines[1:]) if re.fullmatch(r"[-=]{3,}", below)]
         anchors = [re.sub(r"[^a-z0-9]+", "-", title.lower()).strip("-") for title in titles]
         assert not anchor or anchor in anchors, (requirement.section, anchors)
+
+
+def test_each_file_of_rules_is_a_rule_with_its_own_place():
+    files = {path.stem for path in pathlib.Path(rules.__file__).parent.glob("*.py")}
+    assert len(rules.RULES) == len(files - {"__init__"})
+    places = [(rule.stage, rule.order) for rule in rules.RULES]
+    assert len({*places}) == len(places)
+
+
+def test_what_a_rule_can_report_is_some_rule_s_own():
+    """A requirement stands in one rule alone; others may find it not met."""
+    own = [id_ for rule in rules.RULES for id_ in rule.requirements]
+    assert sorted(own) == sorted(REQUIREMENTS)
+    assert {id_ for rule in rules.RULES for id_ in rule.also} <= {*own}

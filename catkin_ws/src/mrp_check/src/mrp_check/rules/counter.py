@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from mrp_check.contract.finding import WARNING
+from mrp_check.contract.finding import ERROR, WARNING
 from mrp_check.contract.requirements import Rule
 from mrp_check.sources.node import each_node
 
@@ -24,31 +24,24 @@ def _of(node):
         if not floating and 2**enough >= values.modulus:
             continue
         said.add(place.text)
-        if floating or bits < 32:
-            largest = f"2^{24 if kind == 'float' else 53}" if floating else f"{2**enough - 1}"
-            yield node.finding(
-                "wrap",
-                f"The counter {place.text} is a {kind}: "
-                + (
-                    f"past {largest} it no longer counts in whole steps, and it never wraps round."
-                    if floating
-                    else f"after {largest} it begins again, and the message could hold up to"
-                    f" {values.modulus - 1}."
-                ),
-                _declared(node, place),
-                expected="uint32_t",
-                fix=f"Make {place.text} a uint32_t.",
+        if floating:
+            largest = 24 if kind == "float" else 53
+            why = f"past 2^{largest} it no longer counts in whole steps, and it never wraps round."
+        elif bits < 32:
+            why = (
+                f"after {2**enough - 1} it begins again, and the message could hold up to"
+                f" {values.modulus - 1}."
             )
         else:
-            yield node.finding(
-                "wrap",
-                f"The counter {place.text} is a {kind}: what happens past {2**enough - 1} is"
-                " undefined in C++.",
-                _declared(node, place),
-                severity=WARNING,
-                expected="uint32_t",
-                fix=f"Make {place.text} a uint32_t.",
-            )
+            why = f"what happens past {2**enough - 1} is undefined in C++."
+        yield node.finding(
+            "wrap",
+            f"The counter {place.text} is a {kind}: {why}",
+            _declared(node, place),
+            severity=ERROR if floating or bits < 32 else WARNING,
+            expected="uint32_t",
+            fix=f"Make {place.text} a uint32_t.",
+        )
 
 
 def _resets(node, used, values):
@@ -62,7 +55,7 @@ def _resets(node, used, values):
                 f" the message could hold up to {values.modulus - 1}.",
                 place,
                 expected=f"the next value up to {values.modulus - 1}",
-                fix="Take the limit away: a uint32_t begins again at 0 by itnode.",
+                fix="Take the limit away: a uint32_t begins again at 0 by itself.",
             )
 
 

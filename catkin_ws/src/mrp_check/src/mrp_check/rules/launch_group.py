@@ -10,71 +10,20 @@ from mrp_check.contract.requirements import Requirement, Rule
 from mrp_check.running import evidence
 
 
-def findings(package, spec, launch, tags):
+def findings(spec, launch, tags):
     """Yield findings about the namespace of the spec's nodes."""
-    group = spec.launch.group
-    if not group:
-        return
-    wrong = {}
-    for node in launch.nodes:
+    group, wrong = spec.launch.group, {}
+    for node in launch.nodes if group else ():
         if node.name in spec.nodes and node.namespace.strip("/") != group:
             wrong.setdefault(node.namespace, []).append(node)
     for namespace, nodes in wrong.items():
-        node = nodes[0]
-        seen = f"the namespace {namespace}"
-        line, file = node.line, node.file
-        groups = [(f, e) for f, e in tags if e.tag == "group" and "ns" in e.attributes]
-        inside = [
-            (f, e)
-            for f, e in groups
-            if f == node.file
-            and any(t.line == node.line and e in t.parents for g, t in tags if g == node.file)
-        ]
-        own = next(
-            (
-                e
-                for f, e in tags
-                if f == node.file
-                and e.line == node.line
-                and e.tag == "node"
-                and "ns" in e.attributes
-            ),
-            None,
-        )
-        if inside and own is None:
-            file, line = inside[-1][0], inside[-1][1].line
-            argument = re.search(r"\$\(arg (\w+)\)", inside[-1][1].attributes["ns"])
-            for f, e in tags:
-                if (
-                    argument
-                    and e.tag == "arg"
-                    and e.attributes.get("name") == argument.group(1)
-                    and ("default" in e.attributes or "value" in e.attributes)
-                    and f == file
-                ):
-                    line = e.line
-        elif groups == [] and len(nodes) > 1:
-            launch_tag = [e for f, e in tags if f == node.file and e.tag == "launch"]
-            groups_without = [e for f, e in tags if f == node.file and e.tag == "group"]
-            line = groups_without[0].line if groups_without else launch_tag[0].line
-        names = ", ".join(n.name for n in nodes)
-        yield Finding(
-            "launch-group",
-            f"The launch file starts {names} in {seen}; expected the group {group}.",
-            file,
-            line,
-            node=node.name if len(nodes) == 1 else None,
-            expected=f'<group ns="{group}"> around the nodes',
-            seen=seen,
-            fix=f'Put the nodes into <group ns="$(arg group)">, with <arg name="group"'
-            f' default="{group}"/> above it.',
-        )
+        yield _elsewhere(group, namespace, nodes, tags)
     plain = [
         (f, e)
         for f, e in tags
         if e.tag in ("group", "node", "include") and e.attributes.get("ns", "").strip("/") == group
     ]
-    if plain and not wrong:
+    if group and plain and not wrong:
         file, element = plain[0]
         yield Finding(
             "launch-group",
@@ -89,10 +38,52 @@ def findings(package, spec, launch, tags):
         )
 
 
+def _elsewhere(group, namespace, nodes, tags):
+    """Return the Finding about nodes that are started in another namespace than the group's."""
+    names = ", ".join(n.name for n in nodes)
+    elements = [e for f, e in tags if f == nodes[0].file]
+    return Finding(
+        "launch-group",
+        f"The launch file starts {names} in the namespace {namespace}; expected the group {group}.",
+        nodes[0].file,
+        _line(nodes, elements, any(e.tag == "group" and "ns" in e.attributes for _, e in tags)),
+        node=nodes[0].name if len(nodes) == 1 else None,
+        expected=f'<group ns="{group}"> around the nodes',
+        seen=f"the namespace {namespace}",
+        fix='Put the nodes into <group ns="$(arg group)">, with <arg name="group"'
+        f' default="{group}"/> above it.',
+    )
+
+
+def _line(nodes, elements, has_groups):
+    """Return the line that gives nodes their namespace: an <arg>, a <group>, or their own."""
+    line = nodes[0].line
+    here = [e for e in elements if e.line == line]
+    around = [
+        e
+        for e in elements
+        if e.tag == "group" and "ns" in e.attributes and any(e in one.parents for one in here)
+    ]
+    if around and not any(e.tag == "node" and "ns" in e.attributes for e in here):
+        argument = re.search(r"\$\(arg (\w+)\)", around[-1].attributes["ns"])
+        given = [
+            e.line
+            for e in elements
+            if argument
+            and e.tag == "arg"
+            and e.attributes.get("name") == argument.group(1)
+            and {"default", "value"} & {*e.attributes}
+        ]
+        return [around[-1].line, *given][-1]
+    if has_groups or len(nodes) == 1:
+        return line
+    return next(e.line for tag in ("group", "launch") for e in elements if e.tag == tag)
+
+
 def _findings(case):
     launch = case.launch
     if launch and not launch.error:
-        yield from findings(case.package, case.spec, launch, launch.elements(case.package))
+        yield from findings(case.spec, launch, launch.elements(case.package))
 
 
 RULE = Rule(

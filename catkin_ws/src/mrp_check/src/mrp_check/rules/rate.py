@@ -19,22 +19,7 @@ def _of(node):
     expected = f"a message every {role.period:g} s"
     times = [m["time"] for m in messages]
     if not node.has_rate():
-        waited = node.asked - times[-1]
-        if waited > 3 * role.period + 10 * node.all.get("lag", 0):
-            count = "once" if len(times) == 1 else f"{len(times)} messages"
-            slow = len(times) > 1 and times[-1] - times[0] > 2 * role.period
-            yield node.finding(
-                "rate",
-                f"{node.name} published {count}"
-                + (
-                    " in all, far too seldom."
-                    if slow
-                    else f", and then no more for {waited:.0f} s."
-                ),
-                place,
-                expected=expected,
-                seen=count,
-            )
+        yield from _too_few(node, role, times, place, expected)
         return
     gaps = [b - a for a, b in zip(times, times[1:])]
     # A busy machine can delay messages, and let them come in a burst after that; it can change
@@ -60,6 +45,19 @@ def _of(node):
             expected=expected,
             seen=seen,
         )
+
+
+def _too_few(node, role, times, place, expected):
+    """Yield a Finding if there are too few messages, though there was time for more."""
+    waited = node.asked - times[-1]
+    if waited <= 3 * role.period + 10 * node.all.get("lag", 0):
+        return
+    count = "once" if len(times) == 1 else f"{len(times)} messages"
+    slow = len(times) > 1 and times[-1] - times[0] > 2 * role.period
+    rest = " in all, far too seldom." if slow else f", and then no more for {waited:.0f} s."
+    yield node.finding(
+        "rate", f"{node.name} published {count}{rest}", place, expected=expected, seen=count
+    )
 
 
 def _is_slow_by_itself(node, role, high):

@@ -16,38 +16,24 @@ from mrp_check.running.words import PREFIX, few
 
 def _of(node):
     """Yield a Finding if the node does not log each value that it is sent, once."""
-    if not node.wanted.subscribes or not node.direct:
-        return
-    sent = node.sent()
-    pattern = received_pattern(node)
-    if not sent or pattern is None:
+    sent, pattern = node.sent(), received_pattern(node)
+    if not node.wanted.subscribes or not sent or pattern is None:
         return
     logs = node.direct_of("logs")
-    heard, near, printed = set(), {}, {}
-    for log in logs:
-        found = pattern.search(log["text"])
-        if found:
-            heard.add(int(found["value"]))
-    lines = [text for _, _, text in node.direct.get("lines", [])]
-    for value in sent:
-        if value in heard:
-            continue
-        number = re.compile(rf"(?<!\d){value}(?!\d)")
-        for log in logs:
-            if number.search(log["text"]) and not pattern.search(log["text"]):
-                near[value] = log
-        for text in lines:
-            if number.search(text) and not PREFIX.match(text):
-                printed[value] = text
+    heard = {int(m["value"]) for m in (pattern.search(log["text"]) for log in logs) if m}
     lost = [value for value in sent if value not in heard]
     if not lost or heard - set(sent):
         yield from _repeated_finding(node, sent, logs, pattern)
         return
     wanted = sample(received_line(node), lost[0])
-    if lost[0] in near:
-        yield other_words(node, near[lost[0]], wanted)
-    elif lost[0] in printed:
-        yield not_logged(node, printed[lost[0]], wanted)
+    number = re.compile(rf"(?<!\d){lost[0]}(?!\d)")
+    near = [g for g in logs if number.search(g["text"]) and not pattern.search(g["text"])]
+    lines = [text for _, _, text in node.direct.get("lines", [])]
+    printed = [text for text in lines if number.search(text) and not PREFIX.match(text)]
+    if near:
+        yield other_words(node, near[-1], wanted)
+    elif printed:
+        yield not_logged(node, printed[-1], wanted)
     elif not heard:
         yield node.finding(
             "received",
@@ -57,28 +43,35 @@ def _of(node):
             seen="no such line",
         )
     elif not set(lost) & set(PACED):
-        burst = heard & set(BURST)
-        yield node.finding(
-            "queue",
-            f"{node.name} was sent {len(BURST)} messages at once, and lost {len(lost)} of them:"
-            " its queue is too short.",
-            node.places.of_topic(node.name, "subscriber", node.wanted.subscribing.name),
-            ERROR if len(burst) <= 2 else WARNING,
-            expected=f"a queue of {node.wanted.subscribes.queue or 10}",
-            seen=f"received {sorted(burst)}",
-        )
+        yield _short_queue(node, lost, heard & set(BURST))
     else:
-        sleep = node.places.sleep_beside(node.name, "log")
-        kept = [str(value) for value in sent if value in heard]
-        why = " While its callback sleeps, more arrives than its queue holds." if sleep else ""
-        yield node.finding(
-            "callbacks" if sleep else "received",
-            f"{node.name} was sent {', '.join(map(str, sent))}, but logs only"
-            f" {', '.join(kept)}." + (why or _whose(node, lost, heard)),
-            sleep or _logged_place(node, logs, pattern),
-            expected="each value that arrives",
-            seen=", ".join(kept),
-        )
+        yield _gaps(node, sent, lost, heard, _logged_place(node, logs, pattern))
+
+
+def _short_queue(node, lost, burst):
+    return node.finding(
+        "queue",
+        f"{node.name} was sent {len(BURST)} messages at once, and lost {len(lost)} of them:"
+        " its queue is too short.",
+        node.places.of_topic(node.name, "subscriber", node.wanted.subscribing.name),
+        ERROR if len(burst) <= 2 else WARNING,
+        expected=f"a queue of {node.wanted.subscribes.queue or 10}",
+        seen=f"received {sorted(burst)}",
+    )
+
+
+def _gaps(node, sent, lost, heard, place):
+    sleep = node.places.sleep_beside(node.name, "log")
+    kept = ", ".join(str(value) for value in sent if value in heard)
+    why = " While its callback sleeps, more arrives than its queue holds." if sleep else ""
+    return node.finding(
+        "callbacks" if sleep else "received",
+        f"{node.name} was sent {', '.join(map(str, sent))}, but logs only {kept}."
+        + (why or _whose(node, lost, heard)),
+        sleep or place,
+        expected="each value that arrives",
+        seen=kept,
+    )
 
 
 def _whose(node, lost, heard):

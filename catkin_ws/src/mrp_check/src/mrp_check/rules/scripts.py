@@ -11,7 +11,7 @@ import shutil
 import subprocess
 
 from mrp_check.build.catkin import search_path
-from mrp_check.contract.finding import NOTE, Finding
+from mrp_check.contract.finding import ERROR, NOTE, Finding
 from mrp_check.contract.requirements import Requirement, Rule
 from mrp_check.contract.words import nearest, perhaps
 from mrp_check.running import evidence
@@ -106,10 +106,85 @@ def _listed(package, model):
         )
 
 
-def _other_program(path, plain, relayed, what):
-    """Return the finding about a first line that asks for the wrong program."""
-    wanted = "#!/usr/bin/env python" + ("" if relayed else "3")
+_MODE = (
+    "; roslaunch and rosrun start it all the same, as catkin_install_python() has made an"
+    " executable of it.",
+    ": roslaunch and rosrun do not find it.",
+)
+
+
+def _of(package, model, path, shebang, relayed):
+    plain = shebang.rstrip("\r")
+    absent = names_no_program(plain) if plain else None
+    if absent == PYTHON and not relayed:
+        yield _not_relayed(model, path, plain)
+        return
+    if plain:
+        yield from _other_program(path, plain, relayed, absent)
+    # A byte order mark hides it: the rules about text say so.
+    elif not package.bytes(path).startswith(_MARKS):
+        yield _no_first_line(package, path)
+    if not package.is_executable(path):
+        yield Finding(
+            "scripts",
+            f"{path} is not executable{_MODE[0 if relayed else 1]}",
+            path,
+            1,
+            severity=NOTE if relayed else ERROR,
+            expected="permission to execute it",
+            seen=f"mode {(package.root / path).stat().st_mode & 0o777:o}",
+            fix=f"chmod +x {path}",
+        )
+
+
+def _no_first_line(package, path):
+    lines = package.lines(path)[:20]
+    hidden = next((n for n, text in enumerate(lines, 1) if text.startswith("#!")), None)
     return Finding(
+        "scripts",
+        f"{path} does not begin with #!: Linux does not know that Python is to run it."
+        + (f" The #! is in line {hidden}, and has to be in the first." if hidden else ""),
+        path,
+        1,
+        expected="#!/usr/bin/env python",
+        seen=lines[0].strip() or "an empty line",
+        fix="Make #!/usr/bin/env python the first line.",
+    )
+
+
+def _not_relayed(model, path, plain):
+    """Debian has no `python`: it takes catkin_install_python to put the right one there."""
+    calls = [s for s in model.scripts if s.by == "catkin_install_python"]
+    add = (
+        f"Add {path} to catkin_install_python(PROGRAMS ...)."
+        if calls
+        else f"Add catkin_install_python(PROGRAMS {path} DESTINATION"
+        " ${CATKIN_PACKAGE_BIN_DESTINATION}) to CMakeLists.txt; or write #!/usr/bin/env python3."
+    )
+    calls += [s for s in model.scripts if s.path == path]
+    return Finding(
+        "scripts",
+        f"{path} is not made to run by catkin_install_python(), and its first line asks for"
+        " 'python', which this system does not have: it has python3.",
+        *((calls[0].file, calls[0].line) if calls else (path, 1)),
+        expected=f"catkin_install_python(PROGRAMS ... {path} ...) in CMakeLists.txt",
+        seen=plain,
+        fix=add,
+    )
+
+
+def _other_program(path, plain, relayed, absent):
+    """Yield the finding about a first line that asks for the wrong program."""
+    if absent and absent != PYTHON:
+        what = f"names {absent}, a program that is not there"
+    elif "python" not in plain:
+        what = "hands the Python script to another program"
+    elif "python2" in plain:
+        what = "asks for Python 2, for which there is no rospy"
+    else:
+        return
+    wanted = "#!/usr/bin/env python" + ("" if relayed else "3")
+    yield Finding(
         "scripts",
         f"The first line of {path} {what}.",
         path,
@@ -119,78 +194,6 @@ def _other_program(path, plain, relayed, what):
         fix=f"Make {wanted} the first line.",
         change=(plain, wanted),
     )
-
-
-def _install_place(model, path):
-    """Return where a script would be handed to catkin_install_python()."""
-    calls = [s for s in model.scripts if s.by == "catkin_install_python"]
-    calls += [s for s in model.scripts if s.path == path]
-    return (calls[0].file, calls[0].line) if calls else (path, 1)
-
-
-def _of(package, model, path, shebang, relayed):
-    plain = shebang.rstrip("\r")
-    absent = names_no_program(plain) if plain else None
-    install = next((s for s in model.scripts if s.by == "catkin_install_python"), None)
-    if not plain and package.bytes(path).startswith(_MARKS):
-        pass  # a byte order mark hides it: the rules about text say so
-    elif not plain:
-        first = package.lines(path)[0].strip()
-        hidden = next(
-            (n for n, text in enumerate(package.lines(path)[:20], 1) if text.startswith("#!")), None
-        )
-        yield Finding(
-            "scripts",
-            f"{path} does not begin with #!: Linux does not know that Python is to run it."
-            + (f" The #! is in line {hidden}, and has to be in the first." if hidden else ""),
-            path,
-            1,
-            expected="#!/usr/bin/env python",
-            seen=first or "an empty line",
-            fix="Make #!/usr/bin/env python the first line.",
-        )
-    elif absent == PYTHON and not relayed:
-        # Debian has no `python`: it takes catkin_install_python to put the right one there.
-        yield Finding(
-            "scripts",
-            f"{path} is not made to run by catkin_install_python(), and its first line asks for"
-            " 'python', which this system does not have: it has python3.",
-            *_install_place(model, path),
-            expected=f"catkin_install_python(PROGRAMS ... {path} ...) in CMakeLists.txt",
-            seen=plain,
-            fix=f"Add {path} to catkin_install_python(PROGRAMS ...)."
-            if install
-            else f"Add catkin_install_python(PROGRAMS {path} DESTINATION"
-            " ${CATKIN_PACKAGE_BIN_DESTINATION}) to CMakeLists.txt; or write"
-            " #!/usr/bin/env python3.",
-        )
-        return
-    elif absent and absent != PYTHON:
-        what = f"names {absent}, a program that is not there"
-        yield _other_program(path, plain, relayed, what)
-    elif "python" not in plain:
-        what = "hands the Python script to another program"
-        yield _other_program(path, plain, relayed, what)
-    elif "python2" in plain:
-        what = "asks for Python 2, for which there is no rospy"
-        yield _other_program(path, plain, relayed, what)
-    if not package.is_executable(path):
-        yield Finding(
-            "scripts",
-            f"{path} is not executable"
-            + (
-                "; roslaunch and rosrun start it all the same, as catkin_install_python() has"
-                " made an executable of it."
-                if relayed
-                else ": roslaunch and rosrun do not find it."
-            ),
-            path,
-            1,
-            severity=NOTE if relayed else "error",
-            expected="permission to execute it",
-            seen=f"mode {(package.root / path).stat().st_mode & 0o777:o}",
-            fix=f"chmod +x {path}",
-        )
 
 
 RULE = Rule(

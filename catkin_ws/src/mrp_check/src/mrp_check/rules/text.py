@@ -47,28 +47,27 @@ def _of(package, path, kind, relayed):
             seen="EF BB BF, then #!",
             fix="Save the file as 'UTF-8', not as 'UTF-8 with BOM'.",
         )
-    if b"\r\n" in data and kind in ("python", "message"):
-        if is_script and data.split(b"\n", 1)[0].endswith(b"\r"):
-            yield Finding(
-                "text",
-                f"{path} has Windows line ends. Linux takes the one after the first line for a part"
-                " of the program's name, and looks for 'python' with an invisible character.",
-                path,
-                1,
-                expected="lines that end with a newline (LF)",
-                seen="lines that end with carriage return and newline (CRLF)",
-                fix=f"Convert the file: sed -i 's/\\r$//' {path}",
-            )
-    elif b"\r\n" in data:
+    if b"\r\n" in data:
+        yield from _windows_ends(data, path, kind, is_script)
+    yield from _encoding(data, path, kind, relayed)
+
+
+def _windows_ends(data, path, kind, is_script):
+    fix = f"Convert the file: sed -i 's/\\r$//' {path}"
+    if kind not in ("python", "message"):
+        works = f"{path} has Windows line ends. It works all the same; scripts with them do not."
+        yield Finding("text", works, path, 1, NOTE, fix=fix)
+    elif is_script and data.split(b"\n", 1)[0].endswith(b"\r"):
         yield Finding(
             "text",
-            f"{path} has Windows line ends. It works all the same; scripts with them do not.",
+            f"{path} has Windows line ends. Linux takes the one after the first line for a part"
+            " of the program's name, and looks for 'python' with an invisible character.",
             path,
             1,
-            NOTE,
-            fix=f"Convert the file: sed -i 's/\\r$//' {path}",
+            expected="lines that end with a newline (LF)",
+            seen="lines that end with carriage return and newline (CRLF)",
+            fix=fix,
         )
-    yield from _encoding(data, path, kind, relayed)
 
 
 def _encoding(data, path, kind, relayed):

@@ -8,87 +8,100 @@ import re
 from mrp_check.contract.finding import ERROR, NOTE
 from mrp_check.running.words import code_text, last_words
 
+_EXPECTED = "a node that goes on until Ctrl-C"
+
 
 def start_findings(node):
     """Yield a Finding if the node is not up soon after it is started."""
     direct = node.direct or {}
-    code, after = direct.get("code"), direct.get("ended_after")
-    registered = node.of("publications") or node.of("subscriptions")
+    code, registered = direct.get("code"), node.of("publications") or node.of("subscriptions")
     died = node.died()
     if node.in_launch and registered and died is None:
         # Under its launch file it is well; by itself it may need what that gives it.
         return
     if node.in_launch and died is not None:
         code = died
-    elif after is None:
-        if node.in_launch and not registered and not direct.get("name"):
-            yield _not_registered(node, direct)
+    elif direct.get("ended_after") is None:
+        if node.in_launch and not registered and not node.own_name:
+            yield _not_registered(node)
         return
+    found = _traceback(node)
+    if found and code != 0:
+        yield _raised(node, *found)
+    elif code != 0:
+        yield _failed(node, code, bool(registered or node.own_name))
+    elif registered or node.own_name:
+        yield _ended(node)
+    else:
+        yield node.finding(
+            "node-start",
+            f"{node.name} ends at once, without having started ROS.",
+            node.places.of(node.name, "init"),
+            expected=_EXPECTED,
+            seen="it ended with exit code 0, and the master never heard of it",
+            fix="See to it that main() is called, and that it starts the node.",
+        )
+
+
+def _traceback(node):
+    """Return the last traceback of the node: of its own run, or of what roslaunch shows."""
     found = node.places.traceback(node.errors())
     if found is None:
         # roslaunch shows the lines of all nodes together.
         found = node.places.traceback(node.console)
         if found and found[0][0] not in node.places.sources(node.name):
             found = None
-    if found and code != 0:
-        place, kind, text = found
-        module = re.match(r"No module named '(\w+)", text)
-        is_absent = module and module.group(1) in node.places.facts.absent(node.name)
-        yield node.finding(
-            id_of_error(kind, text, "starts"),
-            f"{node.name} ends as soon as it is started: {kind}: {text}",
-            place,
-            NOTE if is_absent else ERROR,
-            expected="a node that goes on until Ctrl-C",
-            seen=f"{kind}: {text}",
-        )
-        return
-    started_ros = bool(registered or direct.get("name"))
-    said = last_words(node.errors())
-    expected = "a node that goes on until Ctrl-C"
+    return found
+
+
+def _raised(node, place, kind, text):
+    module = re.match(r"No module named '(\w+)", text)
+    is_absent = module and module.group(1) in node.places.facts.absent(node.name)
+    return node.finding(
+        id_of_error(kind, text, "starts"),
+        f"{node.name} ends as soon as it is started: {kind}: {text}",
+        place,
+        NOTE if is_absent else ERROR,
+        expected=_EXPECTED,
+        seen=f"{kind}: {text}",
+    )
+
+
+def _ended(node):
+    """Return the Finding about a node that started ROS, and came to its end."""
     ends = [p for p in node.places.facts_of(node.name, "exit") if p.text != "return"]
-    if code == 0 and started_ros and ends and node.places.facts_of(node.name, "spin"):
-        yield node.finding(
-            "spin",
-            f"{node.name} ends by itself soon after it has started, though it waits: most likely"
-            f" by its call of {ends[0].text}().",
-            (ends[0].file, ends[0].line),
-            expected=expected,
-            seen="it ended with exit code 0",
-            fix="Leave the call out, or see to it that it is only made at the end.",
-        )
-    elif code == 0 and started_ros:
-        yield node.finding(
-            "spin",
-            f"{node.name} ends by itself soon after it has started: nothing keeps it waiting"
-            " for messages or for its timer.",
-            node.places.facts.end_of_main(node.name) or node.places.of(node.name, "init", "spin"),
-            expected=expected,
-            seen="it ended with exit code 0",
-            fix="Call rospy.spin() or ros::spin() at the end of main().",
-        )
-    elif code == 0:
-        yield node.finding(
-            "node-start",
-            f"{node.name} ends at once, without having started ROS.",
-            node.places.of(node.name, "init"),
-            expected=expected,
-            seen="it ended with exit code 0, and the master never heard of it",
-            fix="See to it that main() is called, and that it starts the node.",
-        )
+    if ends and node.places.facts_of(node.name, "spin"):
+        why = f", though it waits: most likely by its call of {ends[0].text}()."
+        place = ends[0].file, ends[0].line
+        fix = "Leave the call out, or see to it that it is only made at the end."
     else:
-        id_ = "starts" if started_ros else _id_of_words(said)
-        yield node.finding(
-            id_,
-            f"{node.name} ends soon after it is started, {code_text(code)}"
-            + (f", with the words: {said}" if said else "."),
-            node.places.of(node.name, "init", "handle"),
-            expected=expected,
-            seen=code_text(code),
-        )
+        why = ": nothing keeps it waiting for messages or for its timer."
+        end = node.places.facts.end_of_main(node.name)
+        place = end or node.places.of(node.name, "init", "spin")
+        fix = "Call rospy.spin() or ros::spin() at the end of main()."
+    return node.finding(
+        "spin",
+        f"{node.name} ends by itself soon after it has started{why}",
+        place,
+        expected=_EXPECTED,
+        seen="it ended with exit code 0",
+        fix=fix,
+    )
 
 
-def _not_registered(node, direct):
+def _failed(node, code, started_ros):
+    said = last_words(node.errors())
+    return node.finding(
+        "starts" if started_ros else _id_of_words(said),
+        f"{node.name} ends soon after it is started, {code_text(code)}"
+        + (f", with the words: {said}" if said else "."),
+        node.places.of(node.name, "init", "handle"),
+        expected=_EXPECTED,
+        seen=code_text(code),
+    )
+
+
+def _not_registered(node):
     return node.finding(
         "node-start",
         f"{node.name} runs, but the master has not heard of it.",

@@ -151,61 +151,96 @@ def _of_call(source, node, place):
     name = source.dotted(node.func) or ""
     if isinstance(node.func, ast.Name) and not name:
         name = node.func.id
-
-    def value(position, keyword):
-        return source.value(argument(node, position, keyword))
-
-    if name == "rospy.init_node":
-        yield place("init", value(0, "name"), anonymous=value(1, "anonymous"))
-    elif name in ("rospy.Publisher", "rospy.topics.Publisher"):
-        yield place(
-            "publisher",
-            value(0, "name"),
-            type=message_type(source, argument(node, 1, "data_class")) or UNKNOWN,
-            queue=value(6, "queue_size"),
-            queue_line=getattr(argument(node, 6, "queue_size"), "lineno", UNKNOWN),
-            latch=value(4, "latch"),
-        )
-    elif name in ("rospy.Subscriber", "rospy.topics.Subscriber"):
-        yield place(
-            "subscriber",
-            value(0, "name"),
-            type=message_type(source, argument(node, 1, "data_class")) or UNKNOWN,
-            queue=value(4, "queue_size"),
-            queue_line=getattr(argument(node, 4, "queue_size"), "lineno", UNKNOWN),
-        )
-    elif name in ("rospy.Timer", "rospy.timer.Timer"):
-        yield place("timer", period=value(0, "period"), oneshot=value(2, "oneshot"))
-    elif name in ("rospy.Rate", "rospy.timer.Rate"):
-        hertz = value(0, "hz")
-        plain = isinstance(hertz, (int, float)) and hertz
-        yield place("timer", period=1 / hertz if plain else UNKNOWN)
-    elif name in ("rospy.sleep", "time.sleep"):
-        yield place("timer", period=value(0, "duration"))
-        yield place("sleep")
-    elif name == "rospy.spin":
-        yield place("spin")
+    call = _Call(source, node, name, place)
+    look = next((look for names, look in _CALLS if name in names), None)
+    if look:
+        yield from look(call)
     elif name.startswith("rospy.log"):
         yield from _log(source, node, name.split(".")[1], place)
-    elif name == "print":
-        texts = [source.value(argument) for argument in node.args]
-        yield place("print", " ".join(t if isinstance(t, str) else GAP for t in texts))
-    elif name == "sys.stdout.write":
-        yield place("print", value(0, "s"))
-    elif name in ("sys.exit", "os._exit", "exit", "quit", "rospy.signal_shutdown"):
-        yield place("exit", name, code=value(0, "code"))
-    elif name == "signal.signal":
-        yield place("signal", source.dotted(argument(node, 0, "signalnum")) or UNKNOWN)
     elif name.startswith("threading.") and name.endswith(("Thread", "Timer")):
-        yield place("thread", name, daemon=value(99, "daemon"))
-    elif name == "itertools.count":
-        start, step = value(0, "start"), value(1, "step")
-        yield place("counter", value=0 if not node.args and not node.keywords else start)
-        yield place("step", step=1 if step is UNKNOWN and len(node.args) < 2 else step)
-    elif isinstance(node.func, ast.Attribute) and node.func.attr == "publish":
+        yield place("thread", name, daemon=call.value(99, "daemon"))
+    elif getattr(node.func, "attr", "") == "publish":
         yield place("publish")
     elif name == "input" or getattr(node.func, "attr", "") in ("join", "wait", "pause"):
         yield place("sleep")
+
+
+class _Call:
+    def __init__(self, source, node, name, place):
+        self.source, self.node, self.name, self.place = source, node, name, place
+
+    def value(self, position, keyword):
+        return self.source.value(argument(self.node, position, keyword))
+
+    def init(self):
+        yield self.place("init", self.value(0, "name"), anonymous=self.value(1, "anonymous"))
+
+    def topic(self, kind, queue, **values):
+        yield self.place(
+            kind,
+            self.value(0, "name"),
+            type=message_type(self.source, argument(self.node, 1, "data_class")) or UNKNOWN,
+            queue=self.value(queue, "queue_size"),
+            queue_line=getattr(argument(self.node, queue, "queue_size"), "lineno", UNKNOWN),
+            **values,
+        )
+
+    def publisher(self):
+        return self.topic("publisher", 6, latch=self.value(4, "latch"))
+
+    def subscriber(self):
+        return self.topic("subscriber", 4)
+
+    def timer(self):
+        yield self.place("timer", period=self.value(0, "period"), oneshot=self.value(2, "oneshot"))
+
+    def rate(self):
+        hertz = self.value(0, "hz")
+        plain = isinstance(hertz, (int, float)) and hertz
+        yield self.place("timer", period=1 / hertz if plain else UNKNOWN)
+
+    def sleep(self):
+        yield self.place("timer", period=self.value(0, "duration"))
+        yield self.place("sleep")
+
+    def spin(self):
+        yield self.place("spin")
+
+    def print(self):
+        texts = [self.source.value(argument) for argument in self.node.args]
+        yield self.place("print", " ".join(t if isinstance(t, str) else GAP for t in texts))
+
+    def write(self):
+        yield self.place("print", self.value(0, "s"))
+
+    def exit(self):
+        yield self.place("exit", self.name, code=self.value(0, "code"))
+
+    def signal(self):
+        name = self.source.dotted(argument(self.node, 0, "signalnum"))
+        yield self.place("signal", name or UNKNOWN)
+
+    def count(self):
+        node, step = self.node, self.value(1, "step")
+        start = self.value(0, "start") if node.args or node.keywords else 0
+        yield self.place("counter", value=start)
+        yield self.place("step", step=1 if step is UNKNOWN and len(node.args) < 2 else step)
+
+
+_CALLS = (
+    (("rospy.init_node",), _Call.init),
+    (("rospy.Publisher", "rospy.topics.Publisher"), _Call.publisher),
+    (("rospy.Subscriber", "rospy.topics.Subscriber"), _Call.subscriber),
+    (("rospy.Timer", "rospy.timer.Timer"), _Call.timer),
+    (("rospy.Rate", "rospy.timer.Rate"), _Call.rate),
+    (("rospy.sleep", "time.sleep"), _Call.sleep),
+    (("rospy.spin",), _Call.spin),
+    (("print",), _Call.print),
+    (("sys.stdout.write",), _Call.write),
+    (("sys.exit", "os._exit", "exit", "quit", "rospy.signal_shutdown"), _Call.exit),
+    (("signal.signal",), _Call.signal),
+    (("itertools.count",), _Call.count),
+)
 
 
 def _log(source, node, function, place):
