@@ -16,6 +16,7 @@ from mrp_check import check, confine
 from mrp_check.contract import spec
 from mrp_check.contract.errors import CannotCheck
 from mrp_check.contract.finding import ERROR, NOTE
+from mrp_check.contract.verdict import MET
 from mrp_check.rules import REQUIREMENTS, RULES
 from mrp_check.running import observing
 from mrp_check.sources.facts import Facts
@@ -525,3 +526,28 @@ def test_a_node_cannot_change_what_is_seen_of_it(tmp_path, monkeypatch, isolatio
     script.write_text(script.read_text().replace("\n\n\nclass Node", f"\n{FORGERY}\n\nclass Node"))
     found = findings_of(folder, spec_of(defects, []), tmp_path / "scratch")
     assert [f.id for f in found if f.severity == ERROR] == ["values"], found
+
+
+# Put by a build in the place of what the checker reads and writes next.
+PLANTED = """cmake_minimum_required(VERSION 3.10)
+project(lab_pkg)
+file(WRITE "${CMAKE_BINARY_DIR}/plant.sh" "
+  cd '${CMAKE_BINARY_DIR}/..'
+  for file in trace.json build/compile_commands.json; do rm -f $file; mkfifo $file; done
+  for file in moved.launch of_spec.launch ros.pch result.json; do ln -s 'VICTIM' $file; done
+  chmod 0 src/*/package.xml
+")
+execute_process(COMMAND sh "${CMAKE_BINARY_DIR}/plant.sh")
+"""
+
+
+@pytest.mark.usefixtures("open_folders")
+def test_what_a_build_plants_is_not_followed(tmp_path):
+    """A pipe for a file would stop the checker for ever, and a link would lead it outside."""
+    victim = tmp_path / "victim"
+    victim.write_text("mine")
+    folder = make_package(tmp_path / "lab_pkg", {"right": ("", "")}, {})
+    (folder / "CMakeLists.txt").write_text(PLANTED.replace("VICTIM", str(victim)))
+    report = check.check(folder, spec_of(["right"], []), timeout=60)
+    assert victim.read_text() == "mine"
+    assert report.requirements["cmake"] != MET

@@ -172,9 +172,10 @@ class Isolation(enum.Enum):
 def isolation():
     """Return the Isolation that this user has on this system."""
     command = [*_bubblewrap([]), "/bin/true"]
-    done = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True)
-    if done.returncode == 0:
-        return Isolation.NAMESPACES
+    with contextlib.suppress(FileNotFoundError):  # bubblewrap may not be installed
+        done = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True)
+        if done.returncode == 0:
+            return Isolation.NAMESPACES
     return Isolation.NONE if os.getuid() else Isolation.USER
 
 

@@ -11,6 +11,7 @@ import argparse
 import pathlib
 import re
 import shutil
+import signal
 import subprocess
 import sys
 import typing
@@ -156,13 +157,15 @@ def main(arguments=None):
     parser.add_argument("--hint", action="store_true", help="show the hint")
     parser.add_argument("--reset", action="store_true", help="begin the exercise anew")
     options = parser.parse_args(arguments)
+    # As with Ctrl-C, nothing is left behind then.
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
     try:
         sys.exit(run(options.folder, options.hint, options.reset))
     except (ExerciseError, defects.DefectError, CannotCheck, PackageError) as error:
         print(f"exercise: {error}", file=sys.stderr)
         sys.exit(UNCHECKED)
     except KeyboardInterrupt:
-        sys.exit("exercise: stopped by Ctrl-C.")
+        sys.exit("exercise: stopped before its end; what it ran has ended, too.")
 
 
 if __name__ == "__main__":

@@ -18,7 +18,6 @@ import psutil
 # Of the environment: what confine.run() knows of the user and of namespaces.
 VARIABLE = "MRP_CHECK_APART"
 
-_SETPRIV = ["setpriv", "--clear-groups", "--no-new-privs", "--inh-caps=-all"]
 _STARTING = 20.0  # seconds within which bubblewrap must have started a program
 
 
@@ -27,10 +26,15 @@ class Starter:
 
     user: the id of the user to start them as, or None for this one
     namespaces: whether this process is in namespaces of its own
+    in_sandbox: whether each program gets a sandbox within them
     """
 
     def __init__(self, user, namespaces):
-        self._user, self._nested = user, namespaces and user is None
+        self.in_sandbox = namespaces and user is None
+        self._setpriv = ["setpriv", "--no-new-privs"]
+        if user is not None:
+            self._setpriv += [f"--reuid={user}", f"--regid={user}", "--clear-groups"]
+            self._setpriv += ["--inh-caps=-all"]
 
     @classmethod
     def of_environment(cls):
@@ -41,11 +45,8 @@ class Starter:
 
         writable: the folders that it may write to; options: those of Popen
         """
-        if self._user is not None:
-            ids = [f"--reuid={self._user}", f"--regid={self._user}"]
-            return subprocess.Popen([*_SETPRIV, *ids, "--", *command], **options), None
-        if not self._nested:
-            return subprocess.Popen(command, **options), None
+        if not self.in_sandbox:
+            return subprocess.Popen([*self._setpriv, "--", *command], **options), None
         read, write = os.pipe()
         sandbox = ["bwrap", "--unshare-user", "--unshare-pid", "--ro-bind", "/", "/"]
         sandbox += ["--dev-bind", "/dev", "/dev", "--proc", "/proc", "--info-fd", str(write)]
@@ -53,8 +54,11 @@ class Starter:
         popen = subprocess.Popen([*sandbox, "--", *command], pass_fds=(write,), **options)
         os.close(write)
         with os.fdopen(read) as file:
-            init = json.loads(file.read() or "{}").get("child-pid")
-        return popen, psutil.Process(init) if init else None
+            said = json.loads(file.read() or "{}")
+        try:
+            return popen, psutil.Process(said["child-pid"])
+        except (KeyError, psutil.NoSuchProcess):
+            return popen, None  # it has ended already
 
 
 def started_in(init):

@@ -85,7 +85,11 @@ class Program:
             cwd=writable[0],
             start_new_session=True,
         )
-        self.pid = apart.started_in(self.init) if self.init else self._popen.pid
+        self._in_sandbox = starter.in_sandbox
+        if self._in_sandbox:
+            self.pid = self.init and apart.started_in(self.init)
+        else:
+            self.pid = self._popen.pid
         streams = [("out", self._popen.stdout), ("err", self._popen.stderr)]
         self._readers = [
             threading.Thread(target=self._read, args=stream, daemon=True)
@@ -107,7 +111,7 @@ class Program:
 
     def poll(self):
         """Return the exit code, or None while it runs."""
-        code = apart.exit_code(self._popen, self.init)
+        code = apart.exit_code(self._popen, self._in_sandbox)
         if code is not None and self.ended is None:
             self.ended = time.monotonic()
         return code
