@@ -4,7 +4,6 @@
 import pathlib
 import types
 
-from mrp_check import case
 from mrp_check.contract import spec
 from mrp_check.rules import (
     callbacks,
@@ -25,6 +24,8 @@ from mrp_check.rules import (
 from mrp_check.sources import facts, node, python_facts, python_read, uses
 from mrp_check.student import cmake
 from mrp_check.student.package import Package
+
+from mrp_check import case
 
 MANIFEST = """<?xml version="1.0"?>
 <package format="3">

@@ -17,8 +17,9 @@ import textwrap
 import uuid
 
 import pytest
-from mrp_check import confine
 from waiting import wait_until
+
+from mrp_check import confine
 
 pytestmark = [pytest.mark.slow, pytest.mark.usefixtures("open_folders")]
 

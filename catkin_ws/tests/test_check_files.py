@@ -4,7 +4,7 @@
 import check_rules
 import pytest
 from check_rules import CMAKE, MANIFEST, PUB_SUB, told
-from mrp_check.build import compiler, configuring
+from mrp_check.building import compiler, configuring
 from mrp_check.rules import cmake as cmake_rule
 from mrp_check.rules import dependencies, messages, package_name, scripts, targets, text
 from mrp_check.rules import manifest as manifest_rule

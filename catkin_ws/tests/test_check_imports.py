@@ -16,7 +16,7 @@ LAYERS = (
     ("confine",),
     ("student",),
     ("sources",),
-    ("build",),
+    ("building",),
     ("running",),
     ("rules",),
     ("report", "case", "causes"),

@@ -7,7 +7,7 @@ import functools
 import pathlib
 import shutil
 
-from mrp_check.build.catkin import Catkin
+from mrp_check.building.catkin import Catkin
 from mrp_check.confined import cpp_headers
 from mrp_check.contract.spec import Spec
 from mrp_check.running import observing

@@ -10,7 +10,7 @@ import traceback
 import typing
 
 from mrp_check import causes, confine
-from mrp_check.build.catkin import missing_tool
+from mrp_check.building.catkin import missing_tool
 from mrp_check.case import Case
 from mrp_check.contract.errors import CannotCheck
 from mrp_check.contract.finding import ERROR

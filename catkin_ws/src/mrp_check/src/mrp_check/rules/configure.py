@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from mrp_check.build import configuring
+from mrp_check.building import configuring
 from mrp_check.contract.errors import CannotCheck
 from mrp_check.contract.requirements import Requirement, Rule
 from mrp_check.running import evidence

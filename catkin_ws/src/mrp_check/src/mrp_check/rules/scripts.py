@@ -10,7 +10,7 @@ import os
 import shutil
 import subprocess
 
-from mrp_check.build.catkin import search_path
+from mrp_check.building.catkin import search_path
 from mrp_check.contract.finding import ERROR, NOTE, Finding
 from mrp_check.contract.requirements import Requirement, Rule
 from mrp_check.contract.words import nearest, perhaps

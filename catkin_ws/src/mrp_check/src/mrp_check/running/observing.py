@@ -19,7 +19,7 @@ import threading
 import xml.sax.saxutils
 
 from mrp_check import confine
-from mrp_check.build import catkin
+from mrp_check.building import catkin
 from mrp_check.confined import messages
 from mrp_check.contract import spec as specs
 from mrp_check.contract.errors import CannotCheck
