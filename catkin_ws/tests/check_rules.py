@@ -4,6 +4,7 @@
 import pathlib
 import types
 
+from mrp_check import case
 from mrp_check.contract import spec
 from mrp_check.rules import (
     callbacks,
@@ -24,8 +25,6 @@ from mrp_check.rules import (
 from mrp_check.sources import facts, node, python_facts, python_read, uses
 from mrp_check.student import cmake
 from mrp_check.student.package import Package
-
-from mrp_check import case
 
 MANIFEST = """<?xml version="1.0"?>
 <package format="3">

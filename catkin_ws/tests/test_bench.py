@@ -16,14 +16,6 @@ import pytest
 import record_bench
 import rosgraph
 import yaml
-from mrp_bench.master import Master
-from mrp_bench.processes import cpu
-from mrp_bench.programs import Measurement, ProgramError, Running, Slice
-from mrp_bench.ways import WAYS, Way
-from process import Process
-from rospy.impl import tcpros_pubsub
-from waiting import wait_until
-
 from mrp_bench import (
     fan_report,
     fans,
@@ -37,6 +29,13 @@ from mrp_bench import (
     stats,
     summary,
 )
+from mrp_bench.master import Master
+from mrp_bench.processes import cpu
+from mrp_bench.programs import Measurement, ProgramError, Running, Slice
+from mrp_bench.ways import WAYS, Way
+from process import Process
+from rospy.impl import tcpros_pubsub
+from waiting import wait_until
 
 WORKSPACE = pathlib.Path(__file__).resolve().parent.parent
 pytestmark = pytest.mark.quick

@@ -13,12 +13,11 @@ import sys
 import uuid
 
 import pytest
+from mrp_check import check
 from mrp_check.cli import classroom
 from mrp_check.contract import spec
 from mrp_check.student import package
 from waiting import wait_until
-
-from mrp_check import check
 
 pytestmark = pytest.mark.quick
 

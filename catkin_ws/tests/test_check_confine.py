@@ -17,9 +17,8 @@ import textwrap
 import uuid
 
 import pytest
-from waiting import wait_until
-
 from mrp_check import confine
+from waiting import wait_until
 
 pytestmark = [pytest.mark.slow, pytest.mark.usefixtures("open_folders")]
 

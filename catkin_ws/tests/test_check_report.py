@@ -12,6 +12,7 @@ import check_rules
 import jsonschema
 import pytest
 import scratch
+from mrp_check import causes, check
 from mrp_check.case import Case
 from mrp_check.cli import classroom
 from mrp_check.contract import resources
@@ -22,8 +23,6 @@ from mrp_check.report import console, json_, junit
 from mrp_check.report import html as html_report
 from mrp_check.rules import REQUIREMENTS, RULES
 from mrp_check.sources.facts import Facts
-
-from mrp_check import causes, check
 
 pytestmark = pytest.mark.quick
 

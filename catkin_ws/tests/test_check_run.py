@@ -12,6 +12,7 @@ import textwrap
 
 import check_rules
 import pytest
+from mrp_check import check, confine
 from mrp_check.contract import spec
 from mrp_check.contract.errors import CannotCheck
 from mrp_check.contract.finding import ERROR, NOTE
@@ -20,8 +21,6 @@ from mrp_check.rules import REQUIREMENTS, RULES
 from mrp_check.running import observing
 from mrp_check.sources.facts import Facts
 from mrp_check.student.package import Package
-
-from mrp_check import check, confine
 
 pytestmark = pytest.mark.slow
 

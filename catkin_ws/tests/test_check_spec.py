@@ -6,12 +6,11 @@ import pathlib
 import re
 
 import pytest
+from mrp_check import rules
 from mrp_check.contract import resources, spec
 from mrp_check.contract.errors import SpecError
 from mrp_check.contract.requirements import STAGES
 from mrp_check.rules import REQUIREMENTS
-
-from mrp_check import rules
 
 pytestmark = pytest.mark.quick
 

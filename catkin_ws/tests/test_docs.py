@@ -8,7 +8,6 @@ import sys
 import urllib.parse
 
 import pytest
-
 from mrp_view import findings
 
 # One worker of pytest builds for all of these tests.

@@ -4,10 +4,9 @@
 import shutil
 
 import pytest
+from mrp_check import check
 from mrp_check.cli import exercise
 from mrp_check.contract.finding import WARNING, Finding
-
-from mrp_check import check
 
 pytestmark = pytest.mark.quick
 

@@ -9,10 +9,9 @@ import tempfile
 import xml.etree.ElementTree as ElementTree
 
 import pytest
+from mrp_bench import cold, container, plots, rounds, start_report, starts
 from mrp_bench.launched import Console, exits
 from mrp_bench.programs import ProgramError
-
-from mrp_bench import cold, container, plots, rounds, start_report, starts
 
 pytestmark = pytest.mark.quick
 

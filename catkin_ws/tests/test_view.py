@@ -9,15 +9,14 @@ import re
 import struct
 
 import pytest
+from mrp_labs.msg import Count
+from mrp_view import access, feed, fields, findings, graph, reports, rpc
 from mrp_view.counting import SAMPLES, Gaps, Sender
 from mrp_view.drawing import Structure
 from mrp_view.graph import ALIVE, DEAD, NodeReport, Observation, Refusal
 from mrp_view.reports import End
 from rosgraph_msgs.msg import Log
 from std_msgs import msg as std_msgs
-
-from mrp_labs.msg import Count
-from mrp_view import access, feed, fields, findings, graph, reports, rpc
 
 pytestmark = pytest.mark.quick
 

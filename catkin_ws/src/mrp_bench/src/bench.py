@@ -12,11 +12,10 @@ import signal
 import sys
 import time
 
+from mrp_bench import container, fans, launches, plans, report, starts
 from mrp_bench.master import Master
 from mrp_bench.programs import ProgramError
 from mrp_bench.rounds import PlanError, Results, run
-
-from mrp_bench import container, fans, launches, plans, report, starts
 
 
 def arguments():

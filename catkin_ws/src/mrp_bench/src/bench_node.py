@@ -21,10 +21,9 @@ import struct
 import time
 
 import rospy
+from mrp_bench.msg import Batch, Stamped
 from mrp_bench.program import Answers, Samples, obey, options
 from std_msgs.msg import String, UInt64
-
-from mrp_bench.msg import Batch, Stamped
 
 PR_SET_TIMERSLACK = 29  # of prctl(2)
 OVERHEAD = 12  # of Stamped: the stamp, and the length of its data

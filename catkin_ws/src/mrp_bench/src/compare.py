@@ -9,10 +9,9 @@ of 0 is as fast as it goes. Raw TCP is measured beside them.
 import sys
 import tempfile
 
+from mrp_bench import machine, plans, report, rounds, summary
 from mrp_bench.programs import ProgramError
 from mrp_bench.ways import WAYS
-
-from mrp_bench import machine, plans, report, rounds, summary
 
 
 def main():

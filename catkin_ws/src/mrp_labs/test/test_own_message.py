@@ -8,9 +8,8 @@ import unittest
 import rospy
 import rostest
 from lab import PACKAGE, Lab
-from waiting import DEADLINE
-
 from mrp_labs.msg import Count
+from waiting import DEADLINE
 
 SUBSCRIBERS = ("/own_message/subscriber_cpp", "/own_message/subscriber_py")
 LANGUAGES = {"/own_message/publisher_cpp": "C++", "/own_message/publisher_py": "Python"}
