@@ -45,7 +45,7 @@ def run_check(tmp_path):
             PYTHONDONTWRITEBYTECODE="1",
             # Only what a style or a defect changes is compiled anew.
             PATH=f"/usr/lib/ccache:{os.environ['PATH']}",
-            CCACHE_DIR=str(compiler_cache.FOLDER.with_name("ccache_of_checks")),
+            MRP_CHECK_CCACHE=str(compiler_cache.FOLDER.with_name("ccache_of_checks")),
         )
         command = ["/usr/bin/python3", CHECK / "scripts" / "check", folder]
         done = subprocess.run(

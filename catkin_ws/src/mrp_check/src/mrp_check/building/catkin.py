@@ -20,6 +20,10 @@ from mrp_check.student import cmake
 # Of this machine's own ROS, whatever workspace the user's shell has sourced.
 NOETIC = pathlib.Path("/opt/ros/noetic/setup.bash")
 
+# The environment variable that names a folder for ccache: what is equal in many packages is compiled
+# once then. A package that means harm could put something wrong into it, so it is for tests alone.
+CACHE = "MRP_CHECK_CCACHE"
+
 # program -> the Debian package that has it
 TOOLS = {
     "bwrap": "bubblewrap",
@@ -74,7 +78,7 @@ class Catkin:
     def run(self, *command, time=None, **variables):
         """Run a command, confined, within the workspace; return a confine.Result."""
         limits = confine.Limits(time=time or self.workspace.timeout)
-        cache = os.environ.get("CCACHE_DIR") if "ccache" in variables.get("PATH", "") else None
+        cache = variables.get("CCACHE_DIR")
         if cache:
             os.makedirs(cache, exist_ok=True)  # within the confinement it could not be made
             if os.getuid() == 0:
@@ -127,12 +131,10 @@ class Catkin:
     def _compiler():
         """Return the variables with which the compiler's messages are plain, in English."""
         variables = {"GCC_COLORS": "", "VERBOSE": "", "CLICOLOR": "0", "PATH": search_path()}
-        # With ccache, what is equal in many packages is compiled once. A package that means harm
-        # could put something wrong into it: so nobody has one who has not asked for it.
-        if os.environ.get("CCACHE_DIR") and shutil.which("ccache"):
+        if os.environ.get(CACHE) and shutil.which("ccache"):
             variables["PATH"] = "/usr/lib/ccache:" + search_path()
             variables.update(
-                CCACHE_DIR=os.environ["CCACHE_DIR"],
+                CCACHE_DIR=os.environ[CACHE],
                 CCACHE_NOHASHDIR="1",
                 CCACHE_UMASK="000",
                 CCACHE_BASEDIR=str(pathlib.Path("/")),
