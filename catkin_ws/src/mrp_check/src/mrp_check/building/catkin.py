@@ -20,8 +20,8 @@ from mrp_check.student import cmake
 # Of this machine's own ROS, whatever workspace the user's shell has sourced.
 NOETIC = pathlib.Path("/opt/ros/noetic/setup.bash")
 
-# The environment variable that names a folder for ccache: what is equal in many packages is compiled
-# once then. A package that means harm could put something wrong into it, so it is for tests alone.
+# The environment variable that names a folder for ccache: then what is equal in many packages is
+# compiled once. A package that means harm could put something wrong into it: it is for tests alone.
 CACHE = "MRP_CHECK_CCACHE"
 
 # program -> the Debian package that has it
