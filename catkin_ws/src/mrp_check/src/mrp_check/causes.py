@@ -28,7 +28,7 @@ _FOLLOWS = {
     "cmake": {"configure", "compile", "link", "targets", "launch-nodes", "messages"},
     "targets": {"configure", "link", "launch-nodes", "node-name"},
     "scripts": {"configure"},
-    "messages": {"configure", "compile", "python-names"},
+    "messages": {"configure", "compile", "python-names", "wrap"},
     "text": {"python-syntax", "manifest", "launch-file", "compile"},
     "launch-nodes": {"node-name"},
     "launch-group": {"namespace", "topic", "console", "received", "starts"},
