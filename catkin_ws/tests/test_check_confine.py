@@ -473,3 +473,18 @@ with socket.create_server(("127.0.0.1", 0)) as server:
 """
     result = confine.run(["/usr/bin/python3", "-c", program], tmp_path)
     assert result.output == "b'x'\n", result.errors
+
+
+def test_the_checkers_own_programs_run_where_they_are_copied_to(monkeypatch):
+    """Without namespaces, root copies them for another user; they find one another there."""
+    monkeypatch.setattr(confine, "isolation", lambda: confine.Isolation.USER)
+    confine.code.cache_clear()
+    try:
+        reader = confine.code() / "cpp_facts.py"
+    finally:
+        confine.code.cache_clear()
+    assert not reader.is_relative_to(pathlib.Path(confine.__file__).parent)
+    task = json.dumps({"folder": "/", "headers": "", "units": []})
+    command = ["/usr/bin/python3", str(reader), task]
+    done = subprocess.run(command, capture_output=True, text=True, env={}, cwd="/")
+    assert (done.stdout.strip(), done.stderr) == ("{}", "")

@@ -238,7 +238,10 @@ def code():
     folder = tempfile.mkdtemp(prefix="mrp_check_code_")
     atexit.register(shutil.rmtree, folder, ignore_errors=True)
     os.chmod(folder, 0o755)
-    return pathlib.Path(shutil.copytree(_HERE / "confined", os.path.join(folder, "confined")))
+    package = pathlib.Path(folder, _HERE.name)
+    shutil.copytree(_HERE / "confined", package / "confined")
+    shutil.copy(_HERE / "__init__.py", package)  # some of these programs import others of them
+    return package / "confined"
 
 
 def stop():
