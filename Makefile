@@ -14,6 +14,9 @@ IN_ENVIRONMENT := export PATH=/usr/bin:/bin:/usr/sbin:/sbin:"$$PATH"; \
   unset CMAKE_PREFIX_PATH ROS_PACKAGE_PATH PYTHONPATH; $(if $(NOETIC),source $(NOETIC);)
 IN_WORKSPACE := cd catkin_ws; $(IN_ENVIRONMENT)
 
+# What the tests share serves two tools, too, which run where nothing is built.
+WITH_TESTING := PYTHONPATH=src/mrp_testing/src
+
 # ROS 1 has no authentication: unless the user says otherwise, listen on this machine only.
 LOCAL := if [ -z "$$ROS_IP$$ROS_HOSTNAME" ]; then export ROS_HOSTNAME=localhost; fi;
 
@@ -105,8 +108,8 @@ check: packages-check  ## check the package at PKG against the tutorial's contra
 # More than 150 whole packages are built and run, and dozens of nodes at once: so it is no part of
 # `make test-all`.
 .PHONY: test-check
-test-check: packages-test-all  ## check the packages that judge the checker
-	@$(IN_WORKSPACE) $(ALONE) /usr/bin/python3 -m pytest -n 3 --dist loadgroup -m sets --junit-xml=$(RESULTS)/sets.xml tests
+test-check: packages-test-all  ## check the packages that judge the checker; TESTS=NAME: those of a name
+	@$(IN_WORKSPACE) $(ALONE) /usr/bin/python3 -m pytest -n 3 --dist loadgroup -m sets $(if $(TESTS),-k "$(TESTS)") --junit-xml=$(RESULTS)/sets.xml src/mrp_check/test
 
 # HINT=1 shows the hint; RESET=1 begins the exercise anew. Exit code 1 only says: not yet.
 .PHONY: exercise
@@ -117,7 +120,7 @@ exercise: packages-check  ## show the next exercise, or check it; HINT=1 gives a
 # What else runs on this machine shows in the figures: end it before.
 .PHONY: bench
 bench: packages-bench $(BUILT_WHOLE)  ## measure how fast nodes are; QUICK=1: less of it; RESUME=1: go on with the last run
-	@$(if $(QUICK),,$(IN_WORKSPACE) tools/build_original.py $(ORIGINAL) > /dev/null)
+	@$(if $(QUICK),,$(IN_WORKSPACE) $(WITH_TESTING) tools/build_original.py $(ORIGINAL) > /dev/null)
 	@$(IN_WORKSPACE) $(ALONE) source devel/setup.bash; \
 	exec rosrun mrp_bench bench.py $(if $(QUICK),--quick,--beside $(ORIGINAL)) \
 	  $(if $(RESUME),--resume) $(BENCH)
@@ -142,20 +145,29 @@ view: packages-view $(BUILT_WHOLE)  ## watch the graph and the messages in a bro
 lint: packages-lint  ## check the style of all sources
 	@$(IN_WORKSPACE) tools/lint.sh
 
-# Made anew each time: otherwise Sphinx keeps pages that are no more, and an old style sheet.
+# Made anew each time: otherwise Sphinx keeps pages that are no more, and warns of a page only once.
 .PHONY: docs
 docs: packages-docs  ## build the tutorial's pages
 	@rm -rf $(SITE)
-	@$(IN_WORKSPACE) /usr/bin/python3 -m sphinx -q -W --keep-going -d build/doctrees src/mrp/doc $(SITE)
+	@$(IN_WORKSPACE) /usr/bin/python3 -m sphinx -q -E -W --keep-going -d build/doctrees src/mrp/doc $(SITE)
 	@echo "Open file://$(SITE)/index.html"
+
+# WRITE=1 writes quotes into tests, and sentences into lists: look at what it prints, and at git diff.
+.PHONY: claims
+claims: packages-docs  ## show which sentences no test quotes and no list has; WRITE=1: write them
+	@$(IN_WORKSPACE) tools/quote_claims.py $(if $(WRITE),write,show)
+
+.PHONY: prose-score
+prose-score: packages-docs  ## change words of the pages, count which changes the build finds; RECORD=1: keep it
+	@$(IN_WORKSPACE) $(WITH_TESTING) tools/mutate_prose.py $(if $(RECORD),record,check)
 
 .PHONY: docs-serve
 docs-serve: docs  ## build the pages, and serve them to this machine's browsers
 	@exec /usr/bin/python3 catkin_ws/tools/serve.py $(SITE)
 
 .PHONY: docs-record
-docs-record: packages-test-all  ## do what the pages say, and record what they show of it
-	@$(IN_WORKSPACE) /usr/bin/python3 tools/run_page.py record
+docs-record: packages-test-all  ## do what the pages say, and record what they show; PAGE=latch: of one page
+	@$(IN_WORKSPACE) $(WITH_TESTING) /usr/bin/python3 tools/record_pages.py $(PAGE)
 
 .PHONY: test-browser
 test-browser: packages-test-browser $(BUILT_WHOLE) docs  ## open every page in Chromium and in Firefox
@@ -257,5 +269,6 @@ docker-check: need-docker  ## check the package at PKG in a container without a 
 
 .PHONY: docker-containers
 docker-containers: docker-build-ssh
-	@/usr/bin/python3 -c 'import pytest' 2> /dev/null || catkin_ws/tools/install_packages.sh <(echo python3-pytest)
-	@/usr/bin/python3 -m pytest --junit-xml=$(DOCKER_RESULTS)/containers.xml docker/test
+	@/usr/bin/python3 -c 'import pytest, xdist' 2> /dev/null || \
+	  catkin_ws/tools/install_packages.sh <(printf '%s\n' '# to test the containers' python3-pytest-xdist)
+	@/usr/bin/python3 -m pytest -n 2 --dist loadfile --junit-xml=$(DOCKER_RESULTS)/containers.xml docker/test

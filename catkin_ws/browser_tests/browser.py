@@ -3,13 +3,12 @@
 
 import json
 
+from mrp_testing.waiting import DEADLINE, wait_until
 from selenium import webdriver
 from selenium.webdriver.chrome.service import Service
 from selenium.webdriver.common.action_chains import ActionChains
-from selenium.webdriver.support.ui import WebDriverWait
 
 SIZES = {"desktop": (1280, 800), "phone": (360, 740)}
-SECONDS = 60  # that the browser may take for anything, on a machine that is busy with other things
 
 # The browser asks for nothing by itself, and finds no host but this one. Root has no sandbox.
 _ARGUMENTS = [
@@ -17,11 +16,6 @@ _ARGUMENTS = [
     *"--disable-background-networking --disable-component-update --disable-sync".split(),
     "--host-resolver-rules=MAP * ~NOTFOUND, EXCLUDE 127.0.0.1",
 ]
-
-
-def wait_until(condition, what):
-    """Wait until the condition holds; return what it returned."""
-    return WebDriverWait(None, SECONDS, 0.05).until(lambda _: condition(), what)
 
 
 class Browser:
@@ -34,8 +28,8 @@ class Browser:
             options.add_argument(argument)
         options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
         self.driver = webdriver.Chrome(service=Service("/usr/bin/chromedriver"), options=options)
-        self.driver.set_page_load_timeout(SECONDS)
-        self.driver.set_script_timeout(SECONDS)
+        self.driver.set_page_load_timeout(DEADLINE)
+        self.driver.set_script_timeout(DEADLINE)
 
     def __enter__(self):
         return self

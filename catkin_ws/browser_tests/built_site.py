@@ -2,18 +2,12 @@
 """The site that `make docs` has built: its pages, and how to serve it."""
 
 import contextlib
-import pathlib
 import re
-import signal
-import subprocess
 import sys
 
-# What a shell runs in the background ignores SIGINT, and so would all that is started here; but a
-# handler is not inherited.
-if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
-    signal.signal(signal.SIGINT, signal.default_int_handler)
+from mrp_testing.process import Process
+from mrp_testing.workspace import WORKSPACE
 
-WORKSPACE = pathlib.Path(__file__).resolve().parent.parent
 SITE = WORKSPACE / "build" / "docs"
 PAGES = sorted(path.relative_to(SITE).as_posix() for path in SITE.rglob("*.html"))
 assert PAGES, f"there is no page in {SITE}: run make docs"
@@ -29,15 +23,10 @@ def pages_with(text):
 @contextlib.contextmanager
 def served():
     """Serve the site as `make docs-serve` does, at the address that it prints, until Ctrl-C."""
-    command = [sys.executable, WORKSPACE / "tools" / "serve.py", SITE]
-    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as server:
-        try:
-            line = server.stdout.readline()
-            address = re.fullmatch(r"Open (http://127\.0\.0\.1:\d+/) \(Ctrl-C ends it\)\n", line)
-            assert address, line
-            yield address.group(1)
-            server.send_signal(signal.SIGINT)
-            code = server.wait(timeout=60)
-            assert code == 0, f"serve.py: exit code {code} after Ctrl-C"
-        finally:
-            server.kill()
+    with Process(sys.executable, str(WORKSPACE / "tools" / "serve.py"), str(SITE)) as server:
+        server.wait_for(lambda: server.lines, "the address")
+        line = re.fullmatch(r"Open (http://127\.0\.0\.1:\d+/) \(Ctrl-C ends it\)", server.lines[0])
+        assert line, str(server)
+        yield line[1]
+        code = server.stop()
+        assert code == 0, f"exit code {code} of {server}"

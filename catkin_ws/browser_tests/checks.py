@@ -62,6 +62,20 @@ def pictures(browser):
     )
 
 
+def proofs(browser):
+    """Every mark of a proof is 24 px large each way, as WCAG asks, and says what it proves."""
+    return browser.run(
+        """
+        const small = (box) => box.width < 24 || box.height < 24;
+        const says = (one) => /^Proof by the test \\w+: ./.test(one.getAttribute("aria-label"));
+        return [...document.querySelectorAll("a.proof")]
+          .filter((one) => one.checkVisibility())
+          .filter((one) => small(one.getBoundingClientRect()) || !says(one))
+          .map((one) => one.outerHTML.slice(0, 200) + ": is too small, or has no label");
+        """
+    )
+
+
 def contrast(browser):
     """All visible text has a contrast of at least 4.5 to what is behind it, as WCAG asks."""
     with _all_shown(browser):

@@ -6,10 +6,11 @@ Debian has no geckodriver, which Selenium would need.
 
 import json
 import re
-import subprocess
 
 import websocket
-from browser import SECONDS, SIZES, wait_until
+from browser import SIZES
+from mrp_testing.process import Process
+from mrp_testing.waiting import DEADLINE, wait_until
 
 # The browser asks for nothing by itself: no updates, no telemetry, no page of its own.
 _SETTINGS = {
@@ -36,31 +37,28 @@ class Firefox:
         lines = (f'user_pref("{key}", {json.dumps(one)});\n' for key, one in _SETTINGS.items())
         (profile / "user.js").write_text("".join(lines))
         command = ["firefox-esr", "--headless", "--no-remote", "--remote-debugging-port", "0"]
-        with open(profile / "said", "w") as said:
-            self._process = subprocess.Popen(
-                [*command, "--profile", profile, "about:blank"], stdout=said, stderr=said
-            )
+        self._process = Process(*command, "--profile", str(profile), "about:blank")
         self._number, self._lines, self._requested = 0, [], {}
-        address = self.wait_until(lambda: self._address(profile / "said"), "Firefox that listens")
+        self._process.wait_for(self._address, "Firefox listens")
         self._socket = websocket.create_connection(
-            f"{address}/session", timeout=SECONDS, suppress_origin=True
+            f"{self._address()}/session", timeout=DEADLINE, suppress_origin=True
         )
         self._ask("session.new", capabilities={})
         self._ask("session.subscribe", events=["log.entryAdded", "network"])
         self._page = self._ask("browsingContext.getTree")["contexts"][0]["context"]
 
-    def _address(self, said):
-        if self._process.poll() is not None:
-            raise RuntimeError(f"Firefox ended: {said.read_text()}")
-        found = re.search(r"WebDriver BiDi listening on (ws://\S+)\n", said.read_text())
+    def _address(self):
+        """Return the address that Firefox has printed, or None."""
+        found = re.search(r"WebDriver BiDi listening on (ws://\S+)", "\n".join(self._process.lines))
         return found and found[1]
 
     def __enter__(self):
         return self
 
     def __exit__(self, *exception):
-        self._ask("browser.close")
-        self._process.wait(SECONDS)
+        with self._process:
+            self._ask("browser.close")
+            self._process.wait()
 
     def _ask(self, method, **parameters):
         self._number += 1

@@ -6,6 +6,10 @@ import pytest
 
 FINE = '<h1>A page</h1><p>With <a href="other.html">a link</a>.</p><img src="p.svg" alt="A line">'
 TEXT = '<p style="color: {}; background: {}">Some text</p>'
+PROOF = (
+    '<a class="proof" href="#a" aria-label="{}" '
+    'style="display: block; width: {}px; height: 24px">&#10003;</a>'
+)
 
 FAULTS = {
     "a script that throws": ("<script>undefinedFunction()</script>", "console"),
@@ -36,6 +40,8 @@ FAULTS = {
         "pictures",
     ),
     "an empty label": ('<svg role="img" aria-label=""></svg>', "pictures"),
+    "a mark that is too small": (PROOF.format("Proof by the test test_a: It is.", 8), "proofs"),
+    "a mark without a label": (PROOF.format("", 24), "proofs"),
     "grey on white": (TEXT.format("#777", "#fff"), "contrast"),
     "white on a light blue": (TEXT.format("#fff", "#2980b9"), "contrast"),
     "half transparent black on white": (TEXT.format("rgba(0, 0, 0, 0.5)", "#fff"), "contrast"),
@@ -48,6 +54,7 @@ FAULTS = {
 HARMLESS = {
     "nothing else": "",
     "code that scrolls in itself": '<pre style="overflow: auto">' + "long" * 50 + "</pre>",
+    "a mark of a proof": PROOF.format("Proof by the test test_a: It is.", 24),
     "black on white": TEXT.format("#000", "#fff"),
     "the least contrast": TEXT.format("#767676", "#fff"),
     "faint text that is hidden": '<p style="color: #eee; display: none">Text</p>',
@@ -73,6 +80,7 @@ def failed(browser, tmp_path):
             "console": checks.console(browser),
             "width": checks.width(browser, "phone"),
             "pictures": checks.pictures(browser),
+            "proofs": checks.proofs(browser),
             "contrast": checks.contrast(browser),
         }
         return " ".join(name for name in faults if faults[name])

@@ -32,6 +32,7 @@ def test_the_button_copies_exactly_the_code(page, browser):
         field.id = "paste-here";
         field.style = "position: fixed; bottom: 0; z-index: 999";
         document.body.append(field);
+        for (const one of document.querySelectorAll("details")) one.open = true;
         """
     )
     field = browser.find("#paste-here")[0]

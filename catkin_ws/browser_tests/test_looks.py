@@ -8,7 +8,7 @@ import re
 import checks
 import pytest
 from browser import SIZES
-from built_site import PAGES, WORKSPACE
+from built_site import PAGES, WORKSPACE, pages_with
 
 SCREENSHOTS = WORKSPACE / "build" / "screenshots"
 TALLEST = 16000  # a taller picture the browser cannot draw
@@ -51,3 +51,19 @@ def test_screenshot(browser, view, mode):
     path = (SCREENSHOTS / f"{size}-{mode}" / page).with_suffix(".png")
     path.parent.mkdir(parents=True, exist_ok=True)
     path.write_bytes(base64.b64decode(shot["data"]))
+
+
+@pytest.mark.parametrize(
+    ("kind", "colour"), [("original", "rgb(176, 58, 46)"), ("ours", "rgb(39, 118, 47)")]
+)
+@pytest.mark.parametrize("page", pages_with("quote original"))
+def test_a_quote_has_its_bar(browser, addresses, page, kind, colour):
+    """Red for what the original prints, green for what stands here: the errata say so."""
+    browser.open(addresses["file"] + page, next(iter(SIZES)))
+    bars = browser.run(
+        "return [...document.querySelectorAll('.quote.' + arguments[0])].map(getComputedStyle)"
+        ".map((style) => style.borderLeftWidth + ' ' + style.borderLeftColor)",
+        kind,
+    )
+    assert bars
+    assert set(bars) == {f"4px {colour}"}

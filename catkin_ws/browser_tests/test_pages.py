@@ -37,6 +37,10 @@ def test_every_picture_has_a_text_alternative(browser, view):
     checks.assert_none(checks.pictures(browser))
 
 
+def test_every_proof_can_be_pressed_and_says_what_it_proves(browser, view):
+    checks.assert_none(checks.proofs(browser))
+
+
 @pytest.mark.parametrize("page", PAGES)
 def test_firefox_has_nothing_to_complain_of(firefox, addresses, page):
     firefox.open(addresses["served"] + page)  # of files, it does not tell what was asked for

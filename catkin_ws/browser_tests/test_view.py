@@ -6,7 +6,6 @@ import csv
 import itertools
 import os
 import signal
-import sys
 import xml.etree.ElementTree as ElementTree
 
 import checks
@@ -14,13 +13,15 @@ import pytest
 import rosgraph
 import rospy
 from browser import SIZES
-from built_site import SITE, WORKSPACE
+from built_site import SITE
+from mrp_testing.lab import Lab
+from mrp_testing.master import master, uri_of
+from mrp_testing.nodes import pid_of
+from mrp_testing.ports import free_port
+from mrp_testing.viewer import PubSub, Viewer
+from mrp_testing.workspace import WORKSPACE
 from selenium.webdriver.common.keys import Keys
 from std_msgs.msg import String, UInt32
-
-sys.path.append(str(WORKSPACE / "src" / "mrp_view" / "test"))
-
-from viewer import Lab, Process, Viewer, free_port, master, pid_of
 
 SCREENSHOTS = WORKSPACE / "build" / "screenshots"
 MARKUP = '<img src="x" onerror="document.title=1"><script>document.title=2</script>'
@@ -30,7 +31,7 @@ MARKUP = '<img src="x" onerror="document.title=1"><script>document.title=2</scri
 def core():
     """A master for these tests; they are a node of it."""
     port = free_port()
-    os.environ["ROS_MASTER_URI"] = f"http://localhost:{port}"
+    os.environ["ROS_MASTER_URI"] = uri_of(port)
     with master(port):
         rospy.init_node("test_page", disable_signals=True)
         yield port
@@ -108,7 +109,7 @@ def press_button(browser, name):
 
 
 def test_page_is_open_before_during_and_after_the_launch(each_page):
-    with Process("roslaunch", "mrp", "pub_sub.launch") as launched:
+    with PubSub() as launched:
         each_page.wait_until(
             lambda: sum("alive" in one for one in items(each_page)) == 5, "four nodes and the test"
         )
@@ -339,7 +340,7 @@ def test_what_is_seen_leads_to_the_tutorial(page, viewer):
 @pytest.fixture(scope="module")
 def shown(viewer):
     """The page of something to look at: the tutorial's nodes of which one has died, and a lab."""
-    with Process("roslaunch", "mrp", "pub_sub.launch") as launched:
+    with PubSub() as launched:
         with Lab("type_mismatch.launch") as lab:
             for name in ("other_subscriber_cpp", "other_subscriber_py"):
                 lab.wait_for(

@@ -2,12 +2,10 @@
 """make, as a user calls it."""
 
 import os
-import pathlib
 import subprocess
 
-import scratch
-
-ROOT = pathlib.Path(__file__).resolve().parents[2]
+from mrp_testing import scratch
+from mrp_testing.workspace import ROOT
 
 
 def environment(**variables):

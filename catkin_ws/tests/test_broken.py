@@ -10,10 +10,9 @@ import shutil
 import subprocess
 import xml.etree.ElementTree as ElementTree
 
-import compiler_cache
 import pytest
-import scratch
 from mrp_check.contract import defects
+from mrp_testing import compiler_cache, scratch
 
 pytestmark = pytest.mark.slow
 
@@ -55,7 +54,7 @@ def workspace(tmp_path_factory):
     Each test breaks its package, and then takes the patch back.
     """
     folder = tmp_path_factory.mktemp("workspace")
-    scratch.make(folder)
+    scratch.make(folder, *scratch.TESTED)
     scratch.catkin_make(folder)
     return folder
 

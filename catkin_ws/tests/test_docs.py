@@ -2,18 +2,17 @@
 """The site that `make docs` builds: its links. What needs a browser is in browser_tests/."""
 
 import html.parser
-import pathlib
 import subprocess
 import sys
 import urllib.parse
 
 import pytest
+from mrp_testing.proves import proves
+from mrp_testing.workspace import WORKSPACE
 from mrp_view import findings
 
 # One worker of pytest builds for all of these tests.
 pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("docs")]
-
-WORKSPACE = pathlib.Path(__file__).resolve().parent.parent
 
 
 @pytest.fixture(scope="module")
@@ -65,6 +64,7 @@ def broken_links(folder):
     return broken
 
 
+@proves("Here a test fails if a link within these pages leads nowhere.")
 def test_every_link_within_the_site_leads_somewhere(site):
     assert broken_links(site) == []
 

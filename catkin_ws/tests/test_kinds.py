@@ -1,26 +1,26 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Each test has one kind, which says when it is run; a test with none or two fails the run."""
 
-import pathlib
 import shutil
 import subprocess
 
 import pytest
+from mrp_testing.workspace import WORKSPACE
 
 pytestmark = pytest.mark.quick
 
-HERE = pathlib.Path(__file__).parent
 SLOW = "import pytest\n\npytestmark = pytest.mark.slow\n\n\ndef test_of_the_file():\n    pass\n"
 QUICK = "\n\n@pytest.mark.quick\ndef test_of_its_own():\n    pass\n"
 
 
-def run(folder, text, *options):
+def run(folder, text, *options, mode=0o644):
     """Run pytest on a file of tests, with the conftest of these tests; return what it printed."""
     tests = folder / "tests"
     tests.mkdir()
     for name in ("conftest.py", "pytest.ini"):
-        shutil.copy(HERE / name, tests)
+        shutil.copy(WORKSPACE / name, tests)
     (tests / "test_one.py").write_text(text)
+    (tests / "test_one.py").chmod(mode)
     return subprocess.run(
         ["/usr/bin/python3", "-m", "pytest", "-p", "no:cacheprovider", "-v", *options, str(tests)],
         stdout=subprocess.PIPE,
@@ -58,3 +58,8 @@ def test_a_mark_that_is_misspelt_is_an_error(tmp_path):
     done = run(tmp_path, SLOW + QUICK.replace("quick", "quikc"), "-m", "slow")
     assert done.returncode != 0, done.stdout
     assert "'quikc' not found in `markers`" in done.stdout
+
+
+def test_what_rostest_runs_is_left_to_it(tmp_path):
+    done = run(tmp_path, SLOW, "-m", "slow", mode=0o755)
+    assert "collected 0 items" in done.stdout

@@ -5,9 +5,11 @@ import pathlib
 import re
 import shutil
 
-import compiler_cache
 import pytest
-from front_door import ROOT, make, with_other_python
+from front_door import make, with_other_python
+from mrp_testing import compiler_cache
+from mrp_testing.proves import proves
+from mrp_testing.workspace import ROOT, copy_repository
 
 # One worker of pytest builds for all of these tests.
 pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("make")]
@@ -17,19 +19,25 @@ pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("make")]
 def copy(tmp_path_factory):
     """A copy of the repository, built while another python3 is first on PATH."""
     root = tmp_path_factory.mktemp("copy") / "mrp"
-    ignore = shutil.ignore_patterns(".git", "build", "devel", "install", "__pycache__", "mrp_*")
-    shutil.copytree(ROOT, root, ignore=ignore, symlinks=True)
+    copy_repository(root, "mrp_*")
     path = with_other_python(tmp_path_factory.mktemp("bin"))
     done = make("build", root=root, PATH=path, **compiler_cache.variables(root))
     assert done.returncode == 0, done.stdout
     return root
 
 
+@proves(
+    "Its first line names the Python with which catkin was configured.",
+    "Its first line names the right Python, and it runs your file.",
+    "Here the line is the same, but CMake knows the script, so catkin writes the right "
+    "interpreter into its copy of the script.",
+)
 def test_other_python_first_on_path_does_no_harm(copy):
     script = copy / "catkin_ws/devel/lib/mrp/publisher_py_node.py"
     assert script.read_text().startswith("#!/usr/bin/python3\n")
 
 
+@proves("The second call installs nothing, and builds nothing if nothing has changed.")
 def test_second_build_does_nothing(copy):
     done = make("build", root=copy)
     assert (done.returncode, done.stdout) == (0, "")
@@ -94,6 +102,12 @@ def test_scripts_are_executable():
     assert [str(path) for path in scripts if not path.stat().st_mode & 0o111] == []
 
 
+@proves(
+    "Its first line says what, and stands under each heading here.",
+    "The command make labs, in the folder of the repository, lists all labs.",
+    'Its page "Labs" lists small launch files, and each one shows one claim: make labs prints '
+    "the list.",
+)
 @pytest.mark.quick
 def test_labs_lists_every_lab_with_its_claim():
     folder = ROOT / "catkin_ws" / "src" / "mrp_labs"

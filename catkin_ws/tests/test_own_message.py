@@ -5,25 +5,20 @@ The second package is beside mrp_labs in one workspace, where the message must b
 or it has an install space of mrp_labs under it, of which the sources exist no more.
 """
 
-import pathlib
 import shutil
 import subprocess
 
-import compiler_cache
 import pytest
-import scratch
 from catkin_pkg.package import parse_package
+from mrp_testing import compiler_cache, scratch
+from mrp_testing.proves import proves
+from mrp_testing.workspace import WORKSPACE
 
 # One worker of pytest builds for all of these tests.
 pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("own_message")]
 
-USER = pathlib.Path(__file__).parent / "count_user"
-LABS = scratch.WORKSPACE / "src" / "mrp_labs"
-
-
-def copy(package, folder):
-    ignore = shutil.ignore_patterns("__pycache__")
-    shutil.copytree(package, folder / "src" / package.name, ignore=ignore)
+USER = "tests/count_user"
+LABS = "src/mrp_labs"
 
 
 def run(folder, setup, *command):
@@ -44,14 +39,19 @@ def run(folder, setup, *command):
 def check_user(folder):
     setup = folder / "devel" / "setup.bash"
     cpp = run(folder, setup, folder / "devel" / "lib" / "count_user" / "count_user")
-    py = run(folder, setup, "/usr/bin/python3", USER / "src" / "count_user.py")
+    py = run(folder, setup, "/usr/bin/python3", folder / "src/count_user/src/count_user.py")
     assert cpp.startswith("counter: 7\nlanguage: any\nmd5sum: ")
     assert py == cpp
 
 
+@proves(
+    "This matters when a package of the same workspace has message types of its own: they are "
+    "generated before the node is compiled.",
+    "From this file, CMake generates a Python class and a C++ header.",
+    "A package that uses this type depends on mrp_labs, and on nothing else for it.",
+)
 def test_beside_mrp_labs(tmp_path):
-    copy(LABS, tmp_path)
-    copy(USER, tmp_path)
+    scratch.make(tmp_path, LABS, USER)
     # Of mrp_labs nothing but the message is built: what the second package says that it needs.
     scratch.catkin_make(tmp_path, "count_user")
     check_user(tmp_path)
@@ -61,7 +61,7 @@ def test_beside_mrp_labs(tmp_path):
 @pytest.fixture(scope="module")
 def install(tmp_path_factory):
     folder = tmp_path_factory.mktemp("labs")
-    copy(LABS, folder)
+    scratch.make(folder, LABS)
     # As `make build` does: what that has compiled for another test is in the cache.
     options = ("-DCATKIN_ENABLE_TESTING=OFF", "-DCMAKE_BUILD_TYPE=RelWithDebInfo")
     scratch.catkin_make(folder, "install", *options)
@@ -71,7 +71,7 @@ def install(tmp_path_factory):
 
 
 def test_over_an_install_space(install, tmp_path):
-    copy(USER, tmp_path)
+    scratch.make(tmp_path, USER)
     run(tmp_path, install / "setup.bash", "catkin_make", "-DPYTHON_EXECUTABLE=/usr/bin/python3")
     check_user(tmp_path)
 
@@ -88,7 +88,7 @@ def test_lab_and_message_are_installed(install):
 @pytest.mark.quick
 def test_dependencies_for_the_message():
     """On Debian all packages share one folder of headers: a build alone would not miss these."""
-    package = parse_package(str(LABS))
+    package = parse_package(str(WORKSPACE / LABS))
 
     def kinds(name):
         fields = ("build", "buildtool", "build_export", "exec", "test")

@@ -2,15 +2,11 @@
 """The pages: what they tell the reader to do works, and prints what they show."""
 
 import json
-import pathlib
-import re
-import xml.etree.ElementTree as ElementTree
 
 import pytest
+import record_pages
 import run_page
-
-WORKSPACE = pathlib.Path(__file__).resolve().parent.parent
-RESULTS = WORKSPACE / "build" / "test_results"
+from mrp_testing.proves import proves
 
 # One worker of pytest builds for all of these tests.
 pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("page")]
@@ -30,30 +26,62 @@ def shown(site, tmp_path_factory):
     return run_page.read(run_page.steps(site), tmp_path_factory.mktemp("home"))
 
 
-def masked(text):
-    """Return the lines, with what differs from run to run as #: times, process ids, ports, values.
-
-    Lines of several nodes come in any order, and more or fewer of a kind: so it is a set.
-    """
-    # Debian 13's env leaves out its folder, and the language decides upon the quotes.
-    text = text.replace("/usr/bin/env:", "env:").translate(str.maketrans("‘’", "''"))
-    return {re.sub(r"(?<![\w.])-?\d+(\.\d+)?(?=s?(?!\w))", "#", line) for line in text.splitlines()}
-
-
+@proves(
+    "A test types the commands of each box that names a terminal, and compares what they print "
+    "with what the box shows.",
+    "mkdir -p creates both folders at once.",
+    "Two new folders now stand beside src:",
+    "devel holds the result, and a file named setup.bash.",
+    "This file tells a terminal where your workspace is:",
+    "It has an effect on that one terminal only.",
+    "This command creates one.",
+    "A workspace is a folder with src, build and devel; catkin_make builds it.",
+    "Each new terminal needs the line source ~/catkin_ws/devel/setup.bash.",
+    "To type source ~/catkin_ws/devel/setup.bash in this terminal.",
+    "UInt32 belongs to the package std_msgs, which has types for single values: message_types "
+    "lists them.",
+    "UInt32() makes a message, and msg.data is its only field.",
+    "std_msgs::UInt32 msg; makes a message, and msg.data is its only field.",
+    "catkin_create_pkg has made both.",
+    "Programs that later lines make go into devel/lib/mrp.",
+    "The first line of your own file names python, a program that Debian does not have.",
+    "Your copy has no tests, and it is built without mrp_testing.",
+    "ROS does not need it here.",
+    "source makes the new package known to this terminal, which you opened before the package was "
+    "there.",
+    "__name:= gives it another name, because a node called /mrp/subscriber_cpp_node is running "
+    "already:",
+    "rostopic echo and hz watch messages, rostopic pub sends them, and rosmsg show describes "
+    "their type.",
+    "rosmsg package lists all types of a package:",
+    "Two more subscribers expect a String.",
+    "Cause: this terminal does not know where your workspace is.",
+    "Cause: Debian has a program python3, and no program python.",
+    "Its first line names the right Python, and it runs your file.",
+    "Cause: the file has no permission to run.",
+    "rosrun works even without it: it starts the script in devel.",
+    "Cause: the name in ROS_HOSTNAME does not lead to this machine.",
+    "This package meets all of them.",
+    "Below the list stands each finding: its file and line, what was expected, what was seen, and "
+    "how to fix it.",
+    "Where the fix is certain, the report shows it as a diff.",
+    "A finding that follows from another one says so, and breaks no requirement by itself.",
+    "rosrun mrp_check check PATH checks one package; --class checks a folder of them.",
+    "One: the three could not be checked, mostly because the first mistake kept a node from "
+    "running.",
+    "A test compares the console below with what make run prints, and another one does what the "
+    "tutorial's pages say, and compares what that prints.",
+)
 def test_reader_sees_what_the_pages_show(shown):
-    recorded = {path.stem: path.read_text() for path in run_page.RECORDED.glob("*.txt")}
+    recorded = json.loads((run_page.RECORDED / "outputs.json").read_text())
     assert sorted(shown.outputs) == sorted(recorded), "run make docs-record"
     for name, output in shown.outputs.items():
-        expected, hint = masked(recorded[name]), f"{name}: run make docs-record"
-        assert masked(output) - expected == set(), hint
-        # A node that is slow to start has a line of each kind, too; perhaps not with the first
-        # numbers, to which the page keeps.
-        assert expected - masked(shown.printed[name]) == set(), hint
+        found = record_pages.differences(recorded[name], output, shown.printed[name])
+        assert found == set(), f"{name}: run make docs-record"
 
 
 def test_graphs_are_those_in_the_pages(shown):
-    recorded = {path.stem: path.read_text() for path in run_page.RECORDED.glob("*.json")}
-    assert {name: json.loads(text) for name, text in recorded.items()} == shown.graphs
+    assert json.loads((run_page.RECORDED / "graphs.json").read_text()) == shown.graphs
 
 
 @pytest.mark.quick
@@ -64,26 +92,62 @@ def test_a_page_that_writes_files_is_read_before_all_that_build(tmp_path):
     assert list(tmp_path.iterdir()) == []
 
 
-def test_every_proof_was_run_and_passed(site):
-    """rostest's cases are run before these tests; those of pytest fail the run they belong to."""
-    pages = json.loads((site / "proofs.json").read_text())
-    rostests = {
-        proof
-        for proofs in pages.values()
-        for proof in proofs
-        if proof.split("/")[0] in ("mrp", "mrp_labs", "mrp_view")
-    }
-    assert rostests
-    assert sorted(rostests - passed_rostests()) == [], "these have not passed: run make test"
+def steps_of(*pages):
+    """Return a step of each page, whose output and graph have the page's name."""
+    return [
+        {"page": f"pages/{page}", "commands": ["ls"], "output": page, "graph": page}
+        for page in pages
+    ]
 
 
-def passed_rostests():
-    """Return PACKAGE/NAME/CASE of all cases that have passed in NAME.test of a package."""
-    passed = set()
-    for rostest in (WORKSPACE / "src").glob("*/test/*.test"):
-        package, name = rostest.parts[-3], rostest.stem
-        for path in RESULTS.glob(f"{package}/rosunit-{name}*.xml"):
-            for case in ElementTree.parse(path).iter("testcase"):
-                if case.find("failure") is None and case.find("error") is None:
-                    passed.add(f"{package}/{name}/{case.get('name')}")
-    return passed
+@pytest.mark.quick
+def test_a_page_needs_the_pages_before_it():
+    to_do = steps_of("package", "publisher", "building", "message_types", "latch")
+    assert run_page.needed(to_do, "publisher") == ["package", "publisher"]
+    assert run_page.needed(to_do, "message_types") == ["message_types"]
+    assert run_page.needed(to_do, "latch") == ["message_types", "latch"]
+    to_do[-1]["commands"] = ["cd ~/catkin_ws"]
+    assert run_page.needed(to_do, "latch") == [*run_page.TUTORIAL, "message_types", "latch"]
+
+
+@pytest.mark.quick
+def test_one_page_is_read_after_those_that_it_needs(tmp_path, monkeypatch):
+    monkeypatch.setattr(run_page, "copy_repository", lambda target: None)
+    step = {"kind": "terminal", "terminal": "1", "line": 1}
+    to_do = [
+        {**step, "page": f"pages/{page}", "commands": ["echo " + page], "output": page}
+        for page in ("package", "message_types", "queues", "latch")
+    ]
+    shown = run_page.read(to_do, tmp_path, only="latch")
+    assert shown.outputs == {page: [page] for page in ("message_types", "latch")}
+
+
+@pytest.fixture
+def recording():
+    """What is recorded of two pages and of one that is no more, and what they show now."""
+    recorded = {"latch": ["at 1.5"], "queues": ["at 1.5"], "gone": ["at 1.5"]}, {"latch": 1}
+    shown = run_page.Shown()
+    shown.outputs = shown.printed = {"latch": ["at 2.5"], "queues": ["none"]}
+    shown.graphs = {"latch": 2, "queues": 2}
+    return recorded, shown, steps_of("latch", "queues")
+
+
+@pytest.mark.quick
+def test_a_recording_keeps_its_text_if_only_values_have_changed(recording):
+    outputs, graphs = record_pages.renewed(*recording)
+    assert outputs == {"latch": ["at 1.5"], "queues": ["none"]}
+    assert graphs == {"latch": 2, "queues": 2}
+
+
+@pytest.mark.quick
+def test_one_page_alone_is_recorded(recording):
+    outputs, graphs = record_pages.renewed(*recording, "queues")
+    assert outputs == {"latch": ["at 1.5"], "queues": ["none"], "gone": ["at 1.5"]}
+    assert graphs == {"latch": 1, "queues": 2}
+
+
+@pytest.mark.quick
+def test_a_recording_may_have_fewer_lines_of_a_kind():
+    assert record_pages.differences(["a 1", "a 2"], ["a 3"], ["a 3", "b"]) == set()
+    assert record_pages.differences(["a 1"], ["a 3", "b"], ["a 3", "b"]) == {"b"}
+    assert record_pages.differences(["a 1", "c"], ["a 3"], ["a 3", "b"]) == {"c"}

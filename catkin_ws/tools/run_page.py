@@ -2,9 +2,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Does what the pages in src/mrp/doc tell their reader to do.
 
-Usage: run_page.py record
-Writes into src/mrp/doc/recorded/ what the commands print, and the graphs.
-
 The steps of a page are done in the order of reading. Pages that do not need one another are read
 side by side: see TUTORIAL.
 
@@ -18,18 +15,18 @@ import multiprocessing
 import os
 import pathlib
 import re
-import shutil
-import socket
 import subprocess
 import sys
-import tempfile
 import time
+from urllib.parse import urlsplit
 
-import compiler_cache
 import pexpect
 import rosgraph
+from mrp_testing import compiler_cache
+from mrp_testing.master import uri_of
+from mrp_testing.ports import free_port
+from mrp_testing.workspace import WORKSPACE, copy_repository
 
-WORKSPACE = pathlib.Path(__file__).resolve().parents[1]
 DOC = WORKSPACE / "src" / "mrp" / "doc"
 RECORDED = DOC / "recorded"
 SECONDS = 900  # that a command may take: one builds the whole repository
@@ -75,9 +72,9 @@ def steps(site):
 class Shown:
     """What the steps show.
 
-    outputs: name -> what was printed, as it goes into recorded/NAME.txt
+    outputs: name -> what was printed, as it goes into recorded/outputs.json
     printed: name -> all that was printed, also what the page leaves out
-    graphs: name -> what goes into recorded/NAME.json
+    graphs: name -> what goes into recorded/graphs.json
     """
 
     def __init__(self):
@@ -90,15 +87,16 @@ class Shown:
             mine.update(theirs)
 
 
-def read(to_do, home, say=None):
+def read(to_do, home, say=None, only=None):
     """Do all steps, in an empty home that gets a clone of the repository; return what they show.
 
     say: is called with a line at each step
+    only: a page: then only the steps of the pages that it needs are done, and its own
 
     Raises StepError if a step does not go as the page says.
     """
-    _copy_repository(pathlib.Path(home) / "mrp")
-    pages = list(dict.fromkeys(page_of(step) for step in to_do))
+    copy_repository(pathlib.Path(home) / "mrp")
+    pages = needed(to_do, only) if only else pages_of(to_do)
     others = [page for page in pages if page not in TUTORIAL + CLONE]
     after_tutorial = [page for page in others if needs_tutorial(to_do, page)]
     # Processes, not threads: a terminal is made by a fork, which none but a single thread may do.
@@ -109,7 +107,9 @@ def read(to_do, home, say=None):
         def begin(*pages):
             return pool.submit(read_pages, to_do, pages, home, say)
 
-        tutorial, clone = begin(*TUTORIAL), begin(*CLONE)
+        tutorial, clone = (
+            begin(*(page for page in mine if page in pages)) for mine in (TUTORIAL, CLONE)
+        )
         clone.result()
         rest = [begin(page) for page in others if page not in after_tutorial]
         tutorial.result()
@@ -122,6 +122,18 @@ def read(to_do, home, say=None):
 
 def page_of(step):
     return step["page"].split("/")[-1]
+
+
+def pages_of(to_do):
+    return list(dict.fromkeys(page_of(step) for step in to_do))
+
+
+def needed(to_do, page):
+    """Return the pages whose steps a page needs, in the order of reading; it is the last one."""
+    for readers in (TUTORIAL, CLONE):
+        if page in readers:
+            return [*readers[: readers.index(page) + 1]]
+    return [*(TUTORIAL if needs_tutorial(to_do, page) else ()), *CLONE, page]
 
 
 def needs_tutorial(to_do, page):
@@ -160,9 +172,7 @@ class Reader:
         self.shown = Shown()
         self._terminals = {}
         self._begin_with = {}  # terminal -> commands
-        with socket.socket() as probe:
-            probe.bind(("localhost", 0))
-            self._master = f"http://localhost:{probe.getsockname()[1]}"
+        self._master = uri_of(free_port())
 
     def keep_in_mind(self, step):
         """Where another reader does a step: begin with the folder and the setup of its terminal."""
@@ -209,9 +219,9 @@ class Reader:
             only = re.compile(step.get("only", ""))
             lines = [line for line in printed if not _CHANCE.match(line)]
             shown = [line for line in lines if only.search(line)]
-            for texts, chosen in ((self.shown.outputs, shown), (self.shown.printed, lines)):
-                text = "\n".join(chosen).strip()
-                texts[step["output"]] = text.replace(str(self.home), "/home/you")
+            for outputs, chosen in ((self.shown.outputs, shown), (self.shown.printed, lines)):
+                text = "\n".join(chosen).strip().replace(str(self.home), "/home/you")
+                outputs[step["output"]] = text.split("\n")
 
     def _whole_graph(self, printed):
         """Return the graph once it has all nodes that roslaunch has started."""
@@ -225,6 +235,7 @@ class Reader:
 
     def _environment(self):
         names = ("USER", "LOGNAME", "LANG", "TZ")
+        port = urlsplit(self._master).port
         return {
             **{name: os.environ[name] for name in names if name in os.environ},
             "PATH": "/usr/bin:/bin:/usr/sbin:/sbin",
@@ -232,6 +243,8 @@ class Reader:
             "TERM": "dumb",
             "ROS_MASTER_URI": self._master,
             "ROS_HOSTNAME": "localhost",
+            # The reader's master has a port of its own, for which roscore does not look there.
+            "BASH_FUNC_roscore%%": f'() {{ command roscore -p {port} "$@"; }}',
             **compiler_cache.variables(self.home),
         }
 
@@ -322,33 +335,3 @@ def graph(master_uri):
         "topics": {topic: types.get(topic) for topic in sorted({topic for _, topic in pairs})},
         **edges,
     }
-
-
-def _copy_repository(target):
-    """Copy what git knows or would know of this repository."""
-    root = WORKSPACE.parent
-    ignore = shutil.ignore_patterns(".git", "build", "devel", "install", "__pycache__", ".*_cache")
-    shutil.copytree(root, target, ignore=ignore, symlinks=True)
-    (target / "catkin_ws" / "src" / "CMakeLists.txt").unlink(missing_ok=True)
-
-
-def record():
-    """Do all steps, and write what they print into recorded/."""
-    with tempfile.TemporaryDirectory() as site, tempfile.TemporaryDirectory() as home:
-        build(site, "-D", "recording=1")
-        shown = read(steps(site), home, say=print)
-    for path in (*RECORDED.glob("*.txt"), *RECORDED.glob("*.json")):
-        path.unlink()
-    for name, output in shown.outputs.items():
-        (RECORDED / f"{name}.txt").write_text(output + "\n")
-    for name, recorded in shown.graphs.items():
-        (RECORDED / f"{name}.json").write_text(json.dumps(recorded, indent=1) + "\n")
-
-
-if __name__ == "__main__":
-    if sys.argv[1:] != ["record"]:
-        sys.exit(__doc__)
-    try:
-        record()
-    except StepError as error:
-        sys.exit(f"error: {error}")

@@ -1,8 +1,9 @@
 #!/bin/bash
 # SPDX-License-Identifier: BSD-3-Clause
 # Usage: run_tests.sh quick|slow
-# Runs the rostests that tests/rostests.txt calls so, several at once, and the tests of tests/ that
-# are marked so; then prints a summary of all results. The workspace is built, and sourced.
+# Runs the rostests that tests/rostests.txt calls so, several at once, and the tests of pytest that are
+# marked so; then prints a summary of all results. After the slow ones, each proof that the pages name
+# must have passed. The workspace is built, and sourced.
 #
 # A rostest waits more than it works, and each has a master of its own. ROS's tools report success
 # over failures: so the result files decide.
@@ -12,8 +13,11 @@ level=$1
 results=build/test_results
 processors=$(nproc)
 
-# ctest's names of them, with "|" between.
-rostests=$(sed -n "s/^$level \(\S*\) \(\S*\)$/_ctest_\1_rostest_test_\2/p" tests/rostests.txt | paste -sd '|')
+# ctest's names of them, with "|" between. That of a file with an argument has no folder.
+rostests=$(sed -nE \
+  -e "s/^$level (\S+) (\S+)$/_ctest_\1_rostest_test_\2/p" \
+  -e "s/^$level (\S+) (\S+)\.test name:=(\S+)$/_ctest_\1_rostest_\2__name_\3.test/p" \
+  tests/rostests.txt | paste -sd '|')
 chosen=(ctest --test-dir build --tests-regex "^($rostests)\$")
 
 status=0
@@ -26,7 +30,8 @@ if [ -n "$rostests" ]; then
     --output-on-failure || status=1
 fi
 tools/timed.py "pytest, $level" /usr/bin/python3 -m pytest -n $((processors + 1)) --dist loadgroup -m "$level" \
-  --junit-xml="$results/pytest_$level.xml" tests || status=1
+  --junit-xml="$results/pytest_$level.xml" || status=1
 catkin_test_results "$results" > /dev/null || status=1
+[ "$level" = quick ] || tools/quote_claims.py ran || status=1
 tools/test_summary.py "$results" || status=1
 exit $status

@@ -1,17 +1,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""These tests use what the tutorial package's own tests are made of, and leave nothing behind."""
+"""These tests test the image of a release, and leave nothing behind."""
 
 import os
-import pathlib
-import sys
 
 import pytest
+from containers import PREFIX, docker
 
-sys.path.insert(
-    0, str(pathlib.Path(__file__).resolve().parents[2] / "catkin_ws" / "src" / "mrp" / "test")
-)
-
-# And call make as a user does: not within make.
+# They call make as a user does: not within make.
 for name in ("MAKEFLAGS", "MAKELEVEL", "MFLAGS"):
     os.environ.pop(name, None)
 
@@ -24,8 +19,6 @@ def image():
 
 @pytest.fixture(scope="session", autouse=True)
 def nothing_is_left():
-    from containers import PREFIX, docker  # to be found only by the path above
-
     yield
     listed = [
         docker("ps", "--all", "--format={{.Names}}"),

@@ -4,17 +4,16 @@
 import contextlib
 import itertools
 import json
-import pathlib
 import shutil
 import subprocess
 import uuid
 
-import contract
-from console import received
-from process import Process
+from mrp_testing import contract
+from mrp_testing.console import received
+from mrp_testing.process import Process
+from mrp_testing.workspace import ROOT
 
-FOLDER = pathlib.Path(__file__).resolve().parents[1]
-ROOT = FOLDER.parent
+FOLDER = ROOT / "docker"
 ENOUGH = 5  # values of each publisher
 PREFIX = f"mrp_test_{uuid.uuid4().hex[:8]}_"  # of all names of this run
 

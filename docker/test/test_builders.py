@@ -5,6 +5,7 @@ import tarfile
 
 import pytest
 from containers import ROOT, docker, inspect, new_name, removed, run
+from mrp_testing.proves import proves
 
 CONFIG = ("Cmd", "Entrypoint", "Env", "StopSignal", "User")
 
@@ -30,6 +31,10 @@ def paths(image, folder):
         return {member.name for member in files}
 
 
+@proves(
+    "It runs on Debian's own ROS 1 packages: you add no other package source.",
+    "Debian 12 and 13 have ROS 1 as ordinary packages.",
+)
 def test_builder_makes_the_image(built, image, tmp_path):
     for key in CONFIG:
         assert inspect(built)["Config"][key] == inspect(image)["Config"][key]

@@ -1,14 +1,17 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What the image consists of: every layer, so that nothing is hidden below a later one."""
 
+import csv
 import json
 import re
 import tarfile
 
 import pytest
 from containers import ROOT, docker, inspect
+from mrp_testing.proves import proves
 
-README = (ROOT / "README.md").read_text()
+# The sizes that the page "In containers" shows.
+RECORDED = ROOT / "catkin_ws" / "src" / "mrp" / "doc" / "recorded" / "image.csv"
 LARGEST = 240_000_000  # bytes, uncompressed
 
 # What a runtime image has no use for, by path.
@@ -27,9 +30,9 @@ UNWANTED = re.compile(
     r"|opt/mrp/(?!\.|setup|local_setup|env\.sh|_setup_util|lib/|share/).+"
 )
 
-# The rows of the README's table: what belongs to each, as "source package:path". The first that
+# The rows of that table: what belongs to each, as "source package:path". The first that
 # matches counts; the lowest layer, which is Debian's, has a row of its own.
-DEBIAN = "Debian itself: `debian:bookworm-slim` or `debian:trixie-slim`"
+DEBIAN = "``debian:bookworm-slim`` or ``debian:trixie-slim``"
 PARTS = {
     "numpy and LAPACK, which rospy depends on": r"(numpy|lapack|gcc-\d+):.*",
     "ROS": r"ros2?-.*",
@@ -97,7 +100,12 @@ def sources(image):
     return result
 
 
-def test_readme_says_what_is_in_it(image, image_layers):
+@proves(
+    "DEBIAN=trixie builds from Debian 13's packages instead of Debian 12's.",
+    "These are the sizes of the image's files in MB, uncompressed.",
+    "It builds an image from Debian 12's packages, or from Debian 13's with DEBIAN=trixie.",
+)
+def test_page_says_what_is_in_it(image, image_layers):
     owners = sources(image)
     measured = {DEBIAN: size(image_layers[0]), **dict.fromkeys(PARTS, 0)}
     for member in (member for layer in image_layers[1:] for member in layer):
@@ -108,8 +116,9 @@ def test_readme_says_what_is_in_it(image, image_layers):
         measured[part] += member.size
     measured["all"] = sum(measured.values())
 
-    table = re.findall(r"^\| ([^|]+) \| ([\d.]+) \| ([\d.]+) \|$", README, re.MULTILINE)
-    written = {what: float(mb[image == "mrp:trixie"]) for what, *mb in table}
+    column = "Debian 13" if image == "mrp:trixie" else "Debian 12"
+    with RECORDED.open() as file:
+        written = {row["what"]: float(row[column]) for row in csv.DictReader(file)}
     assert written.keys() == measured.keys()
     for what, mb in written.items():
         # An update of Debian's may change a little.

@@ -3,9 +3,7 @@
 
 import re
 
-import contract
 import pytest
-from console import ROSLAUNCH_LINE, check_live
 from containers import (
     container,
     docker,
@@ -20,12 +18,16 @@ from containers import (
     values_of,
     wait_for_log,
 )
-from process import Process
+from mrp_testing import contract
+from mrp_testing.console import ROSLAUNCH_LINE, check_live
+from mrp_testing.process import Process
+from mrp_testing.proves import proves
 
 HARDENED = ("--read-only", "--tmpfs=/tmp", "--cap-drop=ALL", "--network=none")
 ENTRYPOINT = "/ros_entrypoint.sh"
 
 
+@proves("It prints the same lines.")
 @pytest.mark.parametrize("options", [(), HARDENED], ids=["plain", "hardened"])
 def test_console_is_live_and_ends_on_ctrl_c(image, options):
     with removed(new_name()) as name:

@@ -14,7 +14,7 @@ import sys
 import threading
 
 import rospy
-from waiting import DEADLINE
+from mrp_testing.waiting import DEADLINE
 
 init_node = rospy.init_node
 

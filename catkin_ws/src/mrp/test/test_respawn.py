@@ -5,26 +5,15 @@
 import os
 import signal
 import unittest
-import xmlrpc.client
 
-import contract
-import rosgraph
 import rospy
 import rostest
-from listener import Listener, describe
-from waiting import wait_until
+from mrp_testing import contract
+from mrp_testing.listener import Listener, describe
+from mrp_testing.nodes import pid_of
+from mrp_testing.waiting import wait_until
 
 ENOUGH = 5  # values of each publisher, before the kill and after the return
-
-
-def pid_of(name):
-    """Return the process id of a running node, or None if it cannot be reached."""
-    try:
-        uri = rosgraph.Master("/test_respawn").lookupNode(name)
-        _, _, pid = xmlrpc.client.ServerProxy(uri).getPid("/test_respawn")
-        return pid
-    except (rosgraph.MasterException, OSError):
-        return None
 
 
 class TestRespawn(unittest.TestCase):

@@ -7,16 +7,15 @@ Here no time passes, and so nothing is published, until they have.
 """
 
 import unittest
-import xmlrpc.client
 
-import contract
-import rosgraph
 import rospy
 import rostest
-from process import run
+from mrp_testing import contract
+from mrp_testing.nodes import connections_of, run
+from mrp_testing.proves import proves
+from mrp_testing.waiting import within
 from rosgraph_msgs.msg import Clock
 from std_msgs.msg import UInt32
-from waiting import within
 
 COUNT = 10  # values of each publisher
 
@@ -83,9 +82,42 @@ class TestValues(unittest.TestCase):
         self.assertEqual(values, [first + i * contract.STEP for i in range(len(values))])
         self.assertEqual(late[0], values[-1] + contract.STEP, "what the late subscriber hears")
 
+    @proves(
+        "The C++ publisher sends 2, 4, 6 and so on, one number every half second.",
+        "counter_ begins with 2, and publisher_ and timer_ keep what the constructor has made.",
+        "These two are not, so a late subscriber begins with the next number. latch says when to "
+        "use it.",
+        "A timer calls this function.",
+        "The last line increases the counter.",
+        "createTimer takes the time between two calls, in seconds, and the function to call.",
+        "The timer makes the node publish once every half second.",
+        "The tutorial's publishers send one number in each period.",
+        "A publisher begins again with its first value.",
+        "Two messages a second come from each publisher, and the callback has time for one of "
+        "them: so about half are lost.",
+        "A timer's callback is called at the end of each period.",
+    )
     def test_publisher_cpp(self):
         self.check(contract.PUBLISHER_CPP)
 
+    @proves(
+        "The Python publisher sends 1, 3, 5 and so on, one number every half second.",
+        "These two are not, so a late subscriber begins with the next number. latch says when to "
+        "use it.",
+        "A timer calls this function.",
+        "The function must take it, because rospy passes it, although the node does not use it.",
+        "The last line increases the counter.",
+        "rospy.Timer takes the time between two calls, in seconds, and the function to call.",
+        "The timer makes the node publish once every half second.",
+        "The tutorial's publishers send one number in each period.",
+        "A publisher begins again with its first value.",
+        "It prints about 12: the Python publisher still sends two messages a second, and rostopic "
+        "hz counts both publishers.",
+        "Two messages a second come from each publisher, and the callback has time for one of "
+        "them: so about half are lost.",
+        "A timer's callback is called at the end of each period.",
+        "Here the first value is 1.",
+    )
     def test_publisher_py(self):
         self.check(contract.PUBLISHER_PY)
 
@@ -95,15 +127,9 @@ def connections_to_test(publisher):
 
     The subscriber knows of a connection before the publisher does, which until then sends nothing.
     """
-    try:
-        uri = rosgraph.Master("/test_values").lookupNode("/" + publisher.name)
-        node = xmlrpc.client.ServerProxy(uri)
-        _, _, connections = node.getBusInfo("/test_values")
-    except (rosgraph.MasterException, OSError):  # the node is still starting
-        return set()
     return {
         number
-        for number, to, direction, _, topic, *_ in connections
+        for number, to, direction, _, topic, *_ in connections_of("/" + publisher.name)
         if (to, direction, topic) == (rospy.get_name(), "o", "/" + contract.TOPIC)
     }
 

@@ -9,6 +9,7 @@
 #include <limits>
 #include <memory>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include <mrp_labs/message_text.h>
@@ -24,8 +25,9 @@ public:
       : topic_(parameters.topic("topic", "great_topic")),
         queue_size_(parameters.number("queue_size", 10)),
         latch_(parameters.flag("latch", false)),
-        timer_type_(parameters.choice("timer", {"ros", "wall", "steady"})),
+        timer_type_(parameters.choice("timer", {"ros", "wall", "steady", "rate", "sleep"})),
         period_(parameters.seconds("period", 0.5)),
+        work_(parameters.seconds("work", 0)),
         burst_(parameters.number("burst", 1, 1)),
         first_burst_(parameters.number("first_burst", burst_, 1)),
         count_(parameters.number("count", 0)),
@@ -54,6 +56,14 @@ public:
     }
   }
 
+  ~LabPublisher()
+  {
+    if (loop_.joinable())
+    {
+      loop_.join();
+    }
+  }
+
   void start()
   {
     mrp_labs::wait(delay_);
@@ -62,15 +72,13 @@ public:
       mrp_labs::printNamespaces();
     }
 
-    // roscpp takes no "~" in a topic's name: the node's own namespace has a handle of its own.
-    const bool is_private = topic_[0] == '~';
-    ros::NodeHandle nh(is_private ? "~" : "");
+    const mrp_labs::Name name(topic_);
+    ros::NodeHandle nh(name.handle);
     publisher_ = nh.advertise<Message>(
-        topic_.substr(is_private ? 1 : 0), queue_size_,
-        [this](const auto& subscriber) { connectCallback(subscriber); },
+        name.text, queue_size_, [this](const auto& subscriber) { connectCallback(subscriber); },
         ros::SubscriberStatusCallback(), ros::VoidConstPtr(), latch_);
     ROS_INFO_STREAM(name_ << " publishes " << type() << " on " << publisher_.getTopic()
-                          << " (its code says \"" << topic_ << "\")");
+                          << name.asked());
 
     if (timer_type_ == "ros")
     {
@@ -81,14 +89,36 @@ public:
       const ros::WallTimerCallback callback = [this](const auto&) { timerCallback(); };
       wall_timer_ = nh_.createWallTimer(ros::WallDuration(period_), callback);
     }
-    else
+    else if (timer_type_ == "steady")
     {
       const ros::SteadyTimerCallback callback = [this](const auto&) { timerCallback(); };
       steady_timer_ = nh_.createSteadyTimer(ros::WallDuration(period_), callback);
     }
+    else
+    {
+      loop_ = std::thread([this] { loop(); });
+    }
   }
 
 private:
+  // In place of a timer.
+  void loop()
+  {
+    ros::Rate rate(1 / period_);
+    while (ros::ok())
+    {
+      timerCallback();
+      if (timer_type_ == "rate")
+      {
+        rate.sleep();
+      }
+      else
+      {
+        ros::Duration(period_).sleep();
+      }
+    }
+  }
+
   void timerCallback()
   {
     if (static_cast<int>(publisher_.getNumSubscribers()) < wait_for_subscribers_)
@@ -118,6 +148,7 @@ private:
       line += ", memory: " + std::to_string(megabytes()) + " MB";
     }
     ROS_INFO_STREAM(line);
+    mrp_labs::work(work_);
   }
 
   // Called when a subscriber connects. What is published here goes to that subscriber alone.
@@ -169,6 +200,7 @@ private:
   const bool latch_;
   const std::string timer_type_;
   const double period_;  // seconds
+  const double work_;    // seconds that each turn takes, by the ROS clock
   const int burst_;      // messages in each period
   const int first_burst_;
   const int count_;  // messages in all, 0: no end
@@ -188,6 +220,7 @@ private:
   ros::Timer timer_;
   ros::WallTimer wall_timer_;
   ros::SteadyTimer steady_timer_;
+  std::thread loop_;
 };
 
 int main(int argc, char* argv[])

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The publisher of the labs: what it publishes, and how, is said by its private parameters."""
 
+import contextlib
 import os
 import sys
 import threading
@@ -10,7 +11,7 @@ import time
 import rospy
 from mrp_labs.message_text import MESSAGE_TYPES, from_text, pad_to
 from mrp_labs.parameters import Parameters
-from mrp_labs.start import print_namespaces, wait
+from mrp_labs.start import print_namespaces, wait, work
 
 
 class LabPublisher:
@@ -19,8 +20,11 @@ class LabPublisher:
         self.topic = parameters.topic("topic", "great_topic")
         self.queue_size = parameters.number_or_none("queue_size", 10)  # 0: unlimited
         self.latch = parameters.flag("latch", False)
-        self.timer_type = parameters.choice("timer", ["ros", "ros-reset", "steady"])
+        self.timer_type = parameters.choice(
+            "timer", ["ros", "ros-reset", "steady", "rate", "sleep"]
+        )
         self.period = parameters.seconds("period", 0.5)
+        self.work = parameters.seconds("work", 0)  # seconds that each turn takes, by the ROS clock
         self.burst = parameters.number("burst", 1, least=1)  # messages in each period
         self.first_burst = parameters.number("first_burst", self.burst, least=1)
         self.count = parameters.number("count", 0)  # messages in all, 0: no end
@@ -57,10 +61,13 @@ class LabPublisher:
         )
         rospy.loginfo(
             f"{rospy.get_name()} publishes {self.type} on {self.publisher.resolved_name}"
-            f' (its code says "{self.topic}")'
+            f' (asked for "{self.topic}")'
         )
 
-        if self.timer_type != "steady":
+        if self.timer_type in ("rate", "sleep"):
+            self.timer = threading.Thread(target=self.loop, daemon=True)
+            self.timer.start()
+        elif self.timer_type != "steady":
             # Without reset, the timer ends when the ROS clock jumps back.
             self.timer = rospy.Timer(
                 rospy.Duration(self.period),
@@ -78,6 +85,17 @@ class LabPublisher:
             due += self.period
             time.sleep(max(0, due - time.monotonic()))
             self.timer_callback(None)
+
+    def loop(self):
+        """Publish in a loop, in place of a timer."""
+        rate = rospy.Rate(1 / self.period)
+        with contextlib.suppress(rospy.ROSInterruptException):  # at Ctrl-C
+            while not rospy.is_shutdown():
+                self.timer_callback(None)
+                if self.timer_type == "rate":
+                    rate.sleep()
+                else:
+                    rospy.sleep(self.period)
 
     def timer_callback(self, event):
         if self.publisher.get_num_connections() < self.wait_for_subscribers:
@@ -98,6 +116,7 @@ class LabPublisher:
         if self.show_memory:
             line += f", memory: {megabytes()} MB"
         rospy.loginfo(line)
+        work(self.work)
 
     def publish(self, value):
         """Publish a message, and return whether rospy took it."""

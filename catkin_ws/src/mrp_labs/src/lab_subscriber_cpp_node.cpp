@@ -75,17 +75,15 @@ private:
 
   ros::Subscriber subscribe(const std::string& topic)
   {
-    // roscpp takes no "~" in a topic's name: the node's own namespace has a handle of its own.
-    const bool is_private = topic[0] == '~';
-    ros::NodeHandle nh(is_private ? "~" : "");
+    const mrp_labs::Name name(topic);
+    ros::NodeHandle nh(name.handle);
     ros::SubscribeOptions options;
     options.initByFullCallbackType<const ros::MessageEvent<Message const>&>(
-        topic.substr(is_private ? 1 : 0), queue_size_,
-        [this](const auto& event) { subscriberCallback(event); });
+        name.text, queue_size_, [this](const auto& event) { subscriberCallback(event); });
     options.allow_concurrent_callbacks = concurrent_;
     ros::Subscriber subscriber = nh.subscribe(options);
     ROS_INFO_STREAM(name_ << " subscribes to " << subscriber.getTopic() << ", expects " << type()
-                          << " (its code says \"" << topic << "\")");
+                          << name.asked());
     return subscriber;
   }
 
@@ -141,8 +139,10 @@ int main(int argc, char* argv[])
   try
   {
     mrp_labs::Parameters parameters;
-    const std::string spinner = parameters.choice("spinner", {"spin", "multi-threaded", "async"});
+    const std::string spinner =
+        parameters.choice("spinner", {"spin", "multi-threaded", "async", "once"});
     const int threads = parameters.number("threads", 2, 1);
+    const ros::Duration spin_period(parameters.seconds("spin_period", 0.1));
     std::vector<std::shared_ptr<void>> subscribers;
     for (mrp_labs::Parameters& of_topic : parameters.ofEachTopic())
     {
@@ -165,6 +165,14 @@ int main(int argc, char* argv[])
       ros::AsyncSpinner async_spinner(threads);
       async_spinner.start();
       ros::waitForShutdown();
+    }
+    else if (spinner == "once")
+    {
+      while (ros::ok())
+      {
+        ros::spinOnce();
+        spin_period.sleep();
+      }
     }
     else
     {

@@ -59,7 +59,7 @@ class LabSubscriber:
         )
         rospy.loginfo(
             f"{rospy.get_name()} subscribes to {subscriber.resolved_name}, expects {self.type}"
-            f' (its code says "{topic}")'
+            f' (asked for "{topic}")'
         )
         return subscriber
 

@@ -13,8 +13,8 @@ import sys
 import tempfile
 
 import rospy
-from process import ESCAPES
-from waiting import wait_until
+from mrp_testing.process import ESCAPES
+from mrp_testing.waiting import wait_until
 
 
 class Whole:

@@ -4,10 +4,12 @@
 
 import unittest
 
-import rosgraph
 import rospy
 import rostest
-from lab import PACKAGE, Lab, Process, path_of
+from mrp_testing.graph import Graph
+from mrp_testing.lab import PACKAGE, Lab, path_of
+from mrp_testing.process import Process
+from mrp_testing.proves import proves
 from std_msgs.msg import UInt32
 
 SUBSCRIBERS = ("subscriber_cpp", "subscriber_py")
@@ -19,6 +21,24 @@ class TestLatch(unittest.TestCase):
     def setUpClass(cls):
         rospy.init_node("test_latch")
 
+    @proves(
+        "A publisher can be latched: then it keeps its last message for subscribers that come "
+        "later.",
+        "A latched publisher keeps its last message, and sends it to each subscriber that "
+        "connects later.",
+        "The argument latch=True of rospy.Publisher latches a publisher.",
+        "If several latched publishers share a topic, a subscriber gets the last message of each.",
+        "The publisher keeps the message, not the topic: when the publisher ends, the message is "
+        "gone.",
+        "Two of the four publishers in this lab are latched.",
+        "A late subscriber begins with the last message of these two, and then hears all four "
+        "publishers:",
+        "A latch saves one message of each publisher, for as long as the publisher runs.",
+        "It gets two: the last message of each publisher.",
+        "The subscriber then gets the last number of each.",
+        "Not the topic keeps a message, but each latched publisher: a late subscriber gets the "
+        "last message of each.",
+    )
     def test_latch(self):
         with Lab(
             "latch.launch", path_of("latch_restart.launch"), path_of("latch_end.launch")
@@ -31,7 +51,7 @@ class TestLatch(unittest.TestCase):
             kill(latch_restart=SUBSCRIBERS, latch_end=PUBLISHERS)
             self.expect(lab, "latch_restart", [1, 1, 101, 101])
             topic = "/latch_end/great_topic"
-            lab.wait_for(lambda: publishers_of(topic) == [], "the publishers have ended")
+            lab.wait_for(lambda: topic not in Graph().publishers, "the publishers have ended")
 
             # Publishers are restarted. A new one, there, brings what is behind those that ended.
             other = rospy.Publisher(topic, UInt32, latch=True, queue_size=1)
@@ -72,12 +92,6 @@ class TestLatch(unittest.TestCase):
         first = values()[0]
         self.assertEqual(values()[:4], list(range(first, first + 4)), f"{publisher} to {node}")
         return first
-
-
-def publishers_of(topic):
-    """Return the nodes that the master knows as publishers of a topic."""
-    publishers, _, _ = rosgraph.Master("/test_latch").getSystemState()
-    return dict(publishers).get(topic, [])
 
 
 def kill(**groups):

@@ -8,12 +8,12 @@ import shlex
 import signal
 import tempfile
 import unittest
-import xmlrpc.client
 
-import lab
-import rosgraph
 import rostest
-from process import LIVE
+from mrp_testing.lab import PACKAGE, Lab
+from mrp_testing.nodes import connections_of, pid_of
+from mrp_testing.process import LIVE, Process
+from mrp_testing.proves import proves
 
 PUBLISHERS = ("/look/publisher_cpp", "/look/publisher_py")
 SUBSCRIBERS = ("/look/subscriber_cpp", "/look/subscriber_py")
@@ -22,7 +22,7 @@ RECORDED = 10  # messages
 
 
 def start(command):
-    return lab.Process(*shlex.split(command), extra_env=LIVE)
+    return Process(*shlex.split(command), extra_env=LIVE)
 
 
 def typed(*commands):
@@ -62,17 +62,31 @@ def wait_until_connected(running):
 
 def plays_to_both():
     """Return whether the player has made its connections, those that rosnode info shows."""
-    try:
-        player = rosgraph.Master("/test_look").lookupNode("/player")
-        _, _, connections = xmlrpc.client.ServerProxy(player).getBusInfo("/test_look")
-    except (rosgraph.MasterException, OSError):  # the master does not know it yet
-        return False
+    connections = connections_of("/player")
     return {to for _, to, direction, *_ in connections if direction == "o"} >= set(SUBSCRIBERS)
 
 
 class TestLook(unittest.TestCase):
+    @proves(
+        "This name replaces the one in the code.",
+        "The last lines are the connections: a publisher is connected to each subscriber, "
+        "whatever its language.",
+        "With -n and a number it ends after so many messages:",
+        "Two publishers with two messages a second each make four:",
+        "rosnode list and rosnode info show the nodes; rostopic list, type and info show the "
+        "topics.",
+        "rostopic info with the name of the topic.",
+        "If you do not know that name, rosnode info shows to what the node subscribes.",
+        "rosnode list still shows it.",
+        "rosnode ping tests that path.",
+        "rostopic info shows the nodes of a topic, and rosnode info shows a node's connections.",
+        "It prints about 12: the Python publisher still sends two messages a second, and rostopic "
+        "hz counts both publishers.",
+        "roslaunch hides it, because it gives each node the name in the launch file.",
+        "The commands that look at the graph are on inspecting, and a lab runs them.",
+    )
     def test_commands(self):
-        with lab.Lab("look.launch") as running:
+        with Lab("look.launch") as running:
             wait_until_connected(running)
             self.check_commands_that_end()
             self.check_commands_until_ctrl_c()
@@ -145,7 +159,7 @@ class TestLook(unittest.TestCase):
         (healthy,) = typed("roswtf")
         self.assertEqual(healthy[-2:], ["Online checks summary:", "No errors or warnings"])
 
-        pid = lab.pid_of("/look/publisher_py")
+        pid = pid_of("/look/publisher_py")
         os.kill(pid, signal.SIGKILL)
         running.wait_for(
             lambda: any(f"has died [pid {pid}" in line for line in list(running.lines)),
@@ -161,7 +175,7 @@ class TestLook(unittest.TestCase):
     def test_bag(self):
         with tempfile.TemporaryDirectory() as folder:
             bag = os.path.join(folder, "counts.bag")
-            with lab.Lab("look.launch") as running:
+            with Lab("look.launch") as running:
                 wait_until_connected(running)
                 typed(f"rosbag record --limit={RECORDED} --output-name={bag} {TOPIC}")
             info, echo = typed(f"rosbag info {bag}", f"rostopic echo -b {bag} -p {TOPIC}")
@@ -175,7 +189,7 @@ class TestLook(unittest.TestCase):
                 count = [int(value) for value in recorded if int(value) % 2 == parity]
                 self.assertEqual(count, list(range(count[0], count[-1] + 1, 2)), recorded)
 
-            with lab.Lab("look_playback.launch") as running:
+            with Lab("look_playback.launch") as running:
                 with start(f"rosbag play --pause {bag} __name:=player") as player:
                     running.wait_for(plays_to_both, "both are connected to the player")
                     # As the space bar does.
@@ -187,4 +201,4 @@ class TestLook(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    rostest.rosrun(lab.PACKAGE, "look", TestLook)
+    rostest.rosrun(PACKAGE, "look", TestLook)

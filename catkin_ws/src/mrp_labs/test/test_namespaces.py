@@ -4,10 +4,11 @@
 
 import unittest
 
-import rosgraph
 import rospy
 import rostest
-from lab import PACKAGE, Lab
+from mrp_testing.graph import Graph
+from mrp_testing.lab import PACKAGE, Lab
+from mrp_testing.proves import proves
 from std_msgs.msg import UInt32
 
 GROUPS = ("/by_code", "/by_remap")
@@ -20,20 +21,62 @@ class TestNamespaces(unittest.TestCase):
     def setUpClass(cls):
         rospy.init_node("test_namespaces")
 
+    @proves(
+        "It stands in the namespace in which the node is started.",
+        "great_topic does not begin with a slash, so it is relative.",
+        "It stands in the node's own namespace, which is the node's full name.",
+        "A group's namespace goes in front of relative names.",
+        "In the group by_remap, they ask for another name, and a <remap> in the launch file "
+        "replaces it by such a name.",
+        "Each node prints its topic's full name, and in brackets the name that it asked for.",
+        "A name without a slash or a ~ in front, such as great_topic, is relative: ROS puts the "
+        "node's namespace in front of it.",
+        "In a launch file, that namespace is the group's.",
+        "Bad: nodes in different groups do not meet, unless you remap a name.",
+        "A relative name follows the group.",
+        "ROS puts the namespace in front of it (namespaces).",
+        "Its attribute ns puts a namespace in front of all relative names in the group.",
+        "A plain NodeHandle is in the group's namespace, and a NodeHandle for ~ is in the node's "
+        "own.",
+    )
     def test_group(self):
         with Lab("namespaces_group.launch") as lab:
             self.check_flow(lab, {group: nodes("publisher", [group]) for group in GROUPS})
-            for group, said in (("/by_code", "great_topic"), ("/by_remap", GLOBAL)):
+            for group, asked in (("/by_code", "great_topic"), ("/by_remap", GLOBAL)):
                 for node in nodes("publisher", [group]) + nodes("subscriber", [group]):
-                    self.check_names(lab, node, group + "/great_topic", said)
+                    self.check_names(lab, node, group + "/great_topic", asked)
 
+    @proves(
+        "A name that begins with a slash stays as it is.",
+        "In the group by_remap, they ask for another name, and a <remap> in the launch file "
+        "replaces it by such a name.",
+        "Bad: nodes in different groups do not meet, unless you remap a name.",
+        "A name with a slash in front, such as /my_global_namespace/great_topic, is global: no "
+        "group changes it.",
+        "Good: the nodes of both groups meet on one topic.",
+        "A global name is the same everywhere: no group can move it.",
+    )
     def test_global(self):
         with Lab("namespaces_global.launch") as lab:
             self.check_flow(lab, {group: nodes("publisher") for group in GROUPS})
-            for group, said in (("/by_code", GLOBAL), ("/by_remap", "great_topic")):
+            for group, asked in (("/by_code", GLOBAL), ("/by_remap", "great_topic")):
                 for node in nodes("publisher", [group]) + nodes("subscriber", [group]):
-                    self.check_names(lab, node, GLOBAL, said)
+                    self.check_names(lab, node, GLOBAL, asked)
 
+    @proves(
+        "This name is also the node's own namespace, for what belongs to this one node.",
+        "In the group by_remap, they ask for another name, and a <remap> in the launch file "
+        "replaces it by such a name.",
+        "A private name is in the node's own namespace: the group's namespace and then the node's "
+        "name.",
+        "In Python it has a ~ in front, as in ~great_topic.",
+        'In C++ you ask a handle for the node\'s namespace, ros::NodeHandle("~"), for great_topic.',
+        "Here four nodes have four topics, and no subscriber receives anything from a publisher.",
+        "Good: nodes do not meet by chance, even if all of them ask for the same name.",
+        "Bad: to hear a publisher, another node must ask for the full name of its topic, such as "
+        "/by_code/publisher_py/great_topic.",
+        "A private name is in the namespace of one node.",
+    )
     def test_private(self):
         with Lab("namespaces_private.launch") as lab:
             publishers, subscribers = nodes("publisher"), nodes("subscriber")
@@ -65,19 +108,14 @@ class TestNamespaces(unittest.TestCase):
                 speaker.unregister()
 
             # What nobody publishes and subscribes to at once, nobody hears.
-            published, subscribed, _ = rosgraph.Master(rospy.get_name()).getSystemState()
-            self.assertEqual(
-                {topic: ends for topic, ends in published if topic.endswith("/great_topic")},
-                {node + "/great_topic": [node] for node in publishers},
-            )
-            self.assertEqual(
-                {topic: ends for topic, ends in subscribed if topic.endswith("/great_topic")},
-                {node + "/great_topic": [node] for node in subscribers},
-            )
+            graph = Graph()
+            for ends, wanted in ((graph.publishers, publishers), (graph.subscribers, subscribers)):
+                found = {name: ends[name] for name in ends if name.endswith("/great_topic")}
+                self.assertEqual(found, {node + "/great_topic": [node] for node in wanted})
 
             for node in publishers + subscribers:
-                said = "~great_topic" if node.startswith("/by_code/") else "great_topic"
-                self.check_names(lab, node, node + "/great_topic", said)
+                asked = "~great_topic" if node.startswith("/by_code/") else "great_topic"
+                self.check_names(lab, node, node + "/great_topic", asked)
 
     def check_flow(self, lab, expected):
         """Check that the subscribers of each group hear these publishers, and no others."""
@@ -91,8 +129,8 @@ class TestNamespaces(unittest.TestCase):
                 heard = {one.publisher for one in lab.received(subscriber)}
                 self.assertEqual(sorted(heard), sorted(publishers), subscriber)
 
-    def check_names(self, lab, node, topic, said):
-        """Check what a node says of its namespaces, and that its topic's name leads there."""
+    def check_names(self, lab, node, topic, asked):
+        """Check what a node prints about its namespaces, and where its topic's name leads."""
         group = node[: node.rindex("/")]
         if node.endswith("_cpp"):
             namespaces = f'{group} (ros::NodeHandle()); its own is {node} (ros::NodeHandle("~"))'
@@ -102,9 +140,13 @@ class TestNamespaces(unittest.TestCase):
             resolved = f"publishes std_msgs/UInt32 on {topic}"
         else:
             resolved = f"subscribes to {topic}, expects std_msgs/UInt32"
+        # roscpp refuses a name that begins with "~": its handle has the "~".
+        if node.endswith("_cpp") and asked[0] == "~":
+            asked = f'asked ros::NodeHandle("~") for "{asked[1:]}"'
+        else:
+            asked = f'asked for "{asked}"'
         self.assertEqual(
-            lab.logged(node)[:2],
-            [f"is in the namespace {namespaces}", f'{resolved} (its code says "{said}")'],
+            lab.logged(node)[:2], [f"is in the namespace {namespaces}", f"{resolved} ({asked})"]
         )
 
 

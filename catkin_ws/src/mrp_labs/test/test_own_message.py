@@ -7,9 +7,10 @@ import unittest
 
 import rospy
 import rostest
-from lab import PACKAGE, Lab
 from mrp_labs.msg import Count
-from waiting import DEADLINE
+from mrp_testing.lab import PACKAGE, Lab
+from mrp_testing.proves import proves
+from mrp_testing.waiting import DEADLINE
 
 SUBSCRIBERS = ("/own_message/subscriber_cpp", "/own_message/subscriber_py")
 LANGUAGES = {"/own_message/publisher_cpp": "C++", "/own_message/publisher_py": "Python"}
@@ -24,6 +25,10 @@ def parts(value):
 
 
 class TestOwnMessage(unittest.TestCase):
+    @proves(
+        "The header has the time at which a message was sent, so a subscriber knows how long it "
+        "was on its way.",
+    )
     def test_from_each_language_to_each(self):
         with Lab("own_message.launch") as lab:
             for subscriber in SUBSCRIBERS:

@@ -5,11 +5,12 @@
 import json
 import unittest
 
-import lab
 import rosgraph
 import rostest
 from forked import Forked, Whole
 from mrp_labs.message_text import MESSAGE_TYPES
+from mrp_testing.lab import PACKAGE
+from mrp_testing.nodes import program
 
 PUBLISHERS = ("lab_publisher_cpp_node", "lab_publisher_py_node.py")
 CLOCK = ("lab_clock_py_node.py",)
@@ -61,7 +62,7 @@ class TestParameters(unittest.TestCase):
         """Start a node; a Python one by itself the first time, which takes ten times as long."""
         fork = node.endswith(".py") and node in self.whole
         self.whole.add(node)
-        process = (Forked if fork else Whole)(lab.program(lab.PACKAGE, node), argument)
+        process = (Forked if fork else Whole)(program(PACKAGE, node), argument)
         self.addCleanup(process.close)
         return process
 
@@ -106,10 +107,16 @@ class TestParameters(unittest.TestCase):
         self.check(PUBLISHERS + SUBSCRIBERS, "show_type", "no", FLAG)
 
     def test_choice(self):
-        self.check(PUBLISHERS[:1], "timer", "Wall", 'one of "ros", "wall", "steady"')
+        self.check(
+            PUBLISHERS[:1], "timer", "Wall", 'one of "ros", "wall", "steady", "rate", "sleep"'
+        )
         # rospy has no timer on the wall's clock, but one that may outlive a jump back of the clock.
-        self.check(PUBLISHERS[1:], "timer", "wall", 'one of "ros", "ros-reset", "steady"')
-        self.check(SUBSCRIBERS[:1], "spinner", 2, 'one of "spin", "multi-threaded", "async"')
+        self.check(
+            PUBLISHERS[1:], "timer", "wall", 'one of "ros", "ros-reset", "steady", "rate", "sleep"'
+        )
+        self.check(
+            SUBSCRIBERS[:1], "spinner", 2, 'one of "spin", "multi-threaded", "async", "once"'
+        )
         allowed = "one of " + ", ".join(f'"{type_}"' for type_ in MESSAGE_TYPES)
         self.check(SUBSCRIBERS, "type", "std_msgs/Uint32", allowed)
 
@@ -144,7 +151,7 @@ class TestParameters(unittest.TestCase):
         known = (
             "~burst, ~count, ~delay, ~first_burst, ~latch, ~on_connect, ~period, ~queue_size, "
             "~show_memory, ~show_namespaces, ~show_type, ~size, ~start, ~step, ~timer, ~topic, "
-            "~topics, ~type, ~values, ~wait_for_subscribers"
+            "~topics, ~type, ~values, ~wait_for_subscribers, ~work"
         )
         self.check_sentence(
             PUBLISHERS, {"qeue_size": 1}, f"parameter ~qeue_size is not known, only {known}"
@@ -157,4 +164,4 @@ class TestParameters(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    rostest.rosrun(lab.PACKAGE, "parameters", TestParameters)
+    rostest.rosrun(PACKAGE, "parameters", TestParameters)

@@ -10,10 +10,15 @@ a roscpp subscriber logs an error, and goes on.
 import unittest
 
 import rostest
-from lab import PACKAGE, Lab
+from mrp_testing.lab import PACKAGE, Lab
+from mrp_testing.proves import proves
 
 
 class TestRefusedValue(unittest.TestCase):
+    @proves(
+        "After such an exception, every Python subscriber of this publisher stays deaf to it: it "
+        "receives none of the publisher's later messages.",
+    )
     def test_refused(self):
         with Lab("refused_value.launch") as lab:
             # To the second value that is refused, and past it.

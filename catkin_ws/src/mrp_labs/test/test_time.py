@@ -5,12 +5,19 @@
 import re
 import unittest
 
-import lab
 import rostest
+from mrp_testing import log_line
+from mrp_testing.lab import PACKAGE, Lab
+from mrp_testing.nodes import pid_of, program
+from mrp_testing.process import Process
+from mrp_testing.proves import proves
 
 CPP = ("/time/publisher_wall_cpp", "/time/publisher_steady_cpp")
 PY = ("/time/publisher_steady_py",)
 ROS = ("/time/publisher_ros_cpp", "/time/publisher_ros_py")
+LOOPS = tuple(
+    f"/time/loop_{kind}_{language}" for kind in ("rate", "sleep") for language in ("cpp", "py")
+)
 SUBSCRIBERS = ("/time/subscriber_cpp", "/time/subscriber_py")
 ALL_LEVELS = ("DEBUG", "INFO", "WARN", "ERROR", "FATAL")
 
@@ -41,29 +48,45 @@ def wait_until_published(running, publishers, count, begin=0):
 
 def times(line):
     """Return the wall's and the simulated time in a line, in seconds."""
-    wall, simulated = re.match(r"\[ ?INFO\] \[([\d.]+), ([\d.]+)\]", line).groups()
-    return float(wall), float(simulated)
+    logged = log_line.parse(line)
+    return logged.wall, logged.simulated
 
 
 class TestTime(unittest.TestCase):
+    @proves(
+        "A loop publishes its first message, sleeps for good, and logs nothing about it.",
+        "rospy.sleep and ros::Duration::sleep stand still as the rates do.",
+        "Then ROS timers never fire, and the node logs nothing about it.",
+        "In this lab five publishers wait for their timers, and nobody publishes /clock.",
+        "These three publish all the same, because their timers do not follow it.",
+    )
     def test_no_clock(self):
-        with lab.Lab("time_no_clock.launch") as running:
+        with Lab("time_no_clock.launch") as running:
             for subscriber in SUBSCRIBERS:
                 for publisher in CPP + PY:
                     running.wait_for_count(subscriber, 8, publisher)
-            for publisher in ROS:
-                # Alive, but all that it has said is on which topic it would publish.
-                self.assertIsNotNone(lab.pid_of(publisher), publisher)
-                (only,) = running.logged(publisher, ALL_LEVELS)
-                self.assertIn("publishes std_msgs/UInt32 on /time/great_topic", only)
+            for publisher in ROS + LOOPS:
+                # Alive, but all that it has said is on which topic it would publish; a loop has
+                # published once, before its first sleep.
+                self.assertIsNotNone(pid_of(publisher), publisher)
+                first, *others = running.logged(publisher, ALL_LEVELS)
+                self.assertIn("publishes std_msgs/UInt32 on /time/great_topic", first)
+                self.assertEqual(others, ["published 1"] if publisher in LOOPS else [], publisher)
             # It is the clock that was missing, and nothing else.
-            with lab.Process(lab.program(lab.PACKAGE, "lab_clock_py_node.py")):
+            with Process(program(PACKAGE, "lab_clock_py_node.py")):
                 for subscriber in SUBSCRIBERS:
-                    for publisher in ROS:
+                    for publisher in ROS + LOOPS:
                         running.wait_until_received(subscriber, 2, publisher=publisher)
 
+    @proves(
+        "If the parameter /use_sim_time is true when a node starts, the node takes its time from "
+        "the topic /clock instead.",
+        "the ROS clock",
+        "When /clock runs ten times as fast, ROS timers fire ten times as often; wall timers and "
+        "steady timers do not.",
+    )
     def test_fast_clock(self):
-        with lab.Lab("time_fast_clock.launch") as running:
+        with Lab("time_fast_clock.launch") as running:
             begin = wait_until_published(running, CPP + PY + ROS, 1)
             end = wait_until_published(running, CPP + PY, 3, begin)
             slow = max(len(published(running, one, begin, end)) for one in CPP + PY)
@@ -76,9 +99,14 @@ class TestTime(unittest.TestCase):
                 factor = (last_simulated - first_simulated) / (last_wall - first_wall)
                 self.assertAlmostEqual(factor, 10, delta=3, msg=publisher)
 
+    @proves(
+        "Forward: every timer goes on, and none catches up on the time that was left out.",
+        "Back: a rospy.Timer ends with an exception, and its node goes on without it.",
+        "A rospy.Timer with reset=True goes on, and so does a ros::Timer in C++.",
+    )
     def test_jump(self):
         publishers = (ROS_CPP, ROS_PY, RESET_PY)
-        with lab.Lab("time_jump.launch", traceback=True) as running:
+        with Lab("time_jump.launch", traceback=True) as running:
             wait_until_published(running, publishers, 1)
 
             def line_of(what):
@@ -100,10 +128,10 @@ class TestTime(unittest.TestCase):
             # Back: rospy's timer has ended, and its node does not. A line of stdout may come in
             # after a later one of stderr.
             self.assertLessEqual(len(published(running, ROS_PY, end)), 1)
-            self.assertIsNotNone(lab.pid_of(ROS_PY))
+            self.assertIsNotNone(pid_of(ROS_PY))
             tracebacks = [line for line in running.lines if line.startswith("Traceback")]
             self.assertEqual(len(tracebacks), 1)
 
 
 if __name__ == "__main__":
-    rostest.rosrun(lab.PACKAGE, "time", TestTime)
+    rostest.rosrun(PACKAGE, "time", TestTime)

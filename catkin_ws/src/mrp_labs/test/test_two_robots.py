@@ -5,7 +5,8 @@
 import unittest
 
 import rostest
-from lab import PACKAGE, Lab
+from mrp_testing.lab import PACKAGE, Lab
+from mrp_testing.proves import proves
 
 ROBOTS = ("/robot1", "/robot2")
 LANGUAGES = ("cpp", "py")
@@ -16,10 +17,10 @@ ENOUGH = 3  # values that show that a publisher is heard by now, or would be
 
 
 class TestTwoRobots(unittest.TestCase):
-    def check(self, lab, said, resolved, publishers_of):
-        """Check what each robot's nodes say of their topic, and whom each subscriber hears.
+    def check(self, lab, asked, resolved, publishers_of):
+        """Check what each robot's nodes print about their topic, and whom each subscriber hears.
 
-        said: the topic's name in the code, the same for both robots
+        asked: the topic's name that the nodes ask for, the same for both robots
         resolved: robot -> the topic's full name
         publishers_of: subscriber -> the publishers that it hears
         """
@@ -40,8 +41,15 @@ class TestTwoRobots(unittest.TestCase):
                 if node in SUBSCRIBERS:
                     topic = f"to {resolved(robot)}, expects std_msgs/UInt32"
                 text = lab.logged(node)[0]
-                self.assertTrue(text.endswith(f'{topic} (its code says "{said}")'), text)
+                self.assertTrue(text.endswith(f'{topic} (asked for "{asked}")'), text)
 
+    @proves(
+        "Good: you can start the same nodes once more, in another group, without changing their "
+        "code.",
+        "Groups with relative names keep robots apart.",
+        "In this lab two robots run the same four nodes, and neither hears the other.",
+        "In groups, with relative names, the robots stay apart.",
+    )
     def test_groups_keep_the_robots_apart(self):
         with Lab("two_robots.launch") as lab:
             self.check(
@@ -51,6 +59,13 @@ class TestTwoRobots(unittest.TestCase):
                 lambda subscriber: robot_of(subscriber, PUBLISHERS),
             )
 
+    @proves(
+        "Bad: you cannot keep two robots apart by groups alone.",
+        "With a global name, the same launch file mixes the robots: each subscriber hears all "
+        "four publishers.",
+        "It does guarantee that, and so takes away what the page praises in the option before: "
+        "with two robots, each subscriber hears both.",
+    )
     def test_a_hard_coded_global_name_mixes_them(self):
         with Lab("two_robots.launch", "topic:=/great_topic") as lab:
             self.check(

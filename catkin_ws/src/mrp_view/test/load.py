@@ -17,8 +17,12 @@ import threading
 import time
 
 import rospy
+from mrp_testing.master import master
+from mrp_testing.ports import free_port
+from mrp_testing.process import LIVE, Process
+from mrp_testing.viewer import Client, Viewer
+from mrp_testing.waiting import wait_until
 from std_msgs.msg import UInt32
-from viewer import LIVE, Client, Process, Viewer, free_port, master, wait_until
 
 
 def cpu_seconds(pid):

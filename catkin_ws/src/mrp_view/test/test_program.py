@@ -4,11 +4,13 @@
 
 import unittest
 
-import rosgraph
 import rospy
 import rostest
+from mrp_testing.graph import Graph
+from mrp_testing.process import Process
+from mrp_testing.proves import proves
+from mrp_testing.viewer import TOPIC, Client, PubSub, Viewer
 from std_msgs.msg import Header, String
-from viewer import TOPIC, Client, Process, PubSub, Viewer
 
 
 class TestProgram(unittest.TestCase):
@@ -16,6 +18,11 @@ class TestProgram(unittest.TestCase):
     def setUpClass(cls):
         rospy.init_node("test_program")
 
+    @proves(
+        "The viewer subscribes to each topic, as any other subscriber does.",
+        "It publishes nothing.",
+        "The viewer only listens.",
+    )
     def test_viewer_publishes_nothing(self):
         with PubSub(), Viewer() as viewer, Client(viewer.address, viewer=True) as page:
             page.wait_for(lambda: (TOPIC, "/mrp_view") in page.edges(), "the viewer in the graph")
@@ -68,17 +75,12 @@ class TestProgram(unittest.TestCase):
     def test_second_viewer_takes_the_name(self):
         with Viewer() as first, Client(first.address) as page:
             page.wait_for(lambda: page.graph, "the first one")
-            first.wait_for(lambda: "/mrp_view" in nodes(), "the first one's name")
+            first.wait_for(lambda: "/mrp_view" in Graph().nodes, "the first one's name")
             with Viewer() as second:
                 self.assertEqual(first.wait(), 1)
                 # rospy says in a line of its own that it was asked to end: before it or after it.
                 self.assertIn("error: another node has taken the name /mrp_view", str(first))
                 self.assertEqual(second.stop(), 0)
-
-
-def nodes():
-    publishers, subscribers, services = rosgraph.Master("/test_program").getSystemState()
-    return {n for part in (publishers, subscribers, services) for _, names in part for n in names}
 
 
 if __name__ == "__main__":

@@ -4,7 +4,8 @@
 Each is named as its task is, with the erratum that it is made of.
 """
 
-from proof import Generated, defects
+from evidence import defects
+from listing import Generated
 
 
 class Exercises(Generated):

@@ -2,13 +2,13 @@
 """Directives that draw what was recorded from running nodes. Each has the option `alt`: what the
 picture shows, in words.
 
-.. ros-graph:: NAME the nodes and topics in recorded/NAME.json, drawn by Graphviz
-.. timeline:: NAME   who published and who received which value when, of recorded/NAME.txt
-.. queue:: NAME      which of the values published in recorded/NAME.txt were received
+.. ros-graph:: NAME the nodes and topics under NAME in recorded/graphs.json, drawn by Graphviz
+.. timeline:: NAME   who published and who received which value when, in the lines under NAME in
+                     recorded/outputs.json
+.. queue:: NAME      which of the values that were published in those lines were received
 """
 
 import html
-import json
 import re
 import subprocess
 
@@ -25,18 +25,13 @@ _LINE = re.compile(
 class Picture(SphinxDirective):
     required_arguments = 1
     option_spec = {"alt": directives.unchanged_required}
-    suffix = ".txt"
+    file = "outputs.json"
 
     def run(self):
         if "alt" not in self.options:
             raise self.error("a picture must have the option 'alt'")
-        path = recorded(self.env, self.arguments[0] + self.suffix)
-        self.env.note_dependency(str(path))
-        if not path.exists():
-            if self.config.recording:
-                return []
-            raise self.error(f"{path.name} is not recorded yet: run make docs-record")
-        return [self.draw(path.read_text())]
+        found = recorded(self, self.file, self.arguments[0])
+        return [] if found is None else [self.draw(found)]
 
     def svg(self, width, height, parts):
         """Return an SVG within the page: so page.css gives it the page's colours, and its width."""
@@ -49,14 +44,13 @@ class Picture(SphinxDirective):
                 "</svg></div>",
             ]
         )
-        return nodes.raw(text, text, format="html")
+        return nodes.raw(text, text, format="html", alt=self.options["alt"])
 
 
 class Graph(Picture):
-    suffix = ".json"
+    file = "graphs.json"
 
-    def draw(self, text):
-        graph = json.loads(text)
+    def draw(self, graph):
         lines = ["digraph {", "rankdir=LR", "bgcolor=transparent", 'node [fontname="sans-serif"]']
         for topic, type_ in graph["topics"].items():
             lines.append(f'"topic {topic}" [shape=box label="{topic}\\n{type_}"]')
@@ -82,8 +76,8 @@ class Graph(Picture):
 
 
 class Timeline(Picture):
-    def draw(self, text):
-        events = [match.groupdict() for match in map(_LINE.match, text.splitlines()) if match]
+    def draw(self, lines):
+        events = [match.groupdict() for match in map(_LINE.match, lines) if match]
         names = sorted({event["node"] for event in events})
         begin = min(float(event["time"]) for event in events)
         end = max(float(event["time"]) for event in events)
@@ -107,7 +101,8 @@ class Timeline(Picture):
 
 
 class Queue(Picture):
-    def draw(self, text):
+    def draw(self, lines):
+        text = "\n".join(lines)
         published = re.findall(r"published (\d+)(?: to (\d+))?", text)
         last = max(int(number) for pair in published for number in pair if number)
         received = {}

@@ -1,198 +1,138 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A claim points to its proof: the test that fails when the claim is false.
+"""A claim and its proof are one thing: the build fails where they differ.
 
-:proof:`mrp_labs/latch/test_...` stands behind a claim, and links to the test's entry in the list of
-tests. What the proof may be:
+A claim is a sentence with the role :proof:`mrp_labs/latch/test_...` in it or directly behind it.
+The role names a test (evidence.py), which must quote the sentence word for word. Each sentence
+without a proof must be listed (claims.py). The README counts as a page. It has a comment in place
+of the role: <!-- proof: workspace/test_readme/test_... -->.
 
-    PACKAGE/NAME/CASE     a test case of PACKAGE's NAME.test, which is run by rostest
-    workspace/FILE/CASE   a test case of catkin_ws/tests/FILE.py
-    docker/FILE/CASE      a test case of docker/test/FILE.py
-    broken/NAME           a defect of catkin_ws/defects/ that a rostest of the tutorial must find
+`make claims` shows what is missing, and writes quotes and lists. All sentences go into the file
+sentences.json, from which tools take them.
 
-A proof that does not exist is a warning, and so an error; so is a section that has none, and shows
-nothing recorded either, unless conf.py lists its page in pages_without_claims. All that pages claim
-goes into the file proofs.json, by which a test sees whether each of them was run, and passed.
-
-.. labs::   every lab: its claim, its launch file, its tests
-.. tests::  every test that a proof may be
+As long as a page is in conf.py's list pages_not_checked_yet, its sentences are free.
 """
 
-import ast
-import functools
+import html
 import json
 import pathlib
-import re
-import sys
 
+import claims
+import evidence
+import sentences
 from docutils import nodes
-from docutils.statemachine import StringList
+from sphinx.errors import ExtensionError
 from sphinx.util import logging
-from sphinx.util.docutils import SphinxDirective, SphinxRole
+from sphinx.util.docutils import SphinxRole
 
-WORKSPACE = pathlib.Path(__file__).resolve().parents[4]
-ROOT = WORKSPACE.parent
-sys.path.insert(0, str(WORKSPACE / "src" / "mrp_check" / "src"))
-
-from mrp_check.contract import defects  # noqa: E402
+LISTS = pathlib.Path(__file__).resolve().parents[1] / "unproved"
+README = evidence.ROOT / "README.md"
+PAGE_OF_TESTS = "pages/tests"
 
 logger = logging.getLogger(__name__)
 
 
-def test_cases(path):
-    """Return the names of the test cases in a file, in its order."""
-    text = path.read_text()
-    if path.suffix == ".cpp":
-        return re.findall(r"^TEST(?:_F)?\(\w+, (\w+)\)", text, re.MULTILINE)
-    return [
-        node.name
-        for node in ast.walk(ast.parse(text))
-        if isinstance(node, ast.FunctionDef) and node.name.startswith("test")
-    ]
-
-
-@functools.lru_cache
-def all_tests():
-    """Return proof -> the test's file, of everything that a proof may be."""
-    files = {}
-    for package in ("mrp", "mrp_labs", "mrp_view"):
-        for rostest in (WORKSPACE / "src" / package / "test").glob("*.test"):
-            for path in rostest.parent.glob(f"test_{rostest.stem}.*"):
-                files[path] = f"{package}/{rostest.stem}"
-    for prefix, folder in (
-        ("workspace", WORKSPACE / "tests"),
-        ("docker", ROOT / "docker" / "test"),
-    ):
-        for path in folder.glob("test_*.py"):
-            files[path] = f"{prefix}/{path.stem}"
-    tests = {f"{files[path]}/{case}": path for path in files for case in test_cases(path)}
-    tests.update({f"broken/{one.name}": one.path for one in defects.read_all() if one.fails})
-    return dict(sorted(tests.items()))
-
-
-def command_of(proof, path):
-    """Return the command that runs a proof."""
-    kind, name = proof.split("/")[:2]
-    if kind == "broken":
-        return f"python3 -m pytest tests/test_broken.py -k {name}"
-    if kind in ("workspace", "docker"):
-        return f"python3 -m pytest {path.relative_to(WORKSPACE if kind == 'workspace' else ROOT)}"
-    return f"rostest {kind} {name}.test"
-
-
 class ProofRole(SphinxRole):
     def run(self):
-        proof = self.text
-        if not hasattr(self.env, "mrp_proofs"):
-            self.env.mrp_proofs = {}
-        self.env.mrp_proofs.setdefault(self.env.docname, []).append(proof)
-        if proof not in all_tests():
-            logger.warning("no such proof: %s", proof, location=self.get_location())
-        reference = self.env.app.builder.get_relative_uri(self.env.docname, "pages/tests")
-        link = nodes.reference(
-            "",
-            "proof",
-            refuri=f"{reference}#{nodes.make_id(proof)}",
-            reftitle="Proved by the test " + proof,
-            classes=["proof"],
-        )
-        return [nodes.superscript("", "", link)], []
+        return [sentences.ProofMark(proof=self.text)], []
 
 
-class Generated(SphinxDirective):
-    """A directive that stands for reStructuredText made of the workspace's files."""
-
-    def run(self):
-        container = nodes.section()
-        container.document = self.state.document
-        lines = StringList(self.text().splitlines(), source=self.get_source_info()[0])
-        self.state.nested_parse(lines, self.content_offset, container, match_titles=True)
-        return container.children
+def _read_tests(app):
+    try:
+        evidence.all_tests()
+    except evidence.EvidenceError as error:
+        raise ExtensionError(str(error)) from None
 
 
-class Labs(Generated):
-    def text(self):
-        folder = WORKSPACE / "src" / "mrp_labs"
-        tests = {
-            proof: path for proof, path in all_tests().items() if proof.startswith("mrp_labs/")
-        }
-        parts = []
-        for launch in sorted((folder / "launch").glob("*.launch")):
-            claim = re.fullmatch(r"<!-- (.*) -->", launch.read_text().splitlines()[0]).group(1)
-            proofs = [
-                proof for proof, path in tests.items() if f'"{launch.name}"' in path.read_text()
-            ]
-            parts += [
-                f".. _lab-{launch.stem}:",
-                "",
-                launch.stem.replace("_", " ").capitalize(),
-                "-" * len(launch.stem),
-                "",
-                claim,
-                "",
-                ".. code-block:: bash",
-                "",
-                f"   roslaunch mrp_labs {launch.name}",
-                "",
-                f".. literalinclude:: /../../mrp_labs/launch/{launch.name}",
-                "   :language: xml",
-                "",
-                *(
-                    f"- {proof.split('/')[-1].replace('_', ' ')} :proof:`{proof}`"
-                    for proof in proofs
-                ),
-                "",
-            ]
-        return "\n".join(parts)
+def _collect(app, doctree):
+    """Take the sentences from a page, and draw its marks."""
+    env = app.env
+    found = sentences.of(doctree, env.docname)
+    env.mrp_sentences[env.docname] = [sentence for sentence, _ in found]
+    uri = app.builder.get_relative_uri(env.docname, PAGE_OF_TESTS)
+    for sentence, marks in found:
+        for mark in marks:
+            _behind_the_end(mark)
+            mark.replace_self(_drawn(mark["proof"], sentence.text, uri))
 
 
-class Tests(SphinxDirective):
-    def run(self):
-        items = []
-        for proof, path in all_tests().items():
-            target = nodes.target("", "", ids=[nodes.make_id(proof)])
-            command = command_of(proof, path)
-            items.append(
-                nodes.list_item(
-                    "",
-                    nodes.paragraph("", "", target, nodes.literal("", proof), nodes.Text(": ")),
-                    nodes.paragraph("", "", nodes.literal("", command)),
-                )
-            )
-        return [nodes.bullet_list("", *items)]
+def _behind_the_end(mark):
+    """Draw a full stop that follows a mark in front of it, without the space between the two."""
 
+    def is_mark_or_space(node):
+        return isinstance(node, nodes.raw) or (isinstance(node, nodes.Text) and not node.strip())
 
-def _warn_of_unproved(app, doctree):
-    """Warn of each section that has no proof, and shows nothing that was recorded.
-
-    A section with sections in it only introduces them.
-    """
-    if app.env.docname in app.config.pages_without_claims:
+    siblings, place = mark.parent, mark.parent.index(mark)
+    follows = siblings[place + 1] if place + 1 < len(siblings) else ""
+    if not isinstance(follows, nodes.Text) or follows[:1] not in (*".:;,?!",):
         return
-    for section in doctree.findall(nodes.section):
-        inside = list(section.findall(nodes.Element))[1:]
-        if any(isinstance(node, nodes.section) for node in inside):
-            continue
-        if not any({"proof", "output"} & set(node.get("classes")) for node in inside):
-            logger.warning("no proof in this section: %s", section.next_node(nodes.title).astext())
+    siblings[place + 1] = nodes.Text(follows[1:])
+    # There may be other marks in front of this one.
+    while place and is_mark_or_space(siblings[place - 1]):
+        place -= 1
+    before = siblings[place - 1] if place else None
+    if isinstance(before, nodes.Text):
+        siblings[place - 1] = nodes.Text(before.rstrip() + follows[0])
+    else:
+        siblings.insert(place, nodes.Text(follows[0]))
+
+
+def _drawn(proof, sentence, uri):
+    """Return the mark that a reader sees: a link, whose label says what is proved by which test."""
+    label = html.escape(f"Proof by the test {proof.split('/')[-1]}: {sentence}")
+    link = f'<a class="proof" href="{uri}#{nodes.make_id(proof)}" aria-label="{label}">&#10003;</a>'
+    return nodes.raw("", link, format="html")
+
+
+def in_order(env):
+    """Return the sentences of all pages in the order of reading, and then those of the README."""
+    first = [env.config.root_doc, *env.toctree_includes.get(env.config.root_doc, [])]
+    pages = dict.fromkeys([*first, *sorted(env.mrp_sentences)])
+    found = [sentence for page in pages for sentence in env.mrp_sentences.get(page, [])]
+    return found + env.mrp_readme
+
+
+def _begin(app, env, docnames):
+    if not hasattr(env, "mrp_sentences"):
+        env.mrp_sentences = {}
+    env.mrp_readme = sentences.of_markdown(README) if README.exists() else []
 
 
 def _forget(app, env, docname):
-    if hasattr(env, "mrp_proofs"):
-        env.mrp_proofs.pop(docname, None)
+    if hasattr(env, "mrp_sentences"):
+        env.mrp_sentences.pop(docname, None)
+
+
+def _check(app, env):
+    """Warn of all that does not fit together; have the page of the tests written anew."""
+    tests = evidence.all_tests()
+    lists = claims.read_lists(LISTS)
+    for fault in claims.check(in_order(env), tests, lists, app.config.pages_not_checked_yet):
+        where = fault.where
+        if isinstance(where, tuple) and where[0] not in env.all_docs:
+            where = f"{where[0]}.md:{where[1]}"
+        logger.warning("%s", fault.text(tests), location=where)
+    return [PAGE_OF_TESTS] if PAGE_OF_TESTS in env.all_docs else []
 
 
 def _write(app, exception):
-    if exception is None and app.builder.format == "html":
-        proofs = getattr(app.env, "mrp_proofs", {})
-        (pathlib.Path(app.outdir) / "proofs.json").write_text(json.dumps(proofs, indent=1))
+    if exception is not None or app.builder.name not in ("html", "dummy"):
+        return
+    found = in_order(app.env)
+    folder = pathlib.Path(app.outdir)
+    folder.mkdir(exist_ok=True)
+    (folder / "sentences.json").write_text(json.dumps([one._asdict() for one in found], indent=1))
+    counts = claims.counts(found, claims.read_lists(LISTS), app.config.pages_not_checked_yet)
+    # Not a message of the logger: `make docs` shows warnings alone.
+    print("Sentences:", ", ".join(f"{number} {what}" for what, number in counts.items()))
 
 
 def setup(app):
     app.add_role("proof", ProofRole())
-    app.add_directive("labs", Labs)
-    app.add_directive("tests", Tests)
-    app.add_config_value("pages_without_claims", [], "env")
-    app.connect("doctree-read", _warn_of_unproved)
+    app.add_config_value("pages_not_checked_yet", [], "env")
+    app.connect("builder-inited", _read_tests)
+    app.connect("env-before-read-docs", _begin)
+    app.connect("doctree-read", _collect)
     app.connect("env-purge-doc", _forget)
+    app.connect("env-updated", _check)
     app.connect("build-finished", _write)
-    return {"parallel_read_safe": False}
+    return {"parallel_read_safe": False, "env_version": 1}

@@ -15,12 +15,13 @@ until: a regular expression. The last command goes on until it has printed a lin
 keep: the command goes on while the reader reads on; `.. terminal:: 1` with `stop` ends it.
 stop: the reader presses Ctrl-C in this terminal. There are no commands then.
 exit: the exit code that the last command must have, if it is not 0.
-output: the name of the file in recorded/ that has what the last command printed. It is recorded by
-    tools/run_page.py too, and never typed.
+output: the name in recorded/outputs.json for what the last command printed. It is recorded by
+    tools/record_pages.py, and never typed.
 only: a regular expression: of what was printed, only lines that have it are shown, and compared.
-graph: the name of the file in recorded/ for the graph (see picture.py) at this moment.
+graph: the name in recorded/graphs.json for the graph (see picture.py) at this moment.
 """
 
+import json
 import pathlib
 
 from docutils import nodes
@@ -62,17 +63,14 @@ class Terminal(SphinxDirective):
             result.append(container_wrapper(self, block, f"Terminal {self.arguments[0]}"))
         if "stop" in options:
             text = f"In terminal {self.arguments[0]}, press Ctrl-C."
-            result.append(nodes.paragraph(text, text))
+            result.append(nodes.paragraph(text, text, generated=True))
         if "output" in options:
-            path = recorded(self.env, options["output"] + ".txt")
-            self.env.note_dependency(str(path))
-            if path.exists():
-                result.append(self.block(path.read_text().rstrip("\n"), "text", "output"))
-            elif not self.config.recording:
-                raise self.error(f"{path.name} is not recorded yet: run make docs-record")
+            lines = recorded(self, "outputs.json", options["output"])
+            if lines is not None:
+                result.append(self.block("\n".join(lines), "text", "output"))
         if "until" in options and "keep" not in options:
             text = "Ctrl-C ends it."
-            result.append(nodes.paragraph(text, text))
+            result.append(nodes.paragraph(text, text, generated=True))
         return result
 
     def block(self, text, language, css_class):
@@ -81,13 +79,21 @@ class Terminal(SphinxDirective):
         return block
 
 
-def recorded(env, name):
-    """Return the path of a file of that name in recorded/."""
-    return pathlib.Path(env.srcdir) / "recorded" / name
+def recorded(directive, file, name):
+    """Return what a file in recorded/ has under a name; while pages are recorded, perhaps None.
+
+    Raises the directive's error if there is nothing.
+    """
+    path = pathlib.Path(directive.env.srcdir) / "recorded" / file
+    directive.env.note_dependency(str(path))
+    found = json.loads(path.read_text()).get(name)
+    if found is None and not directive.config.recording:
+        raise directive.error(f"{name} is not recorded yet in {file}: run make docs-record")
+    return found
 
 
 def setup(app):
-    # True while tools/run_page.py builds the site to record what the pages still lack.
+    # True while tools/record_pages.py builds the site to record what the pages still lack.
     app.add_config_value("recording", False, "")
     app.add_directive("terminal", Terminal)
     connect(app)

@@ -13,6 +13,17 @@ document.addEventListener("DOMContentLoaded", () => {
     input.addEventListener("change", () => input.nextElementSibling.click());
   }
 
+  // A link may lead into what is folded.
+  const unfold = () => {
+    const target = document.getElementById(decodeURIComponent(location.hash.slice(1)));
+    for (let node = target; node; node = node.parentElement) {
+      if (node.tagName === "DETAILS") node.open = true;
+    }
+    if (target) target.scrollIntoView();
+  };
+  window.addEventListener("hashchange", unfold);
+  unfold();
+
   // The phone's menu button is a mere <i>, which only a finger can press.
   const button = document.querySelector("i[data-toggle='wy-nav-top']");
   const menu = document.querySelector(".wy-nav-side");

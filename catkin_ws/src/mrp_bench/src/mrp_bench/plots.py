@@ -1,187 +1,232 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The plots of a report, each as SVG and as PNG."""
+"""The plots of what results.json says: each is a function that returns an svg.Plot, or None."""
 
-import matplotlib
+import textwrap
 
-matplotlib.use("Agg")
+from mrp_bench import svg
+from mrp_bench.tables import FAN_SIDES, ROBOTS
+from mrp_bench.ways import WAYS, size_text
 
-import matplotlib.pyplot as plt
-import matplotlib.ticker
+_WIDTH = 720
 
-from mrp_bench import fan_report, launch_report, start_report
-from mrp_bench.rounds import size_text
-from mrp_bench.ways import WAYS
-
-# A colour for each of what is drawn as lines; they can be told apart by the colour-blind, too
-# (Okabe and Ito's), and the marks tell them apart in print.
+# The ways that are drawn as lines.
 _LINES = {
-    "raw_cpp": ("#000000", "s"),
-    "raw_py": ("#777777", "D"),
-    "cpp_cpp": ("#0072b2", "o"),
-    "cpp_py": ("#56b4e9", "v"),
-    "py_cpp": ("#e69f00", "^"),
-    "py_py": ("#d55e00", "X"),
+    "raw_cpp": (svg.TEXT, "square"),
+    "raw_py": (svg.GREY, "diamond"),
+    "cpp_cpp": (svg.BLUE, "circle"),
+    "cpp_py": (svg.SKY, "down"),
+    "py_cpp": (svg.AMBER, "up"),
+    "py_py": (svg.RED, "star"),
 }
-_COLOR, _LIMIT_COLOR = "#0072b2", "#777777"
-
-_PLAIN = matplotlib.ticker.StrMethodFormatter("{x:g}")
-
-plt.rcParams.update(
-    {
-        "svg.fonttype": "none",  # text stays text
-        "svg.hashsalt": "mrp",  # the same figures give the same file
-        "font.family": "sans-serif",
-        "axes.spines.top": False,
-        "axes.spines.right": False,
-        "axes.axisbelow": True,
-    }
-)
 
 
-def draw(rows, starts, robots, fans, cores, verdict, folder):
-    """Draw what the rows give, starts (starts.py), robots (launches.py), and fans (fans.py).
-
-    cores: of this machine
-    verdict: why they are not to be trusted, or None; it is written across
-    """
-    small = [row for row in rows if row.size == 8 and row.rate == 1000]
-    if small:
-        _save(_latencies(small), "latency", verdict, folder)
-    lines = {
-        "latency_by_size": _by(rows, "size", lambda row: row.rate),
-        "latency_by_rate": _by(rows, "rate", lambda row: row.size == 8 and row.rate),
-    }
-    for name, figure in lines.items():
-        if figure:
-            _save(figure, name, verdict, folder)
-    burst = [row for row in rows if row.size == 8 and row.rate == 0]
-    if burst:
-        _save(_throughputs(burst), "throughput", verdict, folder)
-    ours = [one for one in starts if one["variant"] == "mrp" and not one["cold"]]
-    if ours:
-        figure = plt.figure(figsize=(9, 4))
-        start_report.timeline(ours, figure)
-        _save(figure, "start_and_stop", verdict, folder)
-    if len({one["robots"] for one in robots}) > 2:
-        figure, axes = plt.subplots(figsize=(9, 5), constrained_layout=True)
-        launch_report.scale(robots, axes)
-        _save(figure, "scale", verdict, folder)
-    if len({one["publishers"] for one in fans}) > 2:
-        figure = plt.figure(figsize=(9, 7), constrained_layout=True)
-        fan_report.draw(fans, cores, figure)
-        _save(figure, "fans", verdict, folder)
+def write(content, folder):
+    """Write each plot as a file. If the machine was too noisy, it says so across the plot."""
+    for name, draw in PLOTS.items():
+        plot = draw(content)
+        if plot and content["verdict"]:
+            across = f'opacity="0.5" transform="rotate(-20 {plot.width / 2} {plot.height / 2})"'
+            words = "too noisy a machine"
+            plot.parts.append(
+                svg.text(plot.width / 2, plot.height / 2, words, "middle", 48, across)
+            )
+        if plot:
+            (folder / f"{name}.svg").write_text(svg.document(plot))
 
 
-def _save(figure, name, verdict, folder):
-    if verdict:
-        figure.text(
-            0.5,
-            0.5,
-            "too noisy a machine",
-            ha="center",
-            va="center",
-            rotation=20,
-            fontsize=34,
-            color="#cc0000",
-            alpha=0.35,
-        )
-    for ending in ("svg", "png"):
-        metadata = {"Date": None} if ending == "svg" else {}
-        figure.savefig(folder / f"{name}.{ending}", metadata=metadata, dpi=120)
-    plt.close(figure)
+def latency(content):
+    """Draw p50, p90 and p99 of each way, for 8 bytes at 1000 Hz."""
+    rows = [row for row in content["rows"] if (row["size"], row["rate"]) == (8, 1000)]
+    rows.sort(key=lambda row: row["latency"]["p50"])
+    spans = [[row["latency"][name] for name in ("p50", "p90", "p99")] for row in rows]
+    notes = [f"{span[0]:.1f}" for span in spans]
+    title = "8 bytes at 1000 Hz, µs: dot p50, thick line to p90, thin line to p99"
+    return _dots(title, rows, spans, notes)
 
 
-def _dots_figure(rows, title, label):
-    figure, axes = plt.subplots(figsize=(9, 1.2 + 0.3 * len(rows)), constrained_layout=True)
-    axes.set_yticks(range(len(rows)))
-    axes.set_yticklabels([WAYS[row.way].text for row in rows])
-    axes.invert_yaxis()
-    axes.set_xscale("log")
-    axes.set_xlabel(label)
-    axes.set_title(title, loc="left")
-    axes.grid(axis="x", which="both", color="#dddddd")
-    return figure, axes
+def throughput(content):
+    """Draw how many messages of 8 bytes each way delivers in a second."""
+    rows = [row for row in content["rows"] if (row["size"], row["rate"]) == (8, 0)]
+    rows.sort(key=lambda row: -row["throughput"])
+    notes = []
+    for row in rows:
+        lost = f", {row['lost'] / row['sent']:.0%} lost" if row["lost"] else ""
+        notes.append(f"{row['throughput']:,.0f}".replace(",", " ") + lost)
+    title = "8 bytes as fast as it goes, messages per second"
+    return _dots(title, rows, [[row["throughput"]] for row in rows], notes)
 
 
-def _latencies(rows):
-    rows = sorted(rows, key=lambda row: row.latency["p50"])
-    figure, axes = _dots_figure(
-        rows,
-        "How long 8 bytes are on their way, at 1000 Hz",
-        "microseconds: dot p50, thick line to p90, thin line to p99",
-    )
-    for y, row in enumerate(rows):
-        color = _LIMIT_COLOR if WAYS[row.way].is_raw else _COLOR
-        axes.hlines(y, row.latency["p50"], row.latency["p99"], color=color, linewidth=1)
-        axes.hlines(y, row.latency["p50"], row.latency["p90"], color=color, linewidth=4)
-        axes.plot(row.latency["p50"], y, "o", color=color)
-        axes.annotate(
-            f"{row.latency['p50']:.1f}",
-            (row.latency["p50"], y),
-            xytext=(-7, 0),
-            textcoords="offset points",
-            ha="right",
-            va="center",
-            fontsize=8,
-        )
-    axes.set_xlim(left=min(row.latency["p50"] for row in rows) / 1.7)
-    axes.xaxis.set_major_formatter(_PLAIN)
-    return figure
-
-
-def _throughputs(rows):
-    rows = sorted(rows, key=lambda row: -row.throughput)
-    figure, axes = _dots_figure(
-        rows, "Messages of 8 bytes, as fast as it goes", "messages per second"
-    )
-    for y, row in enumerate(rows):
-        color = _LIMIT_COLOR if WAYS[row.way].is_raw else _COLOR
-        axes.plot(row.throughput, y, "o", color=color)
-        lost = f", {row.lost / row.sent:.0%} lost" if row.lost else ""
-        axes.annotate(
-            f"{row.throughput:,.0f}".replace(",", " ") + lost,
-            (row.throughput, y),
-            xytext=(7, 0),
-            textcoords="offset points",
-            va="center",
-            fontsize=8,
-        )
-    axes.set_xlim(right=4 * max(row.throughput for row in rows))
-    return figure
-
-
-def _by(rows, attribute, wanted):
-    """Return the figure of p50 against a size or a rate, or None if there is only one."""
-    chosen = [row for row in rows if row.way in _LINES and wanted(row)]
-    xs = sorted({getattr(row, attribute) for row in chosen})
-    if len(xs) < 2:
+def _dots(title, rows, spans, notes):
+    """Draw a row for each way: its name, a dot, lines to further values, and a note."""
+    if not rows:
         return None
-    figure, axes = plt.subplots(figsize=(9, 5), constrained_layout=True)
-    for way, (color, mark) in _LINES.items():
-        points = {}
-        for row in chosen:
-            if row.way == way:
-                # Of one size at several rates, the one that is nearest to 1000 Hz.
-                points.setdefault(getattr(row, attribute), []).append(row)
-        if not points:
-            continue
-        best = [min(points[x], key=lambda row: abs(row.rate - 1000)) for x in sorted(points)]
-        axes.plot(
-            sorted(points),
-            [row.latency["p50"] for row in best],
-            color=color,
-            marker=mark,
-            label=WAYS[way].text,
+    left, right, top = 290, 150, 40
+    names = [textwrap.wrap(WAYS[row["way"]].text, 42) for row in rows]
+    bottom = top + svg.ROW * sum(map(len, names))
+    scale = svg.Scale([value for span in spans for value in span], left, _WIDTH - right)
+    parts = [svg.text(0, 16, title, more='font-weight="bold"')]
+    for tick in scale.ticks():
+        parts.append(svg.line(scale(tick), top, scale(tick), bottom, more='opacity="0.15"'))
+        parts.append(
+            svg.text(scale(tick), bottom + 16, f"{tick:,}".replace(",", " "), "middle", 12)
         )
-    axes.set_xscale("log")
-    axes.set_yscale("log")
-    texts = [size_text(x) for x in xs] if attribute == "size" else [f"{x} Hz" for x in xs]
-    axes.set_xticks(xs)
-    axes.set_xticklabels(texts)
-    axes.set_xticks([], minor=True)
-    axes.yaxis.set_major_formatter(_PLAIN)
-    axes.set_ylabel("p50, microseconds")
-    axes.set_title(f"How long a message is on its way, by {attribute}", loc="left")
-    axes.grid(which="both", color="#dddddd")
-    axes.legend()
-    return figure
+    y = top + svg.ROW / 2
+    for row, name, (value, *further), note in zip(rows, names, spans, notes):
+        color = svg.GREY if WAYS[row["way"]].is_raw else svg.BLUE
+        for width, end in zip((5, 1), further):
+            parts.append(svg.line(scale(value), y, scale(end), y, color, width))
+        parts.append(svg.mark("circle", scale(value), y, color))
+        parts.append(svg.text(_WIDTH, y + 4, note, "end", 12))
+        for words in name:
+            parts.append(svg.text(0, y + 4, words))
+            y += svg.ROW
+    return svg.Plot(_WIDTH, bottom + 24, parts)
+
+
+def latency_by_size(content):
+    """Draw the p50 of the plain ways against the size."""
+    # At several rates: the one that is nearest to 1000 Hz.
+    rates = {}
+    for row in content["rows"]:
+        if row["rate"] and row["way"] in _LINES:
+            rates.setdefault(row["size"], set()).add(row["rate"])
+    nearest = {size: min(of, key=lambda rate: abs(rate - 1000)) for size, of in rates.items()}
+    rows = [row for row in content["rows"] if nearest.get(row["size"]) == row["rate"]]
+    return _by("size", rows, size_text)
+
+
+def latency_by_rate(content):
+    """Draw the p50 of the plain ways against the rate, for 8 bytes."""
+    rows = [row for row in content["rows"] if row["size"] == 8 and row["rate"]]
+    return _by("rate", rows, lambda rate: f"{rate} Hz")
+
+
+def _by(what, rows, words):
+    ticks = {number: words(number) for number in sorted({row[what] for row in rows})}
+    if len(ticks) < 2:
+        return None
+    series = []
+    for way, (color, mark) in _LINES.items():
+        points = sorted((row[what], row["latency"]["p50"]) for row in rows if row["way"] == way)
+        if points:
+            series.append(svg.Series(WAYS[way].text, color, mark, points))
+    parts = svg.panel(f"p50 in µs, by {what}", series, 50, 30, 450, 260, ticks)
+    return svg.Plot(520, 400, parts + svg.legend(series, 50, 335, 220))
+
+
+def scale(content):
+    """Draw the costs against the number of robots."""
+    of = content["robots"]
+    if not of["exponents"]:
+        return None
+    styles = {
+        "up": (svg.BLUE, "circle"),
+        "down": (svg.SKY, "down"),
+        "cores": (svg.RED, "star"),
+        "cpp": (svg.TEXT, "square"),
+        "py": (svg.GREY, "diamond"),
+        "p50": (svg.GREEN, "up"),
+    }
+    series = [
+        svg.Series(
+            f"{ROBOTS[name]}: ^{of['exponents'][name][0]:.2f}",
+            *style,
+            [(one["robots"], one[name]) for one in of["figures"]],
+        )
+        for name, style in styles.items()
+    ]
+    ticks = {one["robots"]: str(one["robots"]) for one in of["figures"]}
+    title = "Costs by the number of robots of four nodes each (^ exponent)"
+    parts = svg.panel(title, series, 50, 30, 450, 300, ticks)
+    return svg.Plot(520, 440, parts + svg.legend(series, 50, 375, 240))
+
+
+_FAN_COLORS = {"C++": svg.BLUE, "Python": svg.RED}
+_FAN_STYLES = {"publishers": ("circle", False), "subscribers": ("up", True)}
+
+
+def fans(content):
+    """Draw the costs against the number of publishers or subscribers, in four panels."""
+    found = content["fans"]["series"]
+    counts = sorted({one["nodes"] for of in found for one in of["figures"]})
+    if len(counts) < 3:
+        return None
+    panels = {
+        "Seconds until all are connected": ("up",),
+        f"Cores in use, of {content['machine']['cores']}": ("cores",),
+        "MB per node of the many": ("many_megabytes",),
+        "Latency in µs: p50, and thin p99": ("p50", "p99"),
+    }
+    top = svg.ROW * (len(found) // 2) + 50
+    ticks = {count: str(count) for count in counts}
+    parts = svg.legend([_fan_line(of, "up") for of in found], 50, 12, 300)
+    for number, (title, names) in enumerate(panels.items()):
+        lines = [_fan_line(of, name) for of in found for name in names]
+        x, y = 50 + 370 * (number % 2), top + 260 * (number // 2)
+        parts += svg.panel(title, lines, x, y, 290, 190, ticks)
+    return svg.Plot(_WIDTH, top + 490, parts)
+
+
+def _fan_line(of, name):
+    mark, dashed = _FAN_STYLES[of["side"]]
+    key = of["side"][:-1] + "_megabytes" if name == "many_megabytes" else name
+    return svg.Series(
+        f"{of['language']}: {FAN_SIDES[of['side']]}",
+        _FAN_COLORS[of["language"]],
+        mark,
+        [(one["nodes"], one[key]) for one in of["figures"]],
+        dashed,
+        thin=name == "p99",
+    )
+
+
+# What the bars of the timeline say.
+_BARS = {"starts": svg.AMBER, "runs": svg.BLUE, "has the signal to end": svg.RED}
+
+
+def start_and_stop(content):
+    """Draw when each process starts, runs and ends, in the most usual start."""
+    start = content["starts"]["timeline"]
+    if not start:
+        return None
+    left, row, top = 160, 26, 30
+    second = (_WIDTH - left - 20) / start["end"]
+    bottom = top + row * len(start["bars"])
+    stop = left + second * start["stop"]
+    parts = [svg.text(0, 16, "Start and stop of the four nodes", more='font-weight="bold"')]
+    for number, (name, spans) in enumerate(start["bars"].items()):
+        y = top + row * number
+        parts.append(svg.text(0, y + 16, name))
+        for color, begin, end in zip(_BARS.values(), spans, spans[1:]):
+            parts.append(svg.bar(left + second * begin, left + second * end, y + 2, row - 4, color))
+        if name in start["first_message"]:
+            x = left + second * start["first_message"][name]
+            parts.append(svg.mark("up", x, y + row / 2, svg.TEXT))
+    parts.append(svg.line(stop, top, stop, bottom))
+    for begin, end in ((left, stop), (stop, _WIDTH - 20)):
+        for half in range(int((end - begin - 12) / second * 2) + 1):
+            x = begin + second * half / 2
+            parts.append(svg.text(x, bottom + 16, f"{half / 2:g}", "middle", 12))
+    parts.append(svg.text((left + stop) / 2, bottom + 34, "seconds since the call", "middle"))
+    parts.append(svg.text((stop + _WIDTH - 20) / 2, bottom + 34, "seconds since Ctrl-C", "middle"))
+    x = 0
+    for words, color in _BARS.items():
+        parts += [svg.bar(x, x + 20, bottom + 50, 12, color), svg.text(x + 28, bottom + 61, words)]
+        x += 60 + 8 * len(words)
+    parts.append(svg.mark("up", x + 10, bottom + 57, svg.TEXT))
+    parts.append(svg.text(x + 28, bottom + 61, "has its first message"))
+    return svg.Plot(_WIDTH, bottom + 70, parts)
+
+
+PLOTS = {
+    draw.__name__: draw
+    for draw in (
+        latency,
+        latency_by_size,
+        latency_by_rate,
+        throughput,
+        start_and_stop,
+        scale,
+        fans,
+    )
+}

@@ -13,7 +13,7 @@ import time
 
 from mrp_bench import noise
 from mrp_bench.programs import Running, Slice
-from mrp_bench.ways import WAYS
+from mrp_bench.ways import WAYS, size_text
 
 # What a plan consists of: a way's name, and a Slice.
 Step = collections.namedtuple("Step", "way piece")
@@ -132,13 +132,6 @@ def describe(piece):
     """Return a Slice in words."""
     rate = f"at {piece.rate} Hz" if piece.rate else "as fast as it goes"
     return f"{size_text(piece.size)} {rate}"
-
-
-def size_text(size):
-    for unit, factor in (("MB", 1 << 20), ("kB", 1 << 10)):
-        if size >= factor:
-            return f"{size // factor} {unit}"
-    return f"{size} B"
 
 
 def steps(ways, *pieces):

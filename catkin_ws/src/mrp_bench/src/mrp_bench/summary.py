@@ -6,16 +6,11 @@ import collections
 import numpy
 
 from mrp_bench import stats
-from mrp_bench.ways import WAYS
-
-LIMITS = ("raw_cpp", "raw_py")
+from mrp_bench.ways import LIMITS, WAYS
 
 # The share of a slice's messages that arrive first and are left out of its latencies: until then
 # the programs have been woken up, and their caches filled.
 _WARM_UP = 0.1
-
-# A ratio is none if the bounds of its confidence interval lie further apart than by this factor.
-_WIDEST_INTERVAL = 2
 
 # latency: in us, of the names in stats.PERCENTILES. throughput: messages per second.
 # latency_ratio, throughput_ratio: limit's name -> stats.Estimate, without those that were not
@@ -94,8 +89,3 @@ def _row(name, size, rate, rounds, limits):
         lost=sum(one.lost for one in rounds),
         disordered=sum(one.disordered for one in rounds),
     )
-
-
-def is_noisy(estimate):
-    """Return whether an Estimate is too uncertain to be a figure."""
-    return estimate.high > _WIDEST_INTERVAL * estimate.low

@@ -94,3 +94,13 @@ _ALL = [
     _way("rostopic_echo", "C++ to rostopic echo", CPP, ROSTOPIC, ("only_small=1",)),
 ]
 WAYS = {way.name: way for way in _ALL}
+
+# What each way is compared with.
+LIMITS = ("raw_cpp", "raw_py")
+
+
+def size_text(size):
+    for unit, factor in (("MB", 1 << 20), ("kB", 1 << 10)):
+        if size >= factor:
+            return f"{size // factor} {unit}"
+    return f"{size} B"

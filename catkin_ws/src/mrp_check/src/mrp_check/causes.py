@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from mrp_check.contract.finding import ERROR, NOTE
+from mrp_check.contract.finding import ERROR, NOTE, Finding
 
 # What keeps a node from running at all, or from being itself.
 _FATAL = set(
@@ -63,7 +63,8 @@ def told_once(findings, facts=None, nodes=None):
     facts: a sources.facts.Facts, which says which files a node is made of; or None
     nodes: name -> what was seen of a node of the spec, a running.node.Node; None if nothing has run
     """
-    kept, seen = [], {}
+    kept: list[Finding] = []
+    seen: dict[tuple[object, ...], set[str | None]] = {}
     for finding in findings:
         what = (finding.id, finding.file, finding.line, finding.severity)
         of_nodes = seen.setdefault(what, set())

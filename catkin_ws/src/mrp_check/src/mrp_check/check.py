@@ -13,7 +13,7 @@ from mrp_check import causes, confine
 from mrp_check.building.catkin import missing_tool
 from mrp_check.case import Case
 from mrp_check.contract.errors import CannotCheck
-from mrp_check.contract.finding import ERROR
+from mrp_check.contract.finding import ERROR, Finding
 from mrp_check.contract.requirements import closure
 from mrp_check.contract.spec import Spec
 from mrp_check.contract.verdict import BROKEN, FINDINGS, MET, UNCHECKED, Report
@@ -25,7 +25,7 @@ _FOLD = 3  # findings about files outside the exercise: more are folded into one
 
 
 def check(
-    path,
+    package: Package,
     spec: Spec,
     only=(),
     timeout: float = 600,
@@ -33,14 +33,12 @@ def check(
 ) -> Report:
     """Check one package.
 
-    path: its folder
     only: ids of the only requirements to check; all if empty
     timeout: seconds that all of it may take
 
-    Raises PackageError if there is no package, CannotCheck if a tool is missing. What else keeps
-    something from being checked is in the report, with what could be checked.
+    Raises CannotCheck if a tool is missing. What else keeps something from being checked is in the
+    report, with what could be checked.
     """
-    package = Package(path)
     missing = missing_tool()
     if missing:
         raise CannotCheck(missing)
@@ -55,7 +53,7 @@ def check(
             confine.stop()
             raise
         finally:
-            case.catkin.close()
+            case.close()
     finally:
         confine.remove(folder)
     return examination.report()
@@ -66,10 +64,13 @@ class _Examination:
 
     def __init__(self, case, ids):
         self.case, self.ids = case, ids
-        self.findings, self.failed, self.reasons, self.lost = [], {}, [], {}
-        needs = _needs(ids)
+        self.findings: list[Finding] = []
+        self.failed: dict[str, str] = {}
+        self.reasons: list[str] = []
+        self.lost: dict[str, Exception] = {}
+        needs = needs_of(ids)
         if "facts" in needs:
-            case.read_headers()  # while CMake configures
+            _ = case.headers  # they are read while CMake configures
         # Others that need no more are asked, too: they may know the cause.
         chosen = [rule for rule in RULES if needs.issuperset(rule.needs)]
         for stage, rules in itertools.groupby(chosen, lambda rule: rule.stage):
@@ -165,19 +166,23 @@ def _folded(findings, facts):
     and severity tells of them all."""
     of_nodes = {file for files in facts.sources.values() for file in files} if facts else set()
     outside = facts.python.keys() - of_nodes if facts else ()
-    groups = {}
+    groups: dict[object, list[Finding]] = {}
     for finding in findings:
         alone = finding.file not in outside
         key = id(finding) if alone else (finding.id, finding.severity, finding.consequence_of)
         groups.setdefault(key, []).append(finding)
-    for first, *more in groups.values():
-        if len(more) >= _FOLD:
-            files = list(dict.fromkeys(f.file for f in (first, *more)))
+    kept = []
+    for group in groups.values():
+        first = group[0]
+        if len(group) > _FOLD:
+            files = list(dict.fromkeys(f.file for f in group if f.file))
             first.message = (
-                f"{len(more) + 1} such faults in files that are no node of the exercise:"
+                f"{len(group)} such faults in files that are no node of the exercise:"
                 f" {', '.join(files[:5])}{', ...' if files[5:] else ''}. The first: {first.message}"
             )
-    return [f for group in groups.values() for f in (group[:1] if len(group) > _FOLD else group)]
+            group = [first]
+        kept += group
+    return kept
 
 
 def unseen(case, ids):
@@ -186,6 +191,6 @@ def unseen(case, ids):
     return {id_: why for id_, why in found.items() if why}
 
 
-def _needs(ids):
+def needs_of(ids):
     """Return all that must be known to check these requirements."""
     return closure({need for rule in RULES if {*rule.ids} & {*ids} for need in rule.needs})

@@ -24,74 +24,34 @@ As another user and without namespaces, a command that means harm could still re
 user's files, signal its user's processes, and use the network. `isolation()` says what holds.
 """
 
-import atexit
+from __future__ import annotations
+
 import contextlib
 import dataclasses
-import enum
-import functools
-import json
 import os
-import pathlib
 import selectors
 import shutil
 import signal
 import subprocess
 import tempfile
-import threading
 import time
 import uuid
-from typing import List, Optional, Sequence
+from typing import IO, Callable, Mapping, Sequence
 
 import psutil
 
-from mrp_check.confined import apart
+from mrp_check import sandbox
+from mrp_check.confined import apart, crossing, variables, warden
+from mrp_check.confined.warden import MEGABYTE, Limits
+from mrp_check.sandbox import ConfineError
 
-_HERE = pathlib.Path(__file__).resolve().parent
-_MARK = "MRP_CHECK_RUN"  # the environment variable that marks the processes of one run
-_MEGABYTE = 2**20
-
-# What a command needs of /etc: to find libraries, programs, users, and this machine's own name.
-_ETC = ("alternatives", "group", "hosts", "ld.so.cache", "ld.so.conf", "ld.so.conf.d", "localtime")
-_ETC += ("nsswitch.conf", "os-release", "passwd", "ros")
-# User ids that systemd, too, gives to what runs for a while; no user of a machine has one.
-_IDS = range(61184, 65520)
-_HANDING_OVER = threading.Lock()
-_RUNNING = set()  # the watchers of all runs
-# With these, root starts and ends what runs as another user, and reads its files.
-_CAPABILITIES = ("CAP_DAC_OVERRIDE", "CAP_KILL", "CAP_SETGID", "CAP_SETUID")
+_RUNNING: set[IO[bytes]] = set()  # the standard inputs of the watchers of all runs
 
 # Seconds that the watcher may take, after a limit, to kill all and to say so.
 _GRACE = 20
 # So many times what is kept of the output may be written before the command is ended for it.
 _FLOOD = 50
-
-
-class ConfineError(Exception):
-    """The command could not be confined, or its watcher was killed: says what happened."""
-
-
-@dataclasses.dataclass
-class Limits:
-    """What a command may use. Sizes are in bytes, times in seconds.
-
-    time: wall time
-    cpu: processor time of each process
-    memory: of each process (address space), and of all together (resident)
-    processes: threads of all processes together
-    open_files: of each process
-    file_size: of each file that it writes
-    disk: of the scratch folder as a whole
-    output: what is kept of standard output, and of standard error
-    """
-
-    time: float = 120
-    cpu: float = 120
-    memory: int = 3072 * _MEGABYTE
-    processes: int = 400
-    open_files: int = 1024
-    file_size: int = 256 * _MEGABYTE
-    disk: int = 1024 * _MEGABYTE
-    output: int = 1 * _MEGABYTE
+_CHUNK = 2**16  # bytes that are read at once
 
 
 @dataclasses.dataclass
@@ -106,95 +66,40 @@ class Result:
     left: command lines of processes that were still there after it had ended (they are killed)
     """
 
-    code: Optional[int]
-    ended_by: Optional[str]
+    code: int | None
+    ended_by: str | None
     seconds: float
     output: str
     errors: str
     cut: bool
-    left: List[str]
+    left: list[str]
 
-    def limit_text(self, limits):
+    def limit_text(self, limits: Limits) -> str | None:
         """Return a sentence that says which limit was broken, or None."""
         said = {
             "time": f"it did not end within {limits.time:.0f} s",
-            "memory": f"it used more than {limits.memory // _MEGABYTE} MB of memory",
+            "memory": f"it used more than {limits.memory // MEGABYTE} MB of memory",
             "processes": f"it started more than {limits.processes} processes and threads",
-            "disk": f"it wrote more than {limits.disk // _MEGABYTE} MB of files",
-            "output": f"it printed more than {_FLOOD * limits.output // _MEGABYTE} MB",
+            "disk": f"it wrote more than {limits.disk // MEGABYTE} MB of files",
+            "output": f"it printed more than {_FLOOD * limits.output // MEGABYTE} MB",
         }
-        return said.get(self.ended_by)
-
-
-def environment(scratch, **variables):
-    """Return the environment of a confined command, and make the folders that it names.
-
-    It takes over nothing of the user's own. The names in `variables` come on top.
-    """
-    env = {
-        "PATH": "/usr/bin:/bin:/usr/sbin:/sbin",
-        "LANG": "C.UTF-8",
-        "LC_ALL": "C.UTF-8",
-        "SHELL": "/bin/bash",
-        "TERM": "dumb",
-        "USER": "student",
-        "PYTHONDONTWRITEBYTECODE": "1",
-        # ROS 1 has no authentication: nothing listens beyond this machine that need not.
-        "ROS_HOSTNAME": "localhost",
-    }
-    return {**env, **folders(scratch), **variables}
-
-
-def folders(scratch):
-    """Return the variables that name a command's own folders, and make these."""
-    names = {"HOME": "home", "TMPDIR": "tmp", "ROS_HOME": "ros_home", "ROS_LOG_DIR": "ros_log"}
-    made = {name: pathlib.Path(scratch).resolve() / folder for name, folder in names.items()}
-    for folder in made.values():
-        folder.mkdir(parents=True, exist_ok=True)
-    return {name: str(folder) for name, folder in made.items()}
-
-
-class Isolation(enum.Enum):
-    """How far what runs is kept apart. The text says what does not hold, as a sentence's end."""
-
-    NAMESPACES = ""
-    USER = (
-        "this system makes no namespaces. The package's programs run as another user, who can use"
-        " the network and read what all users can read"
-    )
-    NONE = (
-        "this system makes no namespaces. The package's programs run as you: they can read and"
-        " change your files, and this verdict. Check only what you trust, or use the container"
-    )
-
-
-@functools.lru_cache(maxsize=None)
-def isolation():
-    """Return the Isolation that this user has on this system."""
-    command = [*_bubblewrap([]), "/bin/true"]
-    with contextlib.suppress(FileNotFoundError):  # bubblewrap may not be installed
-        done = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True)
-        if done.returncode == 0:
-            return Isolation.NAMESPACES
-    return Isolation.NONE if os.getuid() else Isolation.USER
+        return said.get(self.ended_by or "")
 
 
 def run(
-    command: Sequence[str],
-    scratch,
-    limits: Optional[Limits] = None,
-    env: Optional[dict] = None,
-    cwd=None,
-    readable: Sequence[str] = (),
-    writable: Sequence[str] = (),
+    command: Sequence[object],
+    scratch: str | os.PathLike[str],
+    limits: Limits | None = None,
+    env: Mapping[str, str] | None = None,
+    readable: Sequence[str | os.PathLike[str]] = (),
+    writable: Sequence[str | os.PathLike[str]] = (),
     namespaces: bool = True,
     observes: bool = False,
 ) -> Result:
     """Run a command to its end, or to the first limit that it breaks.
 
-    scratch: the only folder that it is meant to write to
-    env: its whole environment, if not that of environment(scratch)
-    cwd: where it starts, if not in scratch
+    scratch: where it starts, and the only folder that it is meant to write to
+    env: its whole environment, if not that of variables.environment(scratch)
     readable: more folders that it may read
     writable: more folders that it may write to, such as a compiler's cache
     namespaces: False makes none, even where they could be made
@@ -202,123 +107,70 @@ def run(
 
     Raises ConfineError.
     """
-    limits = limits or Limits()
-    scratch = os.path.realpath(scratch)
-    mark = uuid.uuid4().hex
-    env = {**(environment(scratch) if env is None else env), _MARK: mark}
-    namespaces = namespaces and isolation() is Isolation.NAMESPACES
+    scratch, mark = os.path.realpath(scratch), uuid.uuid4().hex
+    env = {**(variables.environment(scratch) if env is None else env), variables.MARK: mark}
+    user = sandbox.hand_over(scratch)
+    namespaces = namespaces and sandbox.isolation() is sandbox.Isolation.NAMESPACES
+    if observes:
+        env[variables.APART] = crossing.to_json(apart.Apart(user, namespaces))
+    words = [str(word) for word in command]
+    task = warden.Task(words, scratch, env, limits or Limits(), user, namespaces, observes)
+    if not namespaces:
+        return _watched([], task, mark if user is None else None)
     # Its /tmp goes with the run. It lies beside the scratch folder: nothing in that is safe to use.
     with tempfile.TemporaryDirectory(prefix="tmp_", dir=os.path.dirname(scratch)) as tmp:
         os.chmod(tmp, 0o1777)
-        task = {
-            "command": [str(part) for part in command],
-            "folders": [scratch, "/tmp"] if namespaces else [scratch],
-            "cwd": os.path.realpath(cwd or scratch),
-            "env": env,
-            "limits": dataclasses.asdict(limits),
-            "user": _hand_over(scratch),
-            "namespaces": namespaces,
-            "observes": observes,
-        }
-        if observes:
-            env[apart.VARIABLE] = json.dumps({key: task[key] for key in ("user", "namespaces")})
         binds = [("--bind", tmp, "/tmp")]
-        for option, paths in (("--ro-bind", [_HERE, *readable]), ("--bind", [scratch, *writable])):
+        given = {"--ro-bind": [sandbox.PACKAGE, *readable], "--bind": [scratch, *writable]}
+        for option, paths in given.items():
             binds += [(option, path, path) for path in map(os.path.realpath, paths)]
-        if namespaces:
-            return _run_warden(_bubblewrap(binds), task, limits, mark=None)
-        return _run_warden([], task, limits, mark=mark if task["user"] is None else None)
+        return _watched(sandbox.bubblewrap(binds), task, mark=None)
 
 
-@functools.lru_cache(maxsize=None)
-def code():
-    """Return the folder `confined`, as a command can read it: a home of root's may be closed."""
-    if isolation() is not Isolation.USER:
-        return _HERE / "confined"
-    folder = tempfile.mkdtemp(prefix="mrp_check_code_")
-    atexit.register(shutil.rmtree, folder, ignore_errors=True)
-    os.chmod(folder, 0o755)
-    package = pathlib.Path(folder, _HERE.name)
-    shutil.copytree(_HERE / "confined", package / "confined")
-    shutil.copy(_HERE / "__init__.py", package)  # some of these programs import others of them
-    return package / "confined"
-
-
-def stop():
+def stop() -> None:
     """End all that runs at this moment; each run() returns then."""
-    for warden in list(_RUNNING):
-        warden.stdin.close()
+    for stdin in list(_RUNNING):
+        stdin.close()
 
 
-def _bubblewrap(binds):
-    """Return bwrap and its options; binds: of more files (option, path outside, path within)."""
-    options = ["--unshare-pid", "--unshare-net", "--unshare-ipc", "--unshare-uts", "--as-pid-1"]
-    options += ["--die-with-parent", "--cap-drop", "ALL"]
-    for path in ("/bin", "/sbin", "/lib", "/lib32", "/lib64", "/libx32"):
-        if os.path.islink(path):
-            options += ["--symlink", os.readlink(path), path]
-        else:
-            options += ["--ro-bind-try", path, path]
-    pythons = [path.name for path in pathlib.Path("/etc").glob("python3*")]
-    for path in ("/etc", "/opt", "/run", "/home", "/root", "/var"):
-        options += ["--perms", "0755", "--dir", path]
-    for path in ("/usr", "/opt/ros", *(f"/etc/{name}" for name in (*_ETC, *pythons))):
-        options += ["--ro-bind-try", path, path]
-    options += ["--proc", "/proc", "--dev", "/dev"]
-    if os.getuid():
-        options += ["--unshare-user"]
-    else:
-        # To others the kernel's settings are read-only anyway; and they make a /proc within this.
-        options += ["--ro-bind", "/proc/sys", "/proc/sys"]
-        options += [word for name in _CAPABILITIES for word in ("--cap-add", name)]
-    options += ["--perms", "1777", "--size", str(64 * _MEGABYTE), "--tmpfs", "/dev/shm"]
-    for option, outside, within in binds:
-        for parent in reversed(pathlib.Path(within).parents):
-            options += ["--perms", "0755", "--dir", str(parent)]
-        options += [option, str(outside), str(within)]
-    return ["bwrap", *options, "--remount-ro", "/", "--"]
+def _watched(box: Sequence[str], task: warden.Task, mark: str | None) -> Result:
+    """Have a watcher do its task; return what came of it. Raises ConfineError.
 
-
-def _hand_over(scratch):
-    """Give to the owner of the scratch folder what root has put there; return the owner's id.
-
-    The first time, the owner is a new one, whom no process belongs to. Another user than root has
-    nothing to give away: None. Raises ConfineError.
+    box: the command that makes the namespaces, if there are any
+    mark: that of what runs, if it could kill its watcher
     """
-    if os.getuid():
-        return None
-    with _HANDING_OVER:
-        owner = os.stat(scratch).st_uid
-        if owner == 0:
-            used = {process.uids().real for process in psutil.process_iter(["uids"])}
-            free = [id_ for id_ in _IDS if id_ not in used]
-            owner = free[os.getpid() % len(free)]
-            try:
-                os.chown(scratch, owner, owner)
-            except PermissionError:
-                raise ConfineError(
-                    "root runs the package's programs as another user. For this it needs the"
-                    " capabilities CHOWN, DAC_OVERRIDE, KILL, SETGID and SETUID, and it lacks some"
-                    " of them here. Add them, or run the checker as a user who is not root"
-                ) from None
-    # By file descriptors: what runs at the same time may put links in the way.
-    for _, folders, files, fd in os.fwalk(scratch):
-        for name in (*folders, *files):
-            entry = os.stat(name, dir_fd=fd, follow_symlinks=False)
-            # A file with two names may be one of root's own, elsewhere.
-            if entry.st_uid == 0 and (entry.st_nlink == 1 or name in folders):
-                os.chown(name, owner, owner, dir_fd=fd, follow_symlinks=False)
-    return owner
+    watcher, stdin, pipes = _start(box, task)
+    _RUNNING.add(stdin)
+    # When the watcher has ended, so has all that it watched over; or else it is ended now.
+    reader = _Reader(pipes, task.limits.output, on_report=lambda: _kill_marked(mark))
+    try:
+        flood = reader.read(task.limits.time + _GRACE)
+        if flood:
+            # The end of its standard input tells it to kill all. What it writes goes on to be
+            # read, so that it does not stand still at a full pipe.
+            stdin.close()
+            reader.read(_GRACE, flood=False)
+    finally:
+        _RUNNING.discard(stdin)
+        stdin.close()
+        _end(watcher)
+        _kill_marked(mark)
+        for pipe in pipes.values():
+            pipe.close()
+    return _result(reader, flood)
 
 
-def _run_warden(sandbox, task, limits, mark):
+def _start(
+    box: Sequence[str], task: warden.Task
+) -> tuple[subprocess.Popen[bytes], IO[bytes], dict[str, IO[bytes]]]:
+    """Start a watcher and hand it its task; return it, its standard input, and what to read."""
     task_read, task_write = os.pipe()
     report_read, report_write = os.pipe()
-    # Debian's own Python, without the user's settings: the checker's may be anything.
-    warden_py = [*sandbox, "/usr/bin/python3", "-I", str(_HERE / "confined" / "warden.py")]
     try:
-        warden = subprocess.Popen(
-            [*warden_py, str(task_read), str(report_write)],
+        # Debian's own Python, without the user's settings: the checker's may be anything.
+        python = ["/usr/bin/python3", "-I", str(sandbox.PACKAGE / "confined" / "warden.py")]
+        watcher = subprocess.Popen(
+            [*box, *python, str(task_read), str(report_write)],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=subprocess.PIPE,
@@ -330,71 +182,47 @@ def _run_warden(sandbox, task, limits, mark):
     finally:
         os.close(task_read)
         os.close(report_write)
-    _RUNNING.add(warden)
-    # When the watcher has ended, so has all that it watched over; or else it is ended now.
-    reader = _Reader(limits.output, on_report=lambda: _kill_marked(mark))
-    try:
-        try:
-            with os.fdopen(task_write, "w") as file:
-                json.dump(task, file)
-        except BrokenPipeError:
-            pass  # it has ended already: its output says why
-        flood = reader.read(
-            {warden.stdout: "output", warden.stderr: "errors", report_read: "report"},
-            time.monotonic() + limits.time + _GRACE,
-        )
-        if flood:
-            # The end of its standard input tells it to kill all. What it writes goes on to be
-            # read, so that it does not stand still at a full pipe.
-            warden.stdin.close()
-            reader.read(
-                {warden.stdout: "output", warden.stderr: "errors", report_read: "report"},
-                time.monotonic() + _GRACE,
-                flood=False,
-            )
-    finally:
-        _RUNNING.discard(warden)
-        warden.stdin.close()
-        _end(warden)
-        _kill_marked(mark)
-        warden.stdout.close()
-        warden.stderr.close()
-        os.close(report_read)
-    return _result(reader, flood)
+    # It may have ended already: its output says why.
+    with contextlib.suppress(BrokenPipeError), os.fdopen(task_write, "w") as file:
+        file.write(crossing.to_json(task))
+    report = os.fdopen(report_read, "rb")
+    assert watcher.stdin and watcher.stdout and watcher.stderr
+    pipes = {"output": watcher.stdout, "errors": watcher.stderr, "report": report}
+    return watcher, watcher.stdin, pipes
 
 
-def _result(reader, flood):
+def _result(reader: _Reader, flood: bool) -> Result:
     try:
-        report = json.loads(reader.text("report"))
-    except ValueError:
+        report = crossing.from_json(warden.Report, reader.text("report"))
+    except crossing.CrossingError:
         said = reader.text("errors").strip().splitlines()
         raise ConfineError(
             "the process that watches over the package's programs was ended"
             + (f": {said[-1]}" if said else "")
         ) from None
-    if not report["all_dead"]:
+    if not report.all_dead:
         raise ConfineError("some processes of the package could not be killed")
     return Result(
-        code=report["code"] if report["ended_by"] is None else None,
-        ended_by="output" if flood else report["ended_by"],
-        seconds=report["seconds"],
+        code=report.code if report.ended_by is None else None,
+        ended_by="output" if flood else report.ended_by,
+        seconds=report.seconds,
         output=reader.text("output"),
         errors=reader.text("errors"),
         cut=reader.cut,
-        left=report["left"],
+        left=report.left,
     )
 
 
-def _end(warden):
+def _end(watcher: subprocess.Popen[bytes]) -> None:
     """Wait until the watcher has ended, which the end of its standard input makes it do."""
     try:
-        warden.wait(_GRACE)
+        watcher.wait(_GRACE)
     except subprocess.TimeoutExpired:
-        os.killpg(warden.pid, signal.SIGKILL)
-        warden.wait()
+        os.killpg(watcher.pid, signal.SIGKILL)
+        watcher.wait()
 
 
-def _kill_marked(mark):
+def _kill_marked(mark: str | None) -> None:
     """Kill what bears a run's mark: after its watcher was killed, the only thing to know it by.
 
     mark: None where they could not have killed it
@@ -408,9 +236,9 @@ def _kill_marked(mark):
             return
 
 
-def _has_mark(process, mark):
+def _has_mark(process: psutil.Process, mark: str) -> bool:
     try:
-        return process.environ().get(_MARK) == mark
+        return process.environ().get(variables.MARK) == mark
     except psutil.Error:
         return False
 
@@ -418,32 +246,33 @@ def _has_mark(process, mark):
 class _Reader:
     """Reads pipes to their end; keeps of each the first `limit` bytes."""
 
-    def __init__(self, limit, on_report):
-        self.limit = limit
-        self.on_report = on_report
+    def __init__(
+        self, pipes: Mapping[str, IO[bytes]], limit: int, on_report: Callable[[], None]
+    ) -> None:
+        self.limit, self.on_report = limit, on_report
         self.cut = False
-        self._kept = {"output": bytearray(), "errors": bytearray(), "report": bytearray()}
-        self._seen = {"output": 0, "errors": 0, "report": 0}
-        self._ended = set()
+        self._open = dict(pipes)
+        self._kept = {name: bytearray() for name in pipes}
+        self._seen = dict.fromkeys(pipes, 0)
 
-    def text(self, name):
+    def text(self, name: str) -> str:
         return self._kept[name].decode("utf-8", errors="replace")
 
-    def read(self, pipes, deadline, flood=True):
-        """Read until all have ended, or until the deadline; with `flood`, until there is too much.
+    def read(self, seconds: float, flood: bool = True) -> bool:
+        """Read until all have ended, or for so long; with `flood`, until there is too much.
 
         Returns whether there was too much.
         """
+        deadline = time.monotonic() + seconds
         with selectors.DefaultSelector() as selector:
-            for pipe, name in pipes.items():
-                if name not in self._ended:
-                    selector.register(pipe, selectors.EVENT_READ, name)
-            while selector.get_map():
+            for name, pipe in self._open.items():
+                selector.register(pipe, selectors.EVENT_READ, name)
+            while self._open:
                 for key, _ in selector.select(max(0, deadline - time.monotonic())):
-                    data = os.read(key.fd, 65536)
+                    data = os.read(key.fd, _CHUNK)
                     if not data:
-                        self._ended.add(key.data)
                         selector.unregister(key.fileobj)
+                        del self._open[key.data]
                         if key.data == "report":
                             self.on_report()
                     self._take(key.data, data)
@@ -453,7 +282,7 @@ class _Reader:
                     return False
         return False
 
-    def _take(self, name, data):
+    def _take(self, name: str, data: bytes) -> None:
         self._seen[name] += len(data)
         kept = self._kept[name]
         room = self.limit - len(kept)
@@ -461,10 +290,10 @@ class _Reader:
         self.cut = self.cut or len(data) > room
 
 
-def remove(folder):
+def remove(folder: str | os.PathLike[str]) -> None:
     """Delete a scratch folder, also where the command took away its own rights to it."""
 
-    def make_writable(function, path, _):
+    def make_writable(function: Callable[[str], object], path: str, _: object) -> None:
         parent = os.path.dirname(path)
         for one in (parent, path):
             if not os.path.islink(one):

@@ -13,6 +13,13 @@ def wait(seconds):
         time.sleep(0.02)
 
 
+def work(seconds):
+    """Work for so many seconds of the ROS clock, or until Ctrl-C."""
+    end = rospy.get_time() + seconds
+    while not rospy.is_shutdown() and rospy.get_time() < end:
+        time.sleep(0.002)
+
+
 def print_namespaces():
     """Print the namespace in which the node is, and its own."""
     rospy.loginfo(

@@ -7,22 +7,15 @@ import concurrent.futures
 import functools
 import json
 import os
-import pathlib
 import shlex
 import shutil
 import typing
 
 from mrp_check import confine
-from mrp_check.confined import written
+from mrp_check.confined import variables, written
 from mrp_check.contract.errors import CannotCheck
 from mrp_check.student import cmake
-
-# Of this machine's own ROS, whatever workspace the user's shell has sourced.
-NOETIC = pathlib.Path("/opt/ros/noetic/setup.bash")
-
-# The environment variable that names a folder for ccache: then what is equal in many packages is
-# compiled once. A package that means harm could put something wrong into it: it is for tests alone.
-CACHE = "MRP_CHECK_CCACHE"
+from mrp_check.student.workspace import Workspace, search_path
 
 # program -> the Debian package that has it
 TOOLS = {
@@ -43,7 +36,7 @@ class Step(typing.NamedTuple):
     why_ended: str = ""  # the limit that it broke, as a sentence's part
 
 
-def missing_tool():
+def missing_tool() -> str | None:
     """Return a sentence that names a tool which is not installed, or None."""
     for program, package in TOOLS.items():
         if not shutil.which(program, path=search_path()):
@@ -51,54 +44,26 @@ def missing_tool():
     return None
 
 
-def search_path():
-    return "/usr/bin:/bin:/usr/sbin:/sbin" + (":/opt/ros/noetic/bin" if NOETIC.exists() else "")
-
-
-def sourced(command):
-    """Return a command that runs with this machine's own ROS."""
-    if not NOETIC.exists():
-        return list(command)
-    return ["bash", "-c", 'source "$0" && exec "$@"', str(NOETIC), *command]
-
-
 class Catkin:
     """catkin_make in the scratch workspace of a check. Everything runs confined, and only once."""
 
-    def __init__(self, workspace):
+    def __init__(self, workspace: Workspace) -> None:
         self.workspace = workspace
         self.folder = workspace.folder
-        self._building = None
-        self._pool = concurrent.futures.ThreadPoolExecutor(max_workers=3)
+        self._building: concurrent.futures.Future[confine.Result] | None = None
 
-    def close(self):
-        """Wait for what still runs."""
-        self._pool.shutdown(wait=True)
-
-    def run(self, *command, time=None, **variables):
-        """Run a command, confined, within the workspace; return a confine.Result."""
-        limits = confine.Limits(time=time or self.workspace.timeout)
-        cache = variables.get("CCACHE_DIR")
-        if cache:
-            os.makedirs(cache, exist_ok=True)  # within the confinement it could not be made
-            if os.getuid() == 0:
-                os.chmod(cache, 0o777)  # each check is another user's then
-        env = confine.environment(self.folder, **variables)
-        return confine.run(
-            sourced(command),
-            self.folder,
-            limits,
-            env,
-            readable=[self.workspace.given],
-            writable=[cache] if cache else [],
-        )
-
-    def _catkin_make(self, *arguments):
+    def _catkin_make(self, *arguments: str) -> confine.Result:
         trace = self.folder / "trace.json"
         package = self.workspace.package_folder
         files = [*package.rglob("CMakeLists.txt"), *package.rglob("*.cmake")]
         sources = [f"--trace-source={path.relative_to(package.parent)}" for path in files]
-        return self.run(
+        environment = self._compiler()
+        cache = environment.get("CCACHE_DIR")
+        if cache:
+            os.makedirs(cache, exist_ok=True)  # within the confinement it could not be made
+            if os.getuid() == 0:
+                os.chmod(cache, 0o777)  # each check is another user's then
+        return self.workspace.run(
             "catkin_make",
             *("-C", str(self.folder)),
             "--cmake-args",
@@ -109,10 +74,11 @@ class Catkin:
             *("--trace-expand", "--trace-format=json-v1", f"--trace-redirect={trace}", *sources),
             "--make-args",
             *arguments,
-            **self._compiler(),
+            writable=[cache] if cache else [],
+            env=environment,
         )
 
-    def _step(self, result):
+    def _step(self, result: confine.Result) -> Step:
         """Return the Step of a catkin_make. Raises CannotCheck if it took too long.
 
         What computes without end is ended by the limit of its processor time, and is the package's
@@ -128,39 +94,39 @@ class Catkin:
         return Step(result.code == 0, result.output + "\n" + result.errors, why)
 
     @staticmethod
-    def _compiler():
+    def _compiler() -> dict[str, str]:
         """Return the variables with which the compiler's messages are plain, in English."""
-        variables = {"GCC_COLORS": "", "VERBOSE": "", "CLICOLOR": "0", "PATH": search_path()}
-        if os.environ.get(CACHE) and shutil.which("ccache"):
-            variables["PATH"] = "/usr/lib/ccache:" + search_path()
-            variables.update(
-                CCACHE_DIR=os.environ[CACHE],
+        found = {"GCC_COLORS": "", "VERBOSE": "", "CLICOLOR": "0", "PATH": search_path()}
+        if os.environ.get(variables.CCACHE) and shutil.which("ccache"):
+            found["PATH"] = "/usr/lib/ccache:" + search_path()
+            found.update(
+                CCACHE_DIR=os.environ[variables.CCACHE],
                 CCACHE_NOHASHDIR="1",
                 CCACHE_UMASK="000",
-                CCACHE_BASEDIR=str(pathlib.Path("/")),
+                CCACHE_BASEDIR="/",
             )
-        return variables
+        return found
 
     @functools.cached_property
-    def configured(self):
+    def configured(self) -> Step:
         """The Step of `catkin_make`'s first half: CMake."""
         self.workspace.progress("configuring with CMake")
         return self._step(self._catkin_make("help"))
 
     @functools.cached_property
-    def model(self):
+    def model(self) -> cmake.Model:
         """What CMakeLists.txt says, as a cmake.Model."""
         configured = self.configured
         calls = cmake.traced(self.folder / "trace.json", self.workspace.package_folder)
         return cmake.Model(self.workspace.package_folder, calls, complete=configured.ok)
 
-    def start_building(self):
+    def start_building(self) -> None:
         """Begin to build in the background, if CMake succeeded."""
         if self._building is None and self.configured.ok:
-            self._building = self._pool.submit(self._catkin_make, "-k", "-j2")
+            self._building = self.workspace.submit(self._catkin_make, "-k", "-j2")
 
     @functools.cached_property
-    def built(self):
+    def built(self) -> Step | None:
         """The Step of `catkin_make`'s second half, or None if CMake failed."""
         self.start_building()
         if self._building is None:
@@ -168,17 +134,13 @@ class Catkin:
         self.workspace.progress("building")
         return self._step(self._building.result())
 
-    def wait_until_built(self):
+    def wait_until_built(self) -> None:
         """Wait until building has ended, if CMake succeeded; `built` says how."""
         self.start_building()
         if self._building is not None:
             concurrent.futures.wait([self._building])
 
-    def submit(self, function, *arguments):
-        """Run a function in the background; return its future."""
-        return self._pool.submit(function, *arguments)
-
-    def compile_commands(self):
+    def compile_commands(self) -> dict[str, tuple[str, list[str]]]:
         """Return source (path within the copy) -> arguments of its compiler."""
         path = self.folder / "build" / "compile_commands.json"
         try:

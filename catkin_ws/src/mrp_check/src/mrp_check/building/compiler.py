@@ -1,16 +1,17 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What g++ prints, as findings: the first error of each source, its line, and plain words."""
+"""What g++ prints, as findings: the first error of each source, and its line."""
 
 from __future__ import annotations
 
 import os
+import pathlib
 import re
-import typing
 
-from mrp_check.contract.finding import Finding
-from mrp_check.contract.words import nearest, perhaps
-from mrp_check.sources import uses
+from mrp_check.building import cpp_words
+from mrp_check.building.cpp_words import Problem
+from mrp_check.contract.finding import Finding, Line
 from mrp_check.student.cmake import relative
+from mrp_check.student.package import Package
 
 _ERROR = re.compile(
     r"^(?P<file>[^\s:][^:]*):(?P<line>\d+):(?:\d+:)? (?:fatal )?error: (?P<text>.*)$"
@@ -18,30 +19,19 @@ _ERROR = re.compile(
 _FROM = re.compile(r"^(?P<file>[^\s:][^:]*):(?P<line>\d+):\d+:\s+required from")
 _INCLUDED = re.compile(r"^(?:In file included from| +from) (?P<file>[^:]+):(?P<line>\d+)")
 
-_MESSAGES = (
-    "Bool Byte Char ColorRGBA Duration Empty Float32 Float64 Header Int16 Int32 Int64 Int8 String"
-    " Time UInt16 UInt32 UInt64 UInt8"
-).split()
 
-
-class Problem(typing.NamedTuple):
-    """One error of the compiler: where in the package it is, what was said, and what follows it."""
-
-    file: str
-    line: int
-    text: str
-    after: str
-
-
-def problems(output, copy):
+def problems(output: str, copy: pathlib.Path) -> list[Problem]:
     """Return, for each source of the package, the first error that the compiler found in it."""
     lines = output.splitlines()
-    found, chain, included = [], [], []
+    found: list[Problem] = []
+    chain: list[Line | None] = []  # of "required from"; None for a place in a header of others
+    included: list[Line | None] = []
     for index, line in enumerate(lines):
-        if _INCLUDED.match(line):
+        inclusion = _INCLUDED.match(line)
+        if inclusion:
             if line.startswith("In file"):
                 included, chain = [], []
-            included.append(_place(_INCLUDED.match(line), copy))
+            included.append(_place(inclusion, copy))
             continue
         required = _FROM.match(line)
         if required:
@@ -60,60 +50,30 @@ def problems(output, copy):
             places = [place for place in chain if place] or [p for p in included if p]
             later = [_place(m, copy) for m in map(_FROM.match, lines[index + 1 : index + 12]) if m]
             places += [place for place in later if place]
-            own = places[-1] if chain else places[0] if places else None
+            own = (places[-1] if chain else places[0]) if places else None
         chain, included = [], []
         if own is not None:
             found.append(Problem(*own, error.group("text"), after))
-    first = {}
+    first: dict[str, Problem] = {}
     for problem in found:
         first.setdefault(problem.file, problem)
     return list(first.values())
 
 
-def _place(match, copy):
+def _place(match: re.Match[str], copy: pathlib.Path) -> Line | None:
     # ccache hands the compiler paths that are relative to where it runs.
     path = os.path.join(copy.parents[1] / "build" / copy.name, match.group("file"))
     file = relative(path, copy)
     return (file, int(match.group("line"))) if file else None
 
 
-class _Words(typing.NamedTuple):
-    """What an error means, and what to do; the line to blame, if it is another than the compiler's;
-    and (old, new) in that line, if that mends it for certain."""
-
-    said: str
-    fix: str
-    line: int | None = None
-    change: tuple | None = None
-
-
-class _Error(typing.NamedTuple):
-    """A Problem that matches a shape of _WORDS."""
-
-    package: object
-    problem: Problem
-    lines: list
-    match: re.Match
-
-    def suggested(self):
-        """Return the name that the compiler itself suggests, or None."""
-        found = re.search(r"did you mean '([^']+)'", _plain(self.problem.text)) or re.search(
-            r"suggested alternative: '([^']+)'", _plain(self.problem.after.split("error:")[0])
-        )
-        return found and found.group(1)
-
-
-def _plain(text):
-    return text.replace("‘", "'").replace("’", "'")
-
-
-def finding(package, problem):
+def finding(package: Package, problem: Problem) -> Finding:
     """Return the Finding about a Problem."""
     lines = package.lines(problem.file)
     standard = re.search(r"support for the ISO C\+\+ (?:20)?(\d+) standard", problem.text)
     if standard:
         return _old_standard(package, standard.group(1), problem)
-    words = _in_words(package, problem, lines)
+    words = cpp_words.of(package, problem)
     line = words.line or max(1, min(problem.line, len(lines)))
     return Finding(
         "compile",
@@ -127,7 +87,7 @@ def finding(package, problem):
     )
 
 
-def _old_standard(package, needed, problem):
+def _old_standard(package: Package, needed: str, problem: Problem) -> Finding:
     """Return the Finding about a standard of C++ that is too old, as CMakeLists.txt sets it."""
     file = "CMakeLists.txt"
     line = package.find_line(file, "CXX_STANDARD") or package.find_line(file, "-std=") or 1
@@ -141,265 +101,3 @@ def _old_standard(package, needed, problem):
         seen=f"{package.lines(file)[line - 1].strip()}  (g++: {problem.text})",
         fix="Set the standard to 17.",
     )
-
-
-def _in_words(package, problem, lines):
-    text = _plain(problem.text)
-    for shape, words in _WORDS:
-        match = re.search(shape, text)
-        if match and callable(words):
-            return words(_Error(package, problem, lines, match))
-        if match:
-            return _Words(*(part.format(*match.groups()) for part in words))
-    return _Words(f"{text}.", "Compare the line with the one on the page.")
-
-
-def _semicolon(error):
-    before = error.match.group(1)
-    return _Words(
-        "a semicolon is missing at its end" + (f", before {before}." if before else "."),
-        "Add ; at the end of the statement.",
-        *_end_of_statement(error.lines, error.problem.line, before),
-    )
-
-
-def _end_of_statement(lines, line, following):
-    """Return the line at which the statement ends that stands before a token, if the token is the
-    first of its line, and the change that ends it. Comments may stand between the two."""
-    if following and lines[line - 1].lstrip().startswith(following):
-        for number in range(line - 1, 0, -1):
-            text = lines[number - 1].strip()
-            if text and not text.startswith(("//", "/*", "*")):
-                return number, (text, text + ";") if "//" not in text else None
-    return None, None
-
-
-_MISSING = {
-    ")": "a closing bracket ) is missing.",
-    "(": "an opening bracket ( is missing.",
-    "}": "a closing brace } is missing.",
-    "{": "an opening brace { is missing.",
-    "]": "a closing bracket ] is missing.",
-    ">": "a closing > is missing.",
-}
-
-
-def _expected(error):
-    what = error.match.group(1)
-    unbalanced = unbalanced_brace(error.lines)
-    if unbalanced and what in ("}", "unqualified-id", "declaration"):
-        return _brace(*unbalanced)
-    if what in _MISSING:
-        return _Words(_MISSING[what], "Close what was opened.")
-    return _Words(
-        f"{what} is expected there. Often something is missing or too much in the line above it.",
-        "Look for a missing ; or bracket at the end of the line above, or a brace too many.",
-    )
-
-
-def _brace(line, missing):
-    if missing == "}":
-        said = f"the brace {{ that is opened in line {line} is never closed."
-        return _Words(said, "Add the missing }.", line)
-    return _Words(f"the brace }} of line {line} closes nothing.", "Take one } out.", line)
-
-
-def _function_definition(error):
-    unbalanced = unbalanced_brace(error.lines)
-    if unbalanced:
-        return _brace(*unbalanced)
-    said = "a function begins inside another one: a closing brace } is missing above it."
-    return _Words(said, "Add the missing }.")
-
-
-def _undeclared(error):
-    name, text = error.match.group(1), "\n".join(error.lines)
-    if name == "ros" or name.startswith("ROS_"):
-        return _header(name, "ros/ros.h")
-    if uses.is_ros_package(name):
-        used = re.search(rf"\b{re.escape(name)}::(\w+)", text)
-        return _header(name, f"{name}/{used.group(1)}.h" if used else f"{name}/....h")
-    if name in _MESSAGES:
-        said = f"nothing is called {name} here; the type is std_msgs::{name}."
-        return _Words(said, f"Write std_msgs::{name}.", None, (name, f"std_msgs::{name}"))
-    if re.fullmatch(r"u?int(8|16|32|64)_t", name):
-        return _header(name, "cstdint")
-    if name in ("cout", "cin", "endl", "string", "vector"):
-        said = f"nothing is called {name} here; it is std::{name}."
-        return _Words(said, f"Write std::{name}.", None, (name, f"std::{name}"))
-    own = set(re.findall(r"\b[A-Za-z_]\w*\b", text)) - {name}
-    near = error.suggested() or nearest(name, own, 0.8)
-    return _Words(
-        f"nothing is called {name} here: it is misspelt, or declared nowhere, or further"
-        f" down.{perhaps(near)}",
-        f"Write {near} for {name}." if near else f"Declare {name}, or mend its name.",
-    )
-
-
-def _header(name, header):
-    said = f"{name} is not known: the line #include <{header}> is missing."
-    return _Words(said, f"Add #include <{header}>.")
-
-
-def _no_member(error, owner=1, member=2):
-    owner = re.sub(r"_<std::allocator<void> ?>", "", error.match.group(owner))
-    member, suggested = error.match.group(member), error.suggested()
-    if re.search(r"(::(Const)?Ptr|shared_ptr<.*>)&?$", owner):
-        return _Words(
-            f"{member} is asked of a pointer to a message, which has it behind ->.",
-            f"Write ->{member} for .{member}.",
-            None,
-            (f".{member}", f"->{member}"),
-        )
-    if owner in ("ros", "std_msgs") and not suggested and member in _MESSAGES:
-        return _header(f"{owner}::{member}", f"{owner}/{member}.h")
-    hint = perhaps(suggested)
-    if not hint and ("UInt32" in owner or re.search(r"std_msgs::\w+$", owner)):
-        hint = " Its field is called data."
-    fix = f"Write {suggested}." if suggested else f"Mend the name {member}."
-    return _Words(f"{owner} has no {member}.{hint}", fix)
-
-
-_CALLS = {
-    "subscribe": (
-        "the arguments of subscribe() do not fit: the topic's name, the queue's size, the"
-        " callback, and for a method of a class also the object, as in &CLASS::METHOD, this."
-        " The callback must take the message, and return nothing."
-    ),
-    "advertise": "advertise<TYPE>() takes the topic's name and the queue's size.",
-    "createTimer": (
-        "the arguments of createTimer() do not fit: a ros::Duration, the callback, and for a"
-        " method of a class also the object. The callback must take a const ros::TimerEvent&."
-    ),
-    "publish": "publish() takes a message of the type that was advertised.",
-    "init": "ros::init() takes argc, argv and the node's name, in this order.",
-}
-
-
-def _no_match(error):
-    called = error.match.group(1)
-    said = _CALLS.get(called.split("(")[0].split("::")[-1].split("<")[0])
-    return _Words(
-        said or f"{called} is called with arguments that do not fit.",
-        "Compare the call with the one on the page.",
-    )
-
-
-def _missing_header(error):
-    header, package = error.match.group(1), error.package
-    if header.split("/")[0] != package.name:
-        near = nearest(header, [f"std_msgs/{name}.h" for name in _MESSAGES] + ["ros/ros.h"], 0.7)
-        fix = f"Write {near}." if near else "Mend the name, or install and declare its package."
-        return _Words(f"there is no header {header}.{perhaps(near)}", fix)
-    own = [path.rsplit("/", 1)[-1][:-4] for path in package.of_kind("message")]
-    name = header.rsplit("/", 1)[-1][:-2]
-    if name in own:
-        return _Words(
-            f"there is no {header} yet: it is made of {name}.msg, and the target does not wait"
-            " for that, or nothing makes it.",
-            "Look at add_message_files(), generate_messages() and add_dependencies().",
-        )
-    near = nearest(name, own, 0.5)
-    hint = perhaps(near and f"{package.name}/{near}.h")
-    return _Words(f"there is no header {header}.{hint}", "Mend the name of the header.")
-
-
-def _short(name):
-    return re.sub(r"_<std::allocator<void> ?>|std::__cxx11::|, std::allocator<char>", "", name)
-
-
-def _convert(error):
-    given, needed = map(_short, error.match.groups())
-    said = f"a {given} cannot be used where a {needed} is needed."
-    return _Words(said, "Compare the types with those on the page.")
-
-
-def _not_const(error):
-    message = _short(error.match.group(1))
-    parameter = re.compile(rf"(?<!const )\b{re.escape(message)}\s*&")
-    found = [number for number, text in enumerate(error.lines, 1) if parameter.search(text)]
-    return _Words(
-        f"a callback takes a {message}& that is not const, and no subscriber can give it one.",
-        f"Write const {message}&, or const {message}::ConstPtr&.",
-        found[0] if found else None,
-        (f"{message}&", f"const {message}&") if found else None,
-    )
-
-
-_TEXT_WITHOUT_END = (
-    "a text is begun with a quotation mark and not ended with one.",
-    "Add the missing quotation mark.",
-)
-_NO_MESSAGE = (
-    "{0} is no message type, and only messages can be published and received.",
-    "A callback takes a message, such as const std_msgs::UInt32::ConstPtr&; what it holds are its"
-    " members.",
-)
-_MANY_ARGUMENTS = (
-    "{1} is called with too {0} arguments.",
-    "Compare the call with the function's parameters.",
-)
-# What the compiler says -> the function of an _Error that says it in plain words; or these words
-# and what to do, with the groups of the shape.
-_WORDS = (
-    (
-        r"reference of type 'ros::ParameterAdapter<([\w:]+(?:_<[^>]*> ?>)?)\s*&>.* discards",
-        _not_const,
-    ),
-    (r"expected ';'(?: before '?([^']+?)'?(?: token)?)?$", _semicolon),
-    (r"expected ',' or ';'(?: before '?([^']+?)'?(?: token)?)?", _semicolon),
-    (r"missing terminating", _TEXT_WITHOUT_END),
-    (
-        r"a function-definition is not allowed here|qualified-id in declaration",
-        _function_definition,
-    ),
-    (r"expected '?([^' ]+)'?", _expected),
-    (r"(\S+): No such file or directory", _missing_header),
-    (
-        r"'([\w:]+)' (?:was not declared in this scope|has not been declared|does not name a type"
-        r"|is not a (?:class|namespace))",
-        _undeclared,
-    ),
-    (r"'([^']+)' (?:\{aka '[^']*'\} )?has no member named '(\w+)'", _no_member),
-    # What roscpp asks of each message.
-    (r"'__s_get\w+' is not a member of '([^']+)'", _NO_MESSAGE),
-    (
-        r"'(\w+)' (?:is not a member of|in namespace) '([^']+)'",
-        lambda error: _no_member(error, owner=2, member=1),
-    ),
-    (r"no match(?:ing function)? for call to '([^']+)'", _no_match),
-    (r"too (many|few) arguments to function '([^']+)'", _MANY_ARGUMENTS),
-    (r"cannot convert '([^']+)'.* to '([^']+)'", _convert),
-    (r"invalid conversion from '([^']+)' to '([^']+)'", _convert),
-)
-
-
-_CODE = re.compile(
-    r'//[^\n]*|/\*.*?\*/|"(?:[^"\\\n]|\\.)*"|\'(?:[^\'\\\n]|\\.)*\'|(?P<brace>[{}])', re.DOTALL
-)
-
-
-def unbalanced_brace(lines):
-    """Return (line, what is missing or "{" if there is one } too many), or None if all are closed.
-
-    The brace that lacks its partner is found by the indentation: the first block whose end is not
-    indented as its beginning.
-    """
-    text, stack, suspects = "\n".join(lines), [], []
-    for match in _CODE.finditer(text):
-        if not match.group("brace"):
-            continue
-        number = text.count("\n", 0, match.start())
-        indent = len(lines[number]) - len(lines[number].lstrip())
-        if match.group() == "{":
-            stack.append((number + 1, indent))
-        elif not stack:
-            return number + 1, "{"
-        else:
-            opened, opened_indent = stack.pop()
-            if opened_indent != indent and opened != number + 1:
-                suspects.append(opened)
-    if not stack:
-        return None
-    # Of blocks whose ends do not fit, the innermost was closed by the brace of the one around it.
-    return (suspects[0] if suspects else stack[-1][0]), "}"

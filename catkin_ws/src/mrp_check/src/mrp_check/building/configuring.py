@@ -3,11 +3,17 @@
 
 from __future__ import annotations
 
+import pathlib
 import re
+from typing import Callable, Sequence, Tuple
 
+from mrp_check.building.catkin import Step
 from mrp_check.contract.finding import Finding
 from mrp_check.contract.words import nearest, perhaps
-from mrp_check.student.cmake import relative
+from mrp_check.student.cmake import Model, relative
+from mrp_check.student.package import Package
+
+_Said = Tuple[str, str]  # what it means, and what to do
 
 _CMAKE_ERROR = re.compile(
     r"^CMake Error(?: \(dev\))? (?:at|in) (?P<file>[^:\n]+?):(?P<line>\d+)"
@@ -17,7 +23,7 @@ _CMAKE_ERROR = re.compile(
 _STACK = re.compile(r"^  (?P<file>[^:\s]+):(?P<line>\d+) \((?P<command>\w+)\)", re.MULTILINE)
 
 
-def finding(package, output, copy, model):
+def finding(package: Package, output: str, copy: pathlib.Path, model: Model) -> Finding | None:
     """Return the Finding about why CMake failed, or None if its output does not say it."""
     match = _CMAKE_ERROR.search(output)
     if not match:
@@ -59,7 +65,7 @@ def finding(package, output, copy, model):
     )
 
 
-def _undeclared(package, name, text):
+def _undeclared(package: Package, name: str, text: str) -> Finding:
     """Return the Finding about what catkin_package() names and package.xml lacks at run time."""
     line = package.find_line("package.xml", f">{name}<")
     return Finding(
@@ -76,7 +82,7 @@ def _undeclared(package, name, text):
     )
 
 
-def _relative_any(path, copy):
+def _relative_any(path: str, copy: pathlib.Path) -> str | None:
     """Return a path that CMake prints (absolute, or relative to src) as the package's."""
     if path.startswith("/"):
         return relative(path, copy)
@@ -103,19 +109,19 @@ _NOT_FOUND = (
 )
 
 
-def absent(package, output):
+def absent(package: Package, output: str) -> str | None:
     """Return the package that CMake did not find though package.xml asks for it, and that looks
     like no other's misspelt name; or None."""
     found = (re.search(shape, output) for shape in _NOT_FOUND)
     name = next((match.group(1) for match in found if match), None)
     asked = name and package.find_line("package.xml", f">{name}<")
-    return name if asked and not nearest(name, _PACKAGES) else None
+    return name if name and asked and not nearest(name, _PACKAGES) else None
 
 
 _BRINGS_MESSAGES = ("add_message_files", "generate_messages", "add_service_files")
 
 
-def _unknown_command(package, model, match, text):
+def _unknown_command(package: Package, model: Model, match: re.Match[str], text: str) -> _Said:
     name = match.group(1)
     if name in _BRINGS_MESSAGES:
         return (
@@ -130,10 +136,10 @@ def _unknown_command(package, model, match, text):
         )
     near = nearest(name.lower(), _COMMANDS)
     said = f"there is no command {name}().{perhaps(near)}"
-    return said, f"Write {near}." if near else "Mend it."
+    return said, f"Write {near}." if near else "Correct it."
 
 
-def _no_package(package, model, match, text):
+def _no_package(package: Package, model: Model, match: re.Match[str], text: str) -> _Said:
     name = match.group(1)
     near = nearest(name, _PACKAGES)
     return (
@@ -142,13 +148,13 @@ def _no_package(package, model, match, text):
     )
 
 
-def _no_source(package, model, match, text):
+def _no_source(package: Package, model: Model, match: re.Match[str], text: str) -> _Said:
     near = nearest(match.group(1), package.of_kind("cpp"))
     said = f"there is no source {match.group(1)}.{perhaps(near)}"
     return said, "Name a file that is there."
 
 
-def _no_target(package, model, match, text):
+def _no_target(package: Package, model: Model, match: re.Match[str], text: str) -> _Said:
     name = match.group(1)
     near = nearest(name, [] if name in model.targets else model.targets, 0.5)
     hint = f" There is {near}." if near else ""
@@ -158,7 +164,7 @@ def _no_target(package, model, match, text):
     )
 
 
-def _no_script(package, model, match, text):
+def _no_script(package: Package, model: Model, match: re.Match[str], text: str) -> _Said:
     shown = "/".join(match.group(1).rsplit("/", 2)[1:])
     near = nearest(shown, package.of_kind("python"))
     return f"there is no script {shown}.{perhaps(near)}", "Name a file that is there."
@@ -166,14 +172,14 @@ def _no_script(package, model, match, text):
 
 # (command or None for any, what CMake says) -> what it means and what to do: these words, or a
 # function that says them.
-_WORDS = (
+_WORDS: Sequence[tuple[str | None, str, Callable[..., _Said] | _Said]] = (
     (None, r'Unknown CMake command "(\w+)"', _unknown_command),
     *(("find_package", shape, _no_package) for shape in _NOT_FOUND),
     (
         "catkin_package",
         r"catkin_package\(\) .*?'(\w+)'",
-        lambda package, model, match, text: (
-            text,
+        lambda *given: (
+            given[-1],
             "Let package.xml, find_package() and catkin_package() name the same.",
         ),
     ),
@@ -210,21 +216,21 @@ _WORDS = (
     (
         None,
         r"Parse error",
-        ("a bracket or a quotation mark is missing, or too much.", "Mend the call there."),
+        ("a bracket or a quotation mark is missing, or too much.", "Correct the call there."),
     ),
 )
 
 
-def _in_words(package, text, command, model):
+def _in_words(package: Package, text: str, command: str, model: Model) -> _Said:
     """Return (what it means, what to do)."""
     for of_command, shape, words in _WORDS:
         match = re.search(shape, text) if of_command in (None, command) else None
         if match:
-            return words(package, model, match, text) if callable(words) else words
+            return words if isinstance(words, tuple) else words(package, model, match, text)
     return text[:300], "Compare the line with the one on the page."
 
 
-def unknown(package, step, id_):
+def unknown(package: Package, step: Step, id_: str) -> Finding:
     """Return a Finding about a failure whose output names no place in the package."""
     lines = [line for line in step.output.splitlines() if line.strip()]
     errors = [line for line in lines if "error" in line.lower()]

@@ -4,13 +4,16 @@
 from __future__ import annotations
 
 import re
+from typing import Iterator
 
-from mrp_check.contract.finding import Finding
+from mrp_check.contract.finding import Finding, Line
+from mrp_check.student.cmake import Model, Target
+from mrp_check.student.package import Package
 
 _TARGET = re.compile(r"CMakeFiles/(?P<target>[^/]+)\.dir/")
 
 
-def findings(package, output, model):
+def findings(package: Package, output: str, model: Model) -> Iterator[Finding]:
     """Yield a finding for each target that cannot be linked."""
     said, target = set(), None
     for line in output.splitlines():
@@ -18,17 +21,19 @@ def findings(package, output, model):
         target = named.group("target") if named else target
         if target in said or target not in model.targets:
             continue
-        found = ((words, shape.search(line)) for shape, words in _WORDS)
-        for words, match in [one for one in found if one[1]][:1]:
-            said.add(target)
-            yield words(package, model, model.targets[target], match)
+        for shape, words in _WORDS:
+            match = shape.search(line)
+            if match:
+                said.add(target)
+                yield words(package, model, model.targets[target], match)
+                break
 
 
-def _link(message, place, expected, seen, fix):
+def _link(message: str, place: Line, expected: str, seen: str, fix: str) -> Finding:
     return Finding("link", message, *place, expected=expected, seen=seen, fix=fix)
 
 
-def _no_main(package, model, target, match):
+def _no_main(package: Package, model: Model, target: Target, match: re.Match[str]) -> Finding:
     sources = ", ".join(target.sources)
     return _link(
         f"The target {target.name} has no function main: none of its sources ({sources}) defines"
@@ -40,7 +45,7 @@ def _no_main(package, model, target, match):
     )
 
 
-def _duplicate(package, model, target, match):
+def _duplicate(package: Package, model: Model, target: Target, match: re.Match[str]) -> Finding:
     name = match.group("name")
     return _link(
         f"The target {target.name} has two definitions of {name}: two of its sources define it.",
@@ -51,17 +56,17 @@ def _duplicate(package, model, target, match):
     )
 
 
-def _no_library(package, model, target, match):
+def _no_library(package: Package, model: Model, target: Target, match: re.Match[str]) -> Finding:
     return _link(
         f"The target {target.name} is linked with {match.group(1)}, and there is no such library.",
         (target.file, target.link_line or target.line),
         "${catkin_LIBRARIES}",
         match.group(1),
-        f"Mend the name {match.group(1)}.",
+        f"Correct the name {match.group(1)}.",
     )
 
 
-def _undefined(package, model, target, match):
+def _undefined(package: Package, model: Model, target: Target, match: re.Match[str]) -> Finding:
     name = match.group("name")
     if "ros::" in name or name.startswith(("std_msgs::", "boost::", "typeinfo for ros")):
         return _of_ros(model, target, name)
@@ -76,7 +81,7 @@ def _undefined(package, model, target, match):
                 (file, line),
                 f"a definition of {function}",
                 package.lines(file)[line - 1].strip(),
-                f"Define {function}, or mend its name where it is defined; or add its source to"
+                f"Define {function}, or correct its name where it is defined; or add its source to"
                 f" add_executable({target.name} ...).",
             )
     return _link(
@@ -88,7 +93,7 @@ def _undefined(package, model, target, match):
     )
 
 
-def _of_ros(model, target, name):
+def _of_ros(model: Model, target: Target, name: str) -> Finding:
     linked = any("roscpp" in word for word in target.links)
     call = f"target_link_libraries({target.name} ${{catkin_LIBRARIES}})"
     if linked:

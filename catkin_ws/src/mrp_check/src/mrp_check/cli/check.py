@@ -7,14 +7,16 @@ import argparse
 import signal
 import sys
 
-from mrp_check import check, confine
+from mrp_check import check, sandbox
 from mrp_check.cli import classroom
-from mrp_check.contract import spec, verdict
+from mrp_check.contract import spec
 from mrp_check.contract.errors import CannotCheck, PackageError, SpecError
-from mrp_check.report import console, html, json_, junit
+from mrp_check.contract.verdict import FINDINGS, MET, UNCHECKED, unchecked
+from mrp_check.report import class_table, console, html, json_, junit
 from mrp_check.rules import REQUIREMENTS
+from mrp_check.student.package import Package
 
-MET, FINDINGS, UNCHECKED = 0, 1, 2
+EXIT_CODES = {MET: 0, FINDINGS: 1, UNCHECKED: 2}
 
 
 def main(arguments=None):
@@ -22,9 +24,6 @@ def main(arguments=None):
     # As with Ctrl-C, nothing is left behind then.
     signal.signal(signal.SIGTERM, signal.default_int_handler)
     options = parser().parse_args(arguments)
-    not_apart = confine.isolation().value
-    if not_apart:
-        print(f"check: {not_apart}.", file=sys.stderr)
     try:
         sys.exit(run(options))
     except KeyboardInterrupt:
@@ -48,32 +47,25 @@ def parser():
     parser.add_argument(
         "--spec", default="pub_sub", metavar="FILE", help="the contract (default: %(default)s)"
     )
-    parser.add_argument("--json", metavar="FILE", help="write the report as JSON")
-    parser.add_argument("--junit", metavar="FILE", help="write the report as JUnit XML")
-    parser.add_argument("--html", metavar="FILE", help="write the report as a page")
-    parser.add_argument("--csv", metavar="FILE", help="with --class: write the table as CSV")
-    parser.add_argument(
-        "--jobs",
-        type=int,
-        choices=range(1, 65),
-        default=classroom.JOBS,
-        metavar="N",
-        help="with --class: check N at the same time (default: %(default)s)",
-    )
-    parser.add_argument(
-        "--timeout",
-        type=_seconds,
-        default=600,
-        metavar="S",
-        help="seconds that the check of a package may take (default: %(default)s)",
-    )
+    for option, text in (
+        ("--json", "write the report as JSON"),
+        ("--junit", "write the report as JUnit XML"),
+        ("--html", "write the report as a page; with --class: the table"),
+        ("--csv", "with --class: write the table as CSV"),
+    ):
+        parser.add_argument(option, metavar="FILE", help=text)
+    number = "with --class: check N at the same time, 1 to 64 (default: %(default)s)"
+    most, jobs = range(1, 65), classroom.JOBS
+    parser.add_argument("--jobs", type=int, choices=most, default=jobs, metavar="N", help=number)
+    seconds = "stop the check of a package after S seconds (default: %(default)s)"
+    parser.add_argument("--timeout", type=_seconds, default=600, metavar="S", help=seconds)
     parser.add_argument(
         "--only",
         nargs="+",
         default=[],
         choices=list(REQUIREMENTS),
         metavar="ID",
-        help="check these requirements alone",
+        help="check only these requirements",
     )
     return parser
 
@@ -91,78 +83,76 @@ def _seconds(text):
 def run(options):
     """Check what the options say, write the reports, and return the exit code."""
     of_package, of_class = ("json", "junit", "only"), ("csv",)
-    for name in of_package if options.class_ else of_class:
-        if getattr(options, name):
-            print(
-                f"check: --{name} goes " + ("without" if options.class_ else "with") + " --class.",
-                file=sys.stderr,
-            )
-            return UNCHECKED
-    return run_class(options) if options.class_ else run_package(options)
+    try:
+        for name in of_package if options.class_ else of_class:
+            if getattr(options, name):
+                needed = "without" if options.class_ else "with"
+                raise CannotCheck(f"--{name} goes {needed} --class.")
+        result = run_class(options) if options.class_ else run_package(options)
+    except (PackageError, SpecError, CannotCheck, OSError) as error:
+        print(f"check: {error}", file=sys.stderr)
+        result = UNCHECKED
+    return EXIT_CODES[result]
+
+
+def say_how_apart():
+    """Say what the package's programs can reach, if that is more than the scratch folder."""
+    not_apart = sandbox.isolation().value
+    if not_apart:
+        print(f"check: {not_apart}.", file=sys.stderr)
 
 
 def run_class(options):
+    """Check a class, write its table, and return MET or FINDINGS.
+
+    Raises PackageError, SpecError, CannotCheck, or OSError if it cannot be checked.
+    """
+    spec_file = spec.find(options.spec)
+    contract = spec.read(spec_file, REQUIREMENTS)
     progress = console.Progress(sys.stderr)
+    room = classroom.Classroom(
+        options.class_, spec_file, options.jobs, options.timeout, progress.show
+    )
+    say_how_apart()
     try:
-        spec_file = spec.find(options.spec)
-        contract = spec.read(spec_file, REQUIREMENTS)
-        room = classroom.Classroom(
-            options.class_,
-            contract,
-            spec_file,
-            jobs=options.jobs,
-            timeout=options.timeout,
-            progress=progress.show,
-        )
         submissions = room.check()
-    except (classroom.ClassError, SpecError, OSError) as error:
+    finally:
         progress.clear()
-        print(f"check: {error}", file=sys.stderr)
-        return UNCHECKED
-    progress.clear()
-    try:
-        if options.csv:
-            with open(options.csv, "w", encoding="utf-8", newline="") as file:
-                classroom.write_csv(submissions, contract, file)
-        if options.html:
-            with open(options.html, "w", encoding="utf-8") as file:
-                classroom.write_html(submissions, contract, file, room.results)
-    except OSError as error:
-        print(
-            f"check: the table {error.filename} cannot be written: {error.strerror}.",
-            file=sys.stderr,
-        )
-        return UNCHECKED
-    print(classroom.summary(submissions, contract))
-    all_met = all(one.report["verdict"] == verdict.MET for one in submissions)
+    write(options.csv, lambda: class_table.csv_text(submissions, contract))
+    write(options.html, lambda: class_table.html_text(submissions, contract, room.results))
+    print(class_table.text(submissions, contract))
+    all_met = all(one.report["verdict"] == MET for one in submissions)
     return MET if all_met else FINDINGS
 
 
 def run_package(options):
+    """Check a package, write its reports, and return its verdict. Raises CannotCheck."""
     progress = console.Progress(sys.stderr)
     try:
         contract = spec.read(spec.find(options.spec), REQUIREMENTS)
-        report = check.check(options.path, contract, options.only, options.timeout, progress.show)
+        package = Package(options.path)
+        say_how_apart()
+        report = check.check(package, contract, options.only, options.timeout, progress.show)
     except (PackageError, SpecError, CannotCheck) as error:
-        report = verdict.Report("", "", verdict.UNCHECKED, [], {}, reason=str(error))
-    progress.clear()
-    try:
-        for path, text_of in (
-            (options.json, json_.text),
-            (options.junit, junit.text),
-            (options.html, html.text),
-        ):
-            if path:
-                with open(path, "w", encoding="utf-8") as file:
-                    file.write(text_of(report))
-    except OSError as error:
-        print(
-            f"check: the report {error.filename} cannot be written: {error.strerror}.",
-            file=sys.stderr,
-        )
-        return UNCHECKED
+        report = unchecked(str(error))
+    finally:
+        progress.clear()
+    write(options.json, lambda: json_.text(report))
+    write(options.junit, lambda: junit.text(report))
+    write(options.html, lambda: html.text(report))
     if report.requirements:
         print(console.text(report, colours=console.has_colours(sys.stdout)))
     if report.reason:
         print(f"check: {report.reason}", file=sys.stderr)
-    return {verdict.MET: MET, verdict.FINDINGS: FINDINGS}.get(report.verdict, UNCHECKED)
+    return report.verdict
+
+
+def write(path, text_of):
+    """Write what a function returns to a file, if there is a path. Raises CannotCheck."""
+    if not path:
+        return
+    try:
+        with open(path, "w", encoding="utf-8", errors="replace", newline="") as file:
+            file.write(text_of())
+    except OSError as error:
+        raise CannotCheck(f"{path} cannot be written: {error.strerror}.") from None

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The exercises: broken packages to be mended, one after the other. `make exercise` calls this.
+"""The exercises: broken packages to fix, one after the other. `make exercise` calls this.
 
 An exercise is a defect with a task (defects.py): the tutorial's package with its patch. The student
-edits a copy of it. Reversed, the patch is the solution.
+edits a copy of it. The patch, reversed, is the solution.
 """
 
 from __future__ import annotations
@@ -21,6 +21,7 @@ from mrp_check.contract import defects, spec
 from mrp_check.contract.errors import CannotCheck, PackageError
 from mrp_check.contract.finding import NOTE
 from mrp_check.report import console
+from mrp_check.student.package import Package
 
 PASSED, NOT_YET, UNCHECKED = 0, 1, 2
 
@@ -30,7 +31,7 @@ class ExerciseError(Exception):
 
 
 class Exercise(typing.NamedTuple):
-    """One exercise, made of a defect."""
+    """One exercise, built from a defect."""
 
     defect: defects.Defect
 
@@ -45,8 +46,8 @@ class Exercise(typing.NamedTuple):
         tutorial = self.defect.path.parent.parent / "src" / "mrp"
         if not (tutorial / "src").is_dir():
             raise ExerciseError(
-                f"The exercises are made of the tutorial's sources, and {tutorial} is not there: "
-                "call `make exercise` in a clone of the repository."
+                f"The exercises are built from the tutorial's sources, and there is no {tutorial}:"
+                " call `make exercise` in a clone of the repository."
             )
         shutil.copytree(tutorial, folder, ignore=shutil.ignore_patterns("doc", "__pycache__"))
         patch(folder, self.defect.path)
@@ -63,7 +64,10 @@ def patch(folder, file):
     except FileNotFoundError:
         raise ExerciseError("There is no command `patch`: install the package patch.") from None
     if done.returncode != 0:
-        raise ExerciseError(f"{file} does not fit the tutorial's package: {done.stdout.strip()}")
+        raise ExerciseError(
+            f"{file} does not fit the tutorial's package. Undo your changes to both."
+            f" The command `patch` says: {done.stdout.strip()}"
+        )
 
 
 def exercises():
@@ -90,29 +94,42 @@ def faults(report):
     return [f for f in report.findings if f.severity != NOTE and not f.consequence_of]
 
 
-def lines_of(findings):
-    """Return what a student is told: where and what, and not how to mend it."""
+def lines_of(findings, report):
+    """Return what a student reads: where it is wrong and what is wrong, and not how to fix it."""
     lines = []
     for finding in findings:
-        where = ":".join(str(part) for part in (finding.file, finding.line) if part is not None)
-        lines += ["", f"{where}: {finding.message}" if where else finding.message]
-        lines += [f"  expected: {finding.expected}"] if finding.expected else []
-        lines += [f"  seen:     {finding.seen}"] if finding.seen else []
+        lines += ["", f"{console.where(finding, report)}: {console.plain(finding.message)}"]
+        lines += console.detail_lines(finding, ("expected", "seen"))
     return lines
 
 
-def show_task(exercise, place, number, count):
-    """Print what is to be done, and where."""
-    print(f"Exercise {number} of {count}\n\n{exercise.defect.task}\n")
-    print(f"The package: {place}\nMend it, and call `make exercise` again.")
+def show_task(exercise, place, label):
+    """Print the task, and where the package is."""
+    print(f"{label}\n\n{exercise.defect.task}\n")
+    print(f"The package: {place}\nFix it, and call `make exercise` again.")
+
+
+def is_passed(exercise, place, label):
+    """Check a student's copy, and print what is still wrong. Raises CannotCheck."""
+    shown = console.Progress(sys.stderr)
+    report = check.check(Package(place), spec.read(spec.find("pub_sub")), progress=shown.show)
+    shown.clear()
+    found = faults(report)
+    if report.reason and not found:
+        raise CannotCheck(report.reason)
+    print(f"{label}, {exercise.name}: {'not yet' if found else 'passed'}.")
+    print("\n".join(lines_of(found, report)))
+    if found:
+        print(f"\nThe task: {place / 'TASK.md'}\nA hint: make exercise HINT=1")
+    return not found
 
 
 def run(folder, hint=False, reset=False):
-    """Show the exercise that comes next, or check it; return the exit code.
+    """Show the next exercise, or check it; return the exit code.
 
     folder: where the student's copies are
     hint: show the hint instead
-    reset: lay the exercise out anew; what the student has done in it is lost
+    reset: make the package again; the student's changes to it are lost
     """
     folder = folder.resolve()
     folder.mkdir(parents=True, exist_ok=True)
@@ -122,40 +139,29 @@ def run(folder, hint=False, reset=False):
         print(f"All {len(everything)} exercises are passed.")
         return PASSED
     exercise = left[0]
-    number = everything.index(exercise) + 1
+    label = f"Exercise {everything.index(exercise) + 1} of {len(everything)}"
     place = folder / exercise.name
     if reset and place.exists():
         shutil.rmtree(place)
     if not place.exists():
         exercise.lay_out(place)
-        show_task(exercise, place, number, len(everything))
-        return PASSED
-    if hint:
+        show_task(exercise, place, label)
+    elif hint:
         print(exercise.defect.hint)
-        return PASSED
-
-    shown = console.Progress(sys.stderr)
-    report = check.check(place, spec.read(spec.find("pub_sub")), progress=shown.show)
-    shown.clear()
-    found = faults(report)
-    if report.reason and not found:
-        raise CannotCheck(report.reason)
-    if found:
-        print(f"Exercise {number} of {len(everything)}, {exercise.name}: not yet.")
-        print("\n".join(lines_of(found)))
-        print(f"\nThe task: {place / 'TASK.md'}\nA hint: make exercise HINT=1")
+    elif is_passed(exercise, place, label):
+        progress.add(exercise.name)
+        return run(folder)
+    else:
         return NOT_YET
-    progress.add(exercise.name)
-    print(f"Exercise {number} of {len(everything)}, {exercise.name}: passed.\n")
-    return run(folder)
+    return PASSED
 
 
 def main(arguments=None):
     """Do what the command line says, and exit: 0 shown or passed, 1 not yet, 2 cannot check."""
     parser = argparse.ArgumentParser(prog="exercise", description="Shows and checks the exercises.")
-    parser.add_argument("folder", type=pathlib.Path, help="where your copies of them are")
+    parser.add_argument("folder", type=pathlib.Path, help="the folder of your copies")
     parser.add_argument("--hint", action="store_true", help="show the hint")
-    parser.add_argument("--reset", action="store_true", help="begin the exercise anew")
+    parser.add_argument("--reset", action="store_true", help="begin it again without your changes")
     options = parser.parse_args(arguments)
     # As with Ctrl-C, nothing is left behind then.
     signal.signal(signal.SIGTERM, signal.default_int_handler)

@@ -7,44 +7,56 @@ Both reach each other through ROS alone. Where neither is possible, nothing is a
 says so.
 """
 
+import dataclasses
 import json
 import os
 import signal
 import subprocess
 import time
+from typing import Any, Optional, Sequence, Tuple
 
 import psutil
 
-# Of the environment: what confine.run() knows of the user and of namespaces.
-VARIABLE = "MRP_CHECK_APART"
+from mrp_check.confined import crossing, variables
 
 _STARTING = 20.0  # seconds within which bubblewrap must have started a program
+_TICK = 0.005  # seconds between two looks at whether it has
+
+
+@dataclasses.dataclass
+class Apart:
+    """What confine.run() knows of how things can be kept apart.
+
+    user: the id of the user to start programs as, or None for this process's own
+    namespaces: whether this process is in namespaces of its own
+    """
+
+    user: Optional[int]
+    namespaces: bool
 
 
 class Starter:
     """Starts programs apart from this process.
 
-    user: the id of the user to start them as, or None for this one
-    namespaces: whether this process is in namespaces of its own
-    in_sandbox: whether each program gets a sandbox within them
+    in_sandbox: whether each program gets a sandbox within the namespaces
     """
 
-    def __init__(self, user, namespaces):
-        self.in_sandbox = namespaces and user is None
+    def __init__(self) -> None:
+        apart = crossing.from_json(Apart, os.environ.pop(variables.APART))
+        self.in_sandbox = apart.namespaces and apart.user is None
         self._setpriv = ["setpriv", "--no-new-privs"]
-        if user is not None:
-            self._setpriv += [f"--reuid={user}", f"--regid={user}", "--clear-groups"]
+        if apart.user is not None:
+            self._setpriv += [f"--reuid={apart.user}", f"--regid={apart.user}", "--clear-groups"]
             self._setpriv += ["--inh-caps=-all"]
 
-    @classmethod
-    def of_environment(cls):
-        return cls(**json.loads(os.environ.pop(VARIABLE)))
-
-    def start(self, command, writable, **options):
+    def start(
+        self, command: Sequence[str], writable: Sequence[str], **options: Any
+    ) -> Tuple["subprocess.Popen[bytes]", Optional[psutil.Process]]:
         """Start a command; return its Popen and the process that starts it in a sandbox, or None.
 
         writable: the folders that it may write to; options: those of Popen
         """
+        options["env"] = {**options["env"], variables.MARK: os.environ[variables.MARK]}
         if not self.in_sandbox:
             return subprocess.Popen([*self._setpriv, "--", *command], **options), None
         read, write = os.pipe()
@@ -61,7 +73,7 @@ class Starter:
             return popen, None  # it has ended already
 
 
-def started_in(init):
+def started_in(init: psutil.Process) -> Optional[int]:
     """Return the id of the program that a sandbox was made for, or None if it has ended."""
     end = time.monotonic() + _STARTING
     while time.monotonic() < end:
@@ -71,11 +83,11 @@ def started_in(init):
             return None
         if children:
             return children[0].pid
-        time.sleep(0.005)
+        time.sleep(_TICK)
     return None
 
 
-def id_outside(init, inside):
+def id_outside(init: psutil.Process, inside: str) -> Optional[int]:
     """Return the id that a process has here; inside: its id within the sandbox, or None."""
     for process in init.children(recursive=True):
         try:
@@ -83,12 +95,12 @@ def id_outside(init, inside):
                 ids = next(line for line in file if line.startswith("NSpid:")).split()
         except (OSError, StopIteration):
             continue
-        if ids[-1] == str(inside):
+        if ids[-1] == inside:
             return process.pid
     return None
 
 
-def exit_code(popen, in_sandbox):
+def exit_code(popen: "subprocess.Popen[bytes]", in_sandbox: bool) -> Optional[int]:
     """Return a program's exit code (negative: killed by that signal), or None while it runs.
 
     bubblewrap says 128 more than the signal, as a shell does.

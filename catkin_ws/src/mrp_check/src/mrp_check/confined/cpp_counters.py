@@ -3,20 +3,19 @@
 
 from __future__ import annotations
 
-from mrp_check.confined.cpp_expressions import MESSAGE, Unit
+from mrp_check.confined.cpp_expressions import MESSAGE, Cursor, Unit
+from mrp_check.confined.places import Kind, Plain
 
 
 class Counters(Unit):
-    def look_at_operator(self, cursor):
+    def look_at_operator(self, cursor: Cursor) -> None:
         children = list(cursor.get_children())
         target = self.peel(children[0]).referenced if children else None
         if target is None:
             return
         if cursor.kind == self.kinds.UNARY_OPERATOR:
-            tokens = [t.spelling for t in cursor.get_tokens()]
-            step = 1 if "++" in tokens else -1 if "--" in tokens else None
-            if step:
-                self.add_counter(cursor, target, step)
+            if {"++", "--"} & {token.spelling for token in cursor.get_tokens()}:
+                self.add_counter(cursor, target)
         elif len(children) == 2:
             operator = self.operator(cursor, children)
             if operator == "=":
@@ -24,15 +23,13 @@ class Counters(Unit):
             elif cursor.kind == self.kinds.COMPOUND_ASSIGNMENT_OPERATOR:
                 self.look_at_step(cursor, target, operator, self.value(children[1]))
 
-    def look_at_step(self, cursor, target, operator, step):
+    def look_at_step(self, cursor: Cursor, target: Cursor, operator: str, step: Plain) -> None:
         if operator == "%=":
             self.add_reset(cursor, target, step, 0)
         elif operator in ("+=", "-="):
-            sign = 1 if operator == "+=" else -1
-            plain = isinstance(step, (int, float))
-            self.add_counter(cursor, target, sign * step if plain else None)
+            self.add_counter(cursor, target)
 
-    def look_at_assignment(self, cursor, left, right):
+    def look_at_assignment(self, cursor: Cursor, left: Cursor, right: Cursor) -> None:
         """Look for MESSAGE.data = ..., and for counter = counter + 2 and the like."""
         kinds, target = self.kinds, left.referenced
         inside = list(right.walk_preorder())
@@ -41,20 +38,15 @@ class Counters(Unit):
         is_member = left.kind == kinds.MEMBER_REF_EXPR
         if is_member and MESSAGE.search(owner.type.get_canonical().spelling):
             names = [c.spelling for c in variables]
-            self.add(cursor, "data", value=self.value(right), names=names)
+            self.add(cursor, Kind.DATA, names=names)
         elif any(c.referenced == target for c in variables):
-            binary = [
-                (c, list(c.get_children())) for c in inside if c.kind == kinds.BINARY_OPERATOR
-            ]
-            of = {"+": [], "%": []}
-            for one, sides in binary:
-                if len(sides) == 2:
-                    of.setdefault(self.operator(one, sides), []).append(sides[1])
-            self.add_counter(cursor, target, self.value(of["+"][0]) if of["+"] else None)
-            for limit in of["%"]:
-                self.add_reset(cursor, target, self.value(limit), 0)
+            self.add_counter(cursor, target)
+            for one in inside:
+                sides = list(one.get_children()) if one.kind == kinds.BINARY_OPERATOR else []
+                if len(sides) == 2 and self.operator(one, sides) == "%":
+                    self.add_reset(cursor, target, self.value(sides[1]), 0)
 
-    def look_at_reset(self, cursor):
+    def look_at_reset(self, cursor: Cursor) -> None:
         """Look for `if (counter > LIMIT) counter = VALUE`, and the same with `? :`."""
         condition, then, *_ = cursor.get_children()
         condition = self.peel(condition)
@@ -75,7 +67,7 @@ class Counters(Unit):
             if given is not None:
                 self.add_reset(one, counter, limit, self.value(given))
 
-    def given(self, cursor, variable):
+    def given(self, cursor: Cursor, variable: Cursor) -> Cursor | None:
         """Return the right side of `variable = ...`, or None if the expression is another."""
         sides = list(cursor.get_children())
         if cursor.kind != self.kinds.BINARY_OPERATOR or len(sides) != 2:
@@ -83,16 +75,13 @@ class Counters(Unit):
         is_given = self.operator(cursor, sides) == "="
         return sides[1] if is_given and self.peel(sides[0]).referenced == variable else None
 
-    def add_reset(self, cursor, counter, limit, value):
+    def add_reset(self, cursor: Cursor, counter: Cursor, limit: Plain, value: Plain) -> None:
         if isinstance(limit, int) and isinstance(value, int):
-            self.add(cursor, "reset", counter.spelling, limit=limit, value=value)
+            self.add(cursor, Kind.RESET, counter.spelling, limit=limit, value=value)
 
-    def add_counter(self, cursor, target, step):
-        size = target.type.get_size()
-        kind = self.type_of(target)
-        self.add(cursor, "step", target.spelling, step=step, type=kind, bits=8 * size)
+    def add_counter(self, cursor: Cursor, target: Cursor) -> None:
+        bits, type_ = 8 * target.type.get_size(), self.type_of(target)
+        self.add(cursor, Kind.STEP, target.spelling, type=type_, bits=bits)
         first = self.initial(target)
-        if first is not None:
-            value = self.value(first)
-            if isinstance(value, (int, float)):
-                self.add(target, "counter", target.spelling, value=value, type=kind, bits=8 * size)
+        if first is not None and isinstance(self.value(first), (int, float)):
+            self.add(target, Kind.COUNTER, target.spelling)

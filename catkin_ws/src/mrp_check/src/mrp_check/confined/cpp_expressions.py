@@ -6,8 +6,11 @@ from __future__ import annotations
 import json
 import os
 import re
+import types
+from typing import Any, Callable, Iterator, Sequence
 
 from mrp_check.confined.cpp_text import GAP, arithmetic, number
+from mrp_check.confined.places import Kind, Place, Plain
 
 # A message's type, as clang spells it.
 MESSAGE = re.compile(r"\b(\w+)::(\w+?)_<")
@@ -32,29 +35,32 @@ _FUNCTIONS = {
 }
 
 
+Cursor = Any  # clang's: it comes without types
+
+
 class Unit:
     """One source that clang has read, with all of the package that it includes."""
 
-    def __init__(self, cindex, folder, unit):
+    def __init__(self, cindex: types.ModuleType, folder: str, unit: Cursor) -> None:
         self.kinds = cindex.CursorKind
         self.folder, self.unit = folder, unit
-        self.places = []
-        self.parents = {}
-        self.uses = {}  # variable -> how often it is named
-        self.named = set()  # functions that are named
-        self.cursors = []
+        self.places: list[Place] = []
+        self.parents: dict[int, Cursor | None] = {}
+        self.uses: dict[int, int] = {}  # variable -> how often it is named
+        self.named: set[str] = set()  # functions that are named
+        self.cursors: list[Cursor] = []
         for cursor in self.unit.cursor.get_children():
             if self.own_file(cursor):
                 self.collect(cursor, None)
 
-    def path(self, file):
+    def path(self, file: Cursor) -> str | None:
         path = os.path.normpath(file.name) if file else ""
         return os.path.relpath(path, self.folder) if path.startswith(self.folder + "/") else None
 
-    def own_file(self, cursor):
-        return cursor.location.file is not None and self.path(cursor.location.file)
+    def own_file(self, cursor: Cursor) -> str | None:
+        return self.path(cursor.location.file)
 
-    def collect(self, cursor, parent, depth=0):
+    def collect(self, cursor: Cursor, parent: Cursor | None, depth: int = 0) -> None:
         self.cursors.append(cursor)
         self.parents[cursor.hash] = parent
         if cursor.kind in (self.kinds.DECL_REF_EXPR, self.kinds.MEMBER_REF_EXPR):
@@ -67,31 +73,21 @@ class Unit:
             for child in cursor.get_children():
                 self.collect(child, cursor, depth + 1)
 
-    def above(self, cursor):
+    def above(self, cursor: Cursor) -> Iterator[Cursor]:
         parent = self.parents.get(cursor.hash)
         while parent is not None:
             yield parent
             parent = self.parents.get(parent.hash)
 
-    def add(self, cursor, kind, text=None, line=None, **values):
+    def add(self, cursor: Cursor, kind: Kind, text: Plain = None, **values: Any) -> None:
         file = self.own_file(cursor)
-        if not file:
-            return
-        values = {key: value for key, value in values.items() if value is not None}
-        text = text if isinstance(text, str) and text.replace(GAP, "") else None
-        self.places.append(
-            {
-                "file": file,
-                "line": line or cursor.location.line,
-                "kind": kind,
-                "text": text,
-                "values": values,
-            }
-        )
+        if file:
+            plain = text if isinstance(text, str) and text.replace(GAP, "") else None
+            self.places.append(Place(file, cursor.location.line, kind, plain, **values))
 
     # What an expression says plainly.
 
-    def peel(self, cursor):
+    def peel(self, cursor: Cursor) -> Cursor:
         """Return the expression without casts, brackets and constructors of one argument."""
         while True:
             children = [c for c in cursor.get_children() if c.kind.name not in _NAMES_ALONE]
@@ -109,7 +105,7 @@ class Unit:
                 return cursor
             cursor = children[0]
 
-    def constructs(self, cursor):
+    def constructs(self, cursor: Cursor) -> bool:
         """Return whether an expression makes an object of its arguments."""
         if cursor.kind != self.kinds.CALL_EXPR:
             return False
@@ -117,7 +113,7 @@ class Unit:
         made = target is not None and target.kind == self.kinds.CONSTRUCTOR
         return made or cursor.spelling in _CONSTRUCTORS
 
-    def value(self, cursor, depth=0):
+    def value(self, cursor: Cursor | None, depth: int = 0) -> Plain:
         """Return the plain number, truth value or text of an expression, or None."""
         if cursor is None or depth > 12:
             return None
@@ -125,40 +121,40 @@ class Unit:
         of_kind = _VALUES.get(cursor.kind.name)
         return of_kind(self, cursor, depth + 1) if of_kind else None
 
-    def _first_token(self, cursor):
+    def _first_token(self, cursor: Cursor) -> str:
         return next((token.spelling for token in cursor.get_tokens()), "")
 
-    def _text(self, cursor, depth):
+    def _text(self, cursor: Cursor, depth: int) -> Plain:
         try:
-            return json.loads(cursor.spelling, strict=False)
+            return str(json.loads(cursor.spelling, strict=False))
         except ValueError:
             return None
 
-    def _number(self, cursor, depth):
+    def _number(self, cursor: Cursor, depth: int) -> Plain:
         return number(self._first_token(cursor).replace("'", ""))
 
-    def _truth(self, cursor, depth):
+    def _truth(self, cursor: Cursor, depth: int) -> bool:
         return self._first_token(cursor) == "true"
 
-    def _variable(self, cursor, depth):
+    def _variable(self, cursor: Cursor, depth: int) -> Plain:
         target, kinds = cursor.referenced, self.kinds
         if target is None or target.kind not in (kinds.VAR_DECL, kinds.FIELD_DECL):
             return None
         return None if target.hash in self.changed else self.value(self.initial(target), depth)
 
-    def _unary(self, cursor, depth):
+    def _unary(self, cursor: Cursor, depth: int) -> Plain:
         inside = self.value(next(cursor.get_children(), None), depth)
         is_minus = self._first_token(cursor) == "-"
         return -inside if is_minus and isinstance(inside, (int, float)) else None
 
-    def _binary(self, cursor, depth):
+    def _binary(self, cursor: Cursor, depth: int) -> Plain:
         children = list(cursor.get_children())
         if len(children) != 2:
             return None
         left, right = (self.value(child, depth) for child in children)
         return arithmetic(self.operator(cursor, children), left, right)
 
-    def _call(self, cursor, depth):
+    def _call(self, cursor: Cursor, depth: int) -> Plain:
         children = list(cursor.get_children())
         if cursor.spelling == "operator+" and len(children) == 3:
             # the left, the operator, the right
@@ -170,10 +166,10 @@ class Unit:
         return None
 
     @property
-    def changed(self):
+    def changed(self) -> set[int]:
         """Variables that are given a value in more places than their declaration."""
         if not hasattr(self, "_changed"):
-            self._changed = set()
+            self._changed: set[int] = set()
             kinds = self.kinds
             for cursor in self.cursors:
                 children = list(cursor.get_children())
@@ -190,14 +186,14 @@ class Unit:
                     self._changed.add(target.hash)
         return self._changed
 
-    def operator(self, cursor, children):
+    def operator(self, cursor: Cursor, children: Sequence[Cursor]) -> str:
         end = children[0].extent.end.offset
         for token in cursor.get_tokens():
             if token.extent.start.offset >= end:
-                return token.spelling
+                return str(token.spelling)
         return ""
 
-    def initial(self, declaration):
+    def initial(self, declaration: Cursor) -> Cursor | None:
         """Return the expression that a variable or a field begins with, or None."""
         kinds = self.kinds
         given = [
@@ -218,24 +214,24 @@ class Unit:
                     return child
         return None
 
-    def function(self, cursor):
+    def function(self, cursor: Cursor) -> Cursor | None:
         """Return the function in which a cursor stands, or None."""
         return next((one for one in self.above(cursor) if one.kind.name in _FUNCTIONS), None)
 
-    def base(self, call):
+    def base(self, call: Cursor) -> Cursor | None:
         """Return the expression before the dot of a call, or None."""
         member = next(call.get_children(), None)
         if member is None or member.kind != self.kinds.MEMBER_REF_EXPR:
             return None
         return next(member.get_children(), None)
 
-    def type_of(self, cursor):
+    def type_of(self, cursor: Cursor | None) -> str:
         if cursor is None:
             return ""
         text = cursor.type.get_canonical().spelling
         return re.sub(r"\b(const|class|struct)\b|[&*]", "", text).strip()
 
-    def is_loop(self, cursor):
+    def is_loop(self, cursor: Cursor) -> bool:
         """Return whether it is a loop of the source's own: those of ROS_INFO are none."""
         kinds = self.kinds
         if cursor.kind not in (kinds.WHILE_STMT, kinds.DO_STMT, kinds.FOR_STMT):
@@ -245,7 +241,7 @@ class Unit:
 
 
 # kind of an expression -> what finds its value
-_VALUES = {
+_VALUES: dict[str, Callable[[Unit, Cursor, int], Plain]] = {
     "STRING_LITERAL": Unit._text,
     "INTEGER_LITERAL": Unit._number,
     "FLOATING_LITERAL": Unit._number,

@@ -6,29 +6,32 @@ configures, and for a class once for all. Nothing of a package has a part in it.
 """
 
 import os
+import pathlib
 import shutil
 import subprocess
 import sys
+
+if __name__ == "__main__":
+    # In place of this file's own folder, whose modules are none of clang's.
+    sys.path[0] = str(pathlib.Path(__file__).resolve().parents[2])
+
+from mrp_check.confined import variables
 
 STANDARD = "-std=gnu++17"  # the default of g++ 12 and 14
 FOLDERS = ("/opt/ros/noetic/include", "/usr/include/xmlrpcpp")
 _SOURCE = ("ros.h", "#include <ros/ros.h>\n")
 
-# Where a class keeps them.
-KEPT = "MRP_CHECK_HEADERS"
 
-
-def make(path):
+def make(path: pathlib.Path) -> pathlib.Path:
     """Put the headers into the file `path`, and return it. Without clang or ROS there is none."""
-    if os.environ.get(KEPT):
-        shutil.copy(os.environ[KEPT], path)
+    if os.environ.get(variables.HEADERS):
+        shutil.copy(os.environ[variables.HEADERS], path)
     else:
         subprocess.run(["/usr/bin/python3", __file__, str(path)], stderr=subprocess.DEVNULL)
     return path
 
 
-def main():
-    del sys.path[0]  # this file's folder, whose modules are none of clang's
+def main() -> None:
     from clang import cindex
 
     of = cindex.TranslationUnit

@@ -5,11 +5,16 @@ from __future__ import annotations
 
 import json
 import re
+from typing import Sequence
 
+from mrp_check.confined.places import Plain
+from mrp_check.confined.seen import Number
+
+_LARGEST = 2**70  # of a number that is still counted with
 GAP = "{}"  # what stands in a text for a part that the source does not say plainly
 
 
-def number(token):
+def number(token: str) -> Number | None:
     """Return the number that a C++ literal stands for, or None."""
     text = token.lower()
     if text.startswith("0x"):
@@ -22,8 +27,10 @@ def number(token):
         return None
 
 
-def arithmetic(operator, left, right):
-    if not all(isinstance(side, (int, float)) and abs(side) < 2**70 for side in (left, right)):
+def arithmetic(operator: str, left: Plain, right: Plain) -> Number | None:
+    if not isinstance(left, (int, float)) or not isinstance(right, (int, float)):
+        return None
+    if max(abs(left), abs(right)) >= _LARGEST:
         return None
     if operator == "+":
         return left + right
@@ -37,9 +44,10 @@ def arithmetic(operator, left, right):
     return None
 
 
-def logged(macro, tokens):
+def logged(macro: str, tokens: Sequence[str]) -> str | None:
     """Return the text of a ROS_INFO... with GAP for each value in it."""
-    depth, parts, current = 0, [], []
+    depth, parts = 0, []
+    current: list[str] = []
     for token in tokens[1:]:
         if token in ("(", "[", "{"):
             depth += 1
@@ -59,7 +67,8 @@ def logged(macro, tokens):
     skip = sum(word in macro for word in ("_COND", "_THROTTLE", "_NAMED", "_DELAYED"))
     if "_STREAM" in macro:
         # A comma of a template's arguments is none between arguments: the rest is the text.
-        pieces, piece = [], []
+        pieces = []
+        piece: list[str] = []
         for token in [t for part in parts[skip:] for t in [*part, ","]][:-1]:
             if token == "<<":
                 pieces.append(piece)
@@ -74,7 +83,7 @@ def logged(macro, tokens):
     return percent(text) if text != GAP else None
 
 
-def literal(tokens):
+def literal(tokens: Sequence[str]) -> str:
     """Return the text of string literals, one after another, or GAP for anything else."""
     try:
         texts = [json.loads(token, strict=False) for token in tokens]
@@ -83,5 +92,5 @@ def literal(tokens):
     return "".join(texts) if texts and all(isinstance(t, str) for t in texts) else GAP
 
 
-def percent(text):
+def percent(text: str) -> str:
     return re.sub(r"%[-+ #0-9.*]*(?:hh|ll|[hlzjtL])?[a-zA-Z]", GAP, text).replace("%%", "%")

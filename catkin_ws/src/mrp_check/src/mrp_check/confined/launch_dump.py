@@ -1,52 +1,95 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Prints, as JSON, what roslaunch makes of a launch file. Runs confined: a file can call programs.
+"""Prints what roslaunch makes of a launch file: a Dump. Runs confined: a file can call programs.
 
-Usage: launch_dump.py FILE [ARG:=VALUE...]
+Usage: launch_dump.py FILE
 """
 
 import contextlib
+import dataclasses
 import io
 import json
 import os
+import pathlib
 import sys
+from typing import Any, Dict, List, Optional, Tuple
+
+if __name__ == "__main__":
+    # In place of this file's own folder: roslaunch imports others of the same names.
+    sys.path[0] = str(pathlib.Path(__file__).resolve().parents[2])
+
+from mrp_check.confined import crossing
+
+Pair = Tuple[str, str]
 
 
-def main():
-    path, *arguments = sys.argv[1:]
-    # This file's folder, in which modules have names that roslaunch imports from elsewhere.
-    del sys.path[0]
+@dataclasses.dataclass
+class Started:
+    """A node that a launch file starts.
+
+    env, remaps: each a name, and what it is set to; arguments, prefix: as on a command line
+    file: the launch file that has its <node>, if that is known; line: of that, if it is known
+    """
+
+    package: str
+    type: str
+    name: str
+    namespace: str
+    output: str
+    remaps: List[Pair]
+    env: List[Pair]
+    arguments: str
+    prefix: str
+    file: Optional[str]
+    line: Optional[int] = None
+
+    @property
+    def path(self) -> str:
+        """The node's full name."""
+        return self.namespace.rstrip("/") + "/" + self.name
+
+
+@dataclasses.dataclass
+class Dump:
+    """What roslaunch makes of a file. error: what it said instead, or an empty text."""
+
+    error: str
+    nodes: List[Started] = dataclasses.field(default_factory=list)
+    files: List[str] = dataclasses.field(default_factory=list)
+    params: Dict[str, object] = dataclasses.field(default_factory=dict)
+
+
+def main() -> None:
     # What roslaunch and its imports print is no part of the answer.
     with contextlib.redirect_stdout(io.StringIO()):
-        result = load(path, arguments)
-    json.dump(result, sys.stdout)
+        result = load(sys.argv[1])
+    sys.stdout.write(crossing.to_json(result))
 
 
-def load(path, arguments):
+def load(path: str) -> Dump:
     import roslaunch.config
     import roslaunch.core
     import roslaunch.xmlloader
 
-    sys.argv = ["roslaunch", path, *arguments]  # there roslaunch looks for the arguments
+    sys.argv = ["roslaunch", path]  # there roslaunch looks for the arguments
     config = roslaunch.config.ROSLaunchConfig()
     loader = roslaunch.xmlloader.XmlLoader(resolve_anon=False)
     loader.ignore_unset_args = False  # as load_config_default() has it
     try:
-        loader.load(path, config, argv=arguments, verbose=False)
+        loader.load(path, config, argv=[], verbose=False)
         error = ""
     except (roslaunch.core.RLException, roslaunch.xmlloader.XmlParseException) as problem:
         error = str(problem)
     except Exception as problem:  # whatever it is, the file is what caused it
         error = f"{type(problem).__name__}: {problem}"
-    return {
-        "error": error,
-        "warnings": list(config.config_errors),
-        "files": [os.path.realpath(name) for name in config.roslaunch_files],
-        "nodes": [node(one) for one in config.nodes],
-        "params": {name: one.value for name, one in config.params.items() if is_plain(one.value)},
-    }
+    return Dump(
+        error,
+        [_started(one) for one in config.nodes],
+        [os.path.realpath(name) for name in config.roslaunch_files],
+        {name: one.value for name, one in config.params.items() if _is_plain(one.value)},
+    )
 
 
-def is_plain(value):
+def _is_plain(value: object) -> bool:
     try:
         json.dumps(value)
         return True
@@ -54,19 +97,19 @@ def is_plain(value):
         return False
 
 
-def node(one):
-    return {
-        "package": one.package,
-        "type": one.type,
-        "name": one.name,
-        "namespace": one.namespace,
-        "output": one.output or "log",
-        "remaps": [list(pair) for pair in one.remap_args],
-        "file": os.path.realpath(one.filename) if one.filename else None,
-        "env": [list(pair) for pair in one.env_args],
-        "prefix": one.launch_prefix or "",
-        "arguments": one.args or "",
-    }
+def _started(node: Any) -> Started:
+    return Started(
+        package=node.package,
+        type=node.type,
+        name=node.name,
+        namespace=node.namespace,
+        output=node.output or "log",
+        remaps=node.remap_args,
+        env=node.env_args,
+        arguments=node.args or "",
+        prefix=node.launch_prefix or "",
+        file=os.path.realpath(node.filename) if node.filename else None,
+    )
 
 
 if __name__ == "__main__":

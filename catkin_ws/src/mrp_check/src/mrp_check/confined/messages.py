@@ -3,14 +3,12 @@
 
 import pathlib
 import re
+from typing import Any, Dict, List, Optional, Sequence
 
 import genmsg
 import genmsg.gentools
 import genpy.dynamic
 import roslib.message
-
-# In which ROS's packages lie, here and on Noetic.
-_SHARES = ("/usr/share", "/opt/ros/noetic/share")
 
 _TYPE = r"[A-Za-z]\w*/[A-Za-z]\w*"
 # The lines of a definition that say what is sent. genpy makes Python of a definition: a constant
@@ -19,12 +17,15 @@ _FIELD = re.compile(r"\s*([A-Za-z]\w*(?:/[A-Za-z]\w*)?(?:\[\d*\])?)\s+([A-Za-z]\
 _BETWEEN = re.compile(rf"={{80}}|MSG: {_TYPE}")
 
 
-def definitions(package, folders):
+def definitions(
+    package: str, folders: Sequence[pathlib.Path], shares: Sequence[str]
+) -> Dict[str, List[str]]:
     """Return type -> [md5sum, definition] of the messages that a package defines.
 
-    folders: those with its .msg files. What cannot be read is left out: the build reports it.
+    folders: those with its .msg files; shares: those with ROS's own packages,
+        the first before the others. What cannot be read is left out: the build reports it.
     """
-    of_ros = (path for share in _SHARES for path in pathlib.Path(share).glob("*/msg"))
+    of_ros = (path for share in reversed(shares) for path in pathlib.Path(share).glob("*/msg"))
     search = {path.parent.name: [str(path)] for path in of_ros}
     search[package] = [str(folder) for folder in folders]
     found = {}
@@ -41,7 +42,7 @@ def definitions(package, folders):
     return found
 
 
-def of_definition(type_, text):
+def of_definition(type_: str, text: str) -> Any:
     """Return the class of a type, with which messages can be read. Raises ValueError."""
     if not re.fullmatch(_TYPE, type_):
         raise ValueError(f"expected a type such as std_msgs/UInt32; found {type_!r}")
@@ -55,12 +56,12 @@ def of_definition(type_, text):
     return genpy.dynamic.generate_dynamic(type_, "\n".join(lines))[type_]
 
 
-def of_type(type_, own):
+def of_type(type_: Optional[str], own: Dict[str, List[str]]) -> Any:
     """Return the class of a type, with which messages can be sent; None if there is no such type.
 
     own: the definitions() of the package under check
     """
-    if type_ not in own:
+    if type_ is None or type_ not in own:
         return roslib.message.get_message_class(type_)
     md5sum, text = own[type_]
     made = of_definition(type_, text)

@@ -6,19 +6,20 @@ answer; the master gives it when this observer is connected. So not even the fir
 missed, however busy the machine is.
 
     with Observer() as observer:
-        subprocess.Popen([...], env={**os.environ, "ROS_MASTER_URI": observer.uri})
+        subprocess.Popen([...], env={**os.environ, variables.MASTER: observer.uri})
         ...
-        observer.messages, observer.logs, observer.publications, observer.subscriptions
+        observer.seen.messages, observer.seen.logs, observer.seen.publications, ...
 """
 
+import dataclasses
 import io
 import logging
 import os
 import socket
 import threading
 import time
-import typing
 import xmlrpc.client
+from typing import Any, Dict, Iterable, List, Optional, Set, Tuple, TypeVar, Union
 
 import genpy
 import rosgraph
@@ -29,7 +30,8 @@ import rospy
 import rospy.impl.masterslave
 from rosgraph_msgs.msg import Log as LogMessage
 
-from mrp_check.confined import messages
+from mrp_check.confined import messages, variables
+from mrp_check.confined.seen import Log, Message, Registration, Seen
 
 NAME = "/mrp_check_observer"
 
@@ -39,42 +41,7 @@ _KEEP = 3000  # messages of one publisher on one topic: of more, only the number
 _FIELDS = 30  # of a message
 _TEXT = 500  # characters of a text in it
 _LAG_TICK = 0.05  # seconds
-
-
-class Registration(typing.NamedTuple):
-    """A node has announced to the master that it publishes or subscribes."""
-
-    node: str
-    topic: str
-    type: str
-    time: float
-
-
-class Message(typing.NamedTuple):
-    """A message, by the one who sent it.
-
-    latched: whether its publisher said so when it announced the topic; see Observer.is_latched
-    fields: path such as "data" or "header.seq" -> number or text; None if it cannot be read
-    """
-
-    node: str
-    topic: str
-    type: str
-    latched: bool
-    fields: typing.Optional[dict]
-    time: float
-
-
-class Log(typing.NamedTuple):
-    """A line that a node has logged, and where in its source. level: DEBUG, INFO, WARN, ..."""
-
-    node: str
-    level: str
-    text: str
-    file: str
-    line: int
-    function: str
-    time: float
+_HEADER = 2048  # bytes that are read at once of what a publisher says of itself
 
 
 _LEVELS = {
@@ -86,25 +53,29 @@ _LEVELS = {
 }
 
 
+Record = TypeVar("Record", Registration, Message, Log)
+Field = Union[bool, int, float, str]
+Answer = Tuple[int, str, Any]  # of ROS's master: a code, a sentence, a value
+
+
 class Observer:
     """A master, and what is seen at it. Times are those of time.monotonic().
 
     uri: of the master
-    publications, subscriptions: each Registration so far, also of what has ended since
-    messages: each Message so far, in order of arrival
-    logs: each Log so far
+    seen: all so far, also of what has ended since
     counts: (node, topic) -> number of messages, also of those that are not kept
 
     There can be one in a process: it is rospy's node.
     """
 
-    def __init__(self):
-        self.publications, self.subscriptions = [], []
-        self.messages, self.logs, self.counts = [], [], {}
-        self._subscribers, self._types = {}, {}
+    def __init__(self) -> None:
+        self.seen = Seen()
+        self.counts: Dict[Tuple[str, str], int] = {}
+        self._subscribers: Dict[str, Optional[rospy.Subscriber]] = {}
+        self._types: Dict[Tuple[str, str], Any] = {}
         self._lock = threading.Lock()
-        self._lag = []
-        os.environ.setdefault("ROS_HOSTNAME", "localhost")
+        self._lag: List[float] = []
+        os.environ.setdefault(variables.HOSTNAME, "localhost")
         # rosmaster says much to the root logger, which writes it to standard error.
         logging.getLogger("rosmaster").setLevel(logging.CRITICAL)
         self._handler = _Master(self)
@@ -113,33 +84,33 @@ class Observer:
         while not self._server.uri:
             time.sleep(0.01)
         self.uri = self._server.uri
-        os.environ["ROS_MASTER_URI"] = self.uri
+        os.environ[variables.MASTER] = self.uri
         rospy.impl.masterslave.ROSHandler.shutdown = _refuse
         rospy.init_node(NAME[1:], anonymous=False, disable_signals=True, disable_rosout=True)
         self._subscribe("/rosout")
         threading.Thread(target=self._measure_lag, daemon=True).start()
 
-    def __enter__(self):
+    def __enter__(self) -> "Observer":
         return self
 
-    def __exit__(self, *_):
+    def __exit__(self, *_: object) -> None:
         rospy.signal_shutdown("the observation has ended")
         self._handler._shutdown("the observation has ended")
         self._server.shutdown("the observation has ended")
 
     # --- What the master hears
 
-    def registered_publisher(self, node, topic, type_):
+    def registered_publisher(self, node: str, topic: str, type_: str) -> None:
         """Called by the master before it answers: returns when this observer is connected."""
         if node == NAME:
             return
-        self.publications.append(Registration(node, topic, type_, time.monotonic()))
+        self.seen.publications.append(Registration(node, topic, type_, time.monotonic()))
 
-    def subscribe_before(self, node, topic):
+    def subscribe_before(self, node: str, topic: str) -> None:
         if node != NAME:
             self._subscribe(topic)
 
-    def hold(self, node, topic):
+    def hold(self, node: str, topic: str) -> None:
         """Wait until this observer is connected to a publisher, or for _HOLD seconds."""
         if node == NAME:
             return
@@ -150,26 +121,46 @@ class Observer:
         # other: where the next one is answered, it sends to the one before.
         self._shake_hands(node, topic)
 
-    def _is_connected(self, node, topic):
+    def _is_connected(self, node: str, topic: str) -> bool:
         subscriber = self._subscribers.get(topic)
         if subscriber is None:
             return True
         connections = subscriber.impl.connections if subscriber.impl else []
         return any(getattr(c, "callerid_pub", None) == node for c in list(connections))
 
-    def is_registered(self, node):
+    def is_registered(self, node: str) -> bool:
         """Return whether the master still knows anything of a node."""
         handler = self._handler
         kinds = (handler.publishers, handler.subscribers, handler.services)
         return any(node in names for kind in kinds for _, names in kind.get_state())
 
-    def nodes(self):
+    def nodes(self) -> Set[str]:
         """Return the names of all nodes that have registered anything so far."""
-        return {r.node for r in self.publications + self.subscriptions}
+        return {r.node for r in self.seen.publications + self.seen.subscriptions}
+
+    def most_of(self, node: str) -> int:
+        """Return how many messages a node has published on the topic where it published most."""
+        counts = [count for (name, _), count in list(self.counts.items()) if name == node]
+        return max(counts, default=0)
+
+    def seen_since(self, began: float) -> Seen:
+        """Return what was seen, with times from the beginning on."""
+
+        def records(items: Iterable[Record]) -> List[Record]:
+            return [dataclasses.replace(item, time=item.time - began) for item in list(items)]
+
+        found = self.seen
+        return Seen(
+            records(found.publications),
+            records(found.subscriptions),
+            records(found.messages),
+            records(found.logs),
+            self.lag(),
+        )
 
     # --- What is published
 
-    def _subscribe(self, topic):
+    def _subscribe(self, topic: str) -> None:
         with self._lock:
             if topic in self._subscribers:
                 return
@@ -179,7 +170,7 @@ class Observer:
             topic, rospy.AnyMsg, callback, callback_args=topic, queue_size=None
         )
 
-    def _message(self, message, topic):
+    def _message(self, message: Any, topic: str) -> None:
         now, header = time.monotonic(), message._connection_header
         node = header.get("callerid", "")
         if node == NAME:
@@ -187,112 +178,115 @@ class Observer:
         count = self.counts[node, topic] = self.counts.get((node, topic), 0) + 1
         if count <= _KEEP:
             fields = self._fields(message, header)
-            latched = header.get("latching") == "1"
-            type_ = header.get("type", "")
-            self.messages.append(Message(node, topic, type_, latched, fields, now))
+            self.seen.messages.append(Message(node, topic, fields, now))
 
-    def _fields(self, message, header):
-        key = header.get("type"), header.get("md5sum")
+    def _fields(self, message: Any, header: Dict[str, str]) -> Optional[Dict[str, Field]]:
+        key = header.get("type", ""), header.get("md5sum", "")
         try:
             if key not in self._types:
                 self._types[key] = messages.of_definition(key[0], header["message_definition"])
-            result = {}
+            result: Dict[str, Field] = {}
             _flatten(self._types[key]().deserialize(message._buff), "", result)
             return result
         except Exception:  # whatever a package sends: it is no reason to stop
             return None
 
-    def _log(self, message, topic):
+    def _log(self, message: Any, topic: str) -> None:
         try:
             log = LogMessage().deserialize(message._buff)
         except genpy.DeserializationError:
             return
-        if len(self.logs) < 10 * _KEEP:
-            level = _LEVELS.get(log.level, str(log.level))
-            where = (log.file, log.line, log.function)
-            text = log.msg[: 4 * _TEXT]
-            self.logs.append(Log(log.name, level, text, *where, time.monotonic()))
+        if len(self.seen.logs) < 10 * _KEEP:
+            level, text = _LEVELS.get(log.level, str(log.level)), log.msg[: 4 * _TEXT]
+            now = time.monotonic()
+            self.seen.logs.append(Log(log.name, level, text, log.file, log.line, now))
 
-    def is_latched(self, node, topic):
+    def is_latched(self, node: str, topic: str) -> bool:
         """Return whether a node latches a topic, as one who subscribes now is told; None if it does
         not answer.
 
         What it tells its first subscribers may be too early: rospy latches after it has announced.
         """
         answer = self._shake_hands(node, topic)
-        return answer and answer.get("latching") == "1"
+        return answer is not None and answer.get("latching") == "1"
 
-    def _shake_hands(self, node, topic):
+    def _shake_hands(self, node: str, topic: str) -> Optional[Dict[str, str]]:
         """Subscribe for a moment; return what the publisher says of it, or None."""
         try:
             api = self._handler.publishers.get_apis(topic)
             by_node = dict(zip(self._publisher_names(topic), api))
             with xmlrpc.client.ServerProxy(by_node[node]) as proxy:
-                code, _, found = proxy.requestTopic(NAME, topic, [["TCPROS"]])
+                answer: Any = proxy.requestTopic(NAME, topic, [["TCPROS"]])
+            code, _, found = answer
             if code != 1 or not found:
                 return None
             with socket.create_connection(tuple(found[1:3]), _ANSWER) as connection:
                 header = {"topic": topic, "md5sum": "*", "type": "*", "callerid": NAME + "_late"}
                 rosgraph.network.write_ros_handshake_header(connection, header)
-                return rosgraph.network.read_ros_handshake_header(connection, io.BytesIO(), 2048)
+                said = rosgraph.network.read_ros_handshake_header(connection, io.BytesIO(), _HEADER)
+                return dict(said)
         except (KeyError, OSError, xmlrpc.client.Error, rosgraph.network.ROSHandshakeException):
             return None
 
-    def _publisher_names(self, topic):
-        return dict(self._handler.publishers.get_state()).get(topic, [])
+    def _publisher_names(self, topic: str) -> List[str]:
+        return list(dict(self._handler.publishers.get_state()).get(topic, []))
 
     # --- Taking part
 
-    def publisher(self, topic, message_class):
+    def publisher(self, topic: str, message_class: Any) -> rospy.Publisher:
         """Return a publisher to nodes under observation."""
         return rospy.Publisher(topic, message_class, queue_size=100)
 
     # --- How busy the machine is
 
-    def _measure_lag(self):
+    def _measure_lag(self) -> None:
         while True:
             before = time.monotonic()
             time.sleep(_LAG_TICK)
             self._lag.append(time.monotonic() - before - _LAG_TICK)
 
-    def lag(self):
+    def lag(self) -> float:
         """Return by how many seconds this process was scheduled late, of all times the worst but
         one in ten."""
         lag = sorted(self._lag)
         return lag[len(lag) * 9 // 10] if lag else 0.0
 
 
-def _refuse(self, caller_id, reason=""):
+def _refuse(self: object, caller_id: str, reason: str = "") -> Answer:
     """Answer to one who asks the observer, or its master, to shut down."""
     return -1, "the observation is not over", 0
 
 
-class _Master(rosmaster.master_api.ROSMasterHandler):
+class _Master(rosmaster.master_api.ROSMasterHandler):  # type: ignore[misc]  # it has no types
     """A master that tells the observer what it hears, and lets publishers wait for it."""
 
     shutdown = _refuse
 
-    def __init__(self, observer):
+    def __init__(self, observer: Observer) -> None:
         super().__init__()
         self._observer = observer
 
-    def registerPublisher(self, caller_id, topic, topic_type, caller_api):  # noqa: N802
+    def registerPublisher(  # noqa: N802
+        self, caller_id: str, topic: str, topic_type: str, caller_api: str
+    ) -> Answer:
         self._observer.subscribe_before(caller_id, topic)
-        answer = super().registerPublisher(caller_id, topic, topic_type, caller_api)
+        answer: Answer = super().registerPublisher(caller_id, topic, topic_type, caller_api)
         if answer[0] == 1:
             self._observer.registered_publisher(caller_id, topic, topic_type)
             self._observer.hold(caller_id, topic)
         return answer
 
-    def registerSubscriber(self, caller_id, topic, topic_type, caller_api):  # noqa: N802
-        answer = super().registerSubscriber(caller_id, topic, topic_type, caller_api)
+    def registerSubscriber(  # noqa: N802
+        self, caller_id: str, topic: str, topic_type: str, caller_api: str
+    ) -> Answer:
+        answer: Answer = super().registerSubscriber(caller_id, topic, topic_type, caller_api)
         if answer[0] == 1 and caller_id != NAME:
             registration = Registration(caller_id, topic, topic_type, time.monotonic())
-            self._observer.subscriptions.append(registration)
+            self._observer.seen.subscriptions.append(registration)
         return answer
 
 
-def _flatten(message, prefix, result):
+def _flatten(message: Any, prefix: str, result: Dict[str, Field]) -> None:
     """Put the plain fields of a message into `result`, by their paths."""
     for name in message.__slots__:
         value = getattr(message, name)

@@ -11,13 +11,15 @@ The head of a patch says what it breaks, and who must find that:
     Finds: python-syntax|exit   the checker's requirements that are not met (a regular expression),
     In: src/a.py: def .*        the file and its line of the finding (a regular expression),
     Tells: colon                and what the finding says (a regular expression)
+    Severity: warning           of the finding, if it is only a warning
+    Proves: A sentence.         a sentence of the pages that this proves
     Missed: WHY                 the checker is known not to find it
     Order: 7                    its number, if it is an exercise,
     Task: # A title             what the student reads first,
     Hint: Look at the end.      and what the student may ask for
 
 The value of a field goes on in the lines below it that are indented. There may be several lines In:
-each names a place that is right. The head ends where the diff begins.
+each names a place that is right; and several lines Proves. The head ends where the diff begins.
 
 An exercise is the broken package. Its solution is the patch reversed.
 """
@@ -28,18 +30,24 @@ import dataclasses
 import pathlib
 import re
 import textwrap
+from typing import Iterator, Mapping, Sequence
 
 from mrp_check.contract import resources
 
 _FIELD = re.compile(r"([A-Z][\w-]*):(?: (.*))?")
 # A patch has all fields of a group, or none.
 _GROUPS = (("Fails", "Says"), ("Finds", "In", "Tells"), ("Order", "Task", "Hint"))
-_FIELDS = ("Base", "Breaks", "Erratum", "Missed", *(field for group in _GROUPS for field in group))
+_FIELDS = (
+    *("Base", "Breaks", "Erratum", "Missed", "Proves", "Severity"),
+    *(field for group in _GROUPS for field in group),
+)
+_SEVERAL = ("In", "Proves")
 _FORMS = {
     "Erratum": (r"[EP][1-9]\d*", "the number of an erratum, such as E5"),
     "Fails": (r"\w+\.test \w+", "a rostest and a test case of it"),
     "In": (r"\S+: .+", "a file, a colon, and a regular expression"),
     "Order": (r"[1-9]\d*", "a number from 1 on"),
+    "Severity": (r"warning", "warning, or no such line for an error"),
     "Task": (r"# .+\n\n(?s:.+)", "a title such as '# A title', an empty line, and a text"),
 }
 _PATTERNS = ("Says", "Finds", "In", "Tells")
@@ -59,32 +67,35 @@ class Defect:
     erratum: str = ""
     fails: tuple[str, ...] = ()  # the rostest, the test case
     says: str = ""
+    proves: tuple[str, ...] = ()
     finds: str = ""
     places: tuple[tuple[str, str], ...] = ()  # each a file, and a pattern of a line in it
     tells: str = ""
+    severity: str = "error"
     missed: str = ""
     order: int = 0
     task: str = ""
     hint: str = ""
 
     @property
-    def name(self):
+    def name(self) -> str:
         return self.path.stem
 
     @property
-    def title(self):
+    def title(self) -> str:
         """Of an exercise."""
         return self.task.splitlines()[0].lstrip("# ")
 
 
-def fields(head, name):
-    """Return field -> its values, of the lines "Field: value" of a head.
+def fields(path: pathlib.Path) -> dict[str, list[str]]:
+    """Return field -> its values, of the lines "Field: value" in the head of a patch.
 
-    name: of the file, for the DefectError
+    Raises DefectError if a line is something else.
     """
-    found = {}
-    values = None
-    for line in head.splitlines():
+    head = re.split(rb"^(?:--- |diff )", path.read_bytes(), maxsplit=1, flags=re.MULTILINE)[0]
+    found: dict[str, list[list[str]]] = {}
+    values: list[list[str]] | None = None
+    for line in head.decode().splitlines():
         match = _FIELD.fullmatch(line)
         if match:
             values = found.setdefault(match.group(1), [])
@@ -93,36 +104,41 @@ def fields(head, name):
             values[-1].append(line)
         else:
             raise DefectError(
-                f"{name}: expected 'Field: value' or an indented line; found {line!r}."
+                f"{path.name}: expected 'Field: value' or an indented line; found {line!r}."
             )
     return {field: [_text(*lines) for lines in values] for field, values in found.items()}
 
 
-def _text(first, *others):
+def _text(first: str, *others: str) -> str:
     """Return a value: what stands beside the field, and the lines below without indentation."""
     below = textwrap.dedent("\n".join(others)).strip()
     return "\n".join(filter(None, (first, below)))
 
 
-def read(path):
+def read(path: pathlib.Path) -> Defect:
     """Return the Defect of a patch. Raises DefectError if its head is not as it must be."""
-    head = re.split(rb"^(?:--- |diff )", path.read_bytes(), maxsplit=1, flags=re.MULTILINE)[0]
-    found = fields(head.decode(), path.name)
+    found = fields(path)
     for fault in _faults(found):
         raise DefectError(f"{path.name}: {fault}.")
-    places = tuple(tuple(value.split(": ", 1)) for value in found.pop("In", ()))
+    pairs = (value.partition(": ") for value in found.pop("In", ()))
+    proves = tuple(found.pop("Proves", ()))
     values = {field.lower(): value for field, (value,) in found.items()}
-    values["fails"] = tuple(values.get("fails", "").split())
-    values["order"] = int(values.get("order", 0))
-    return Defect(path=path, places=places, **values)
+    return Defect(
+        path=path,
+        places=tuple((file, pattern) for file, _, pattern in pairs),
+        proves=proves,
+        fails=tuple(values.pop("fails", "").split()),
+        order=int(values.pop("order", 0)),
+        **values,
+    )
 
 
-def _faults(found):
+def _faults(found: Mapping[str, Sequence[str]]) -> Iterator[str]:
     """Yield what is wrong with a head, each fault as a sentence without its full stop."""
     for field, values in found.items():
         if field not in _FIELDS:
             yield f"there is no field {field}: expected one of {', '.join(_FIELDS)}"
-        elif len(values) > 1 and field != "In":
+        elif len(values) > 1 and field not in _SEVERAL:
             yield f"expected the field {field} once; found it {len(values)} times"
         for value in values:
             yield from _faults_of_value(field, value)
@@ -130,6 +146,8 @@ def _faults(found):
         yield "the field Breaks is missing"
     if "Fails" not in found and "Finds" not in found:
         yield "one of the fields Fails and Finds is missing: nobody would find the defect"
+    if "Proves" in found and "Fails" not in found:
+        yield "the field Fails is missing: only a defect that a rostest finds proves a sentence"
     for group in _GROUPS:
         if not set(group) & set(found):
             continue
@@ -141,7 +159,7 @@ def _faults(found):
         yield "a patch with the field Fails or Order breaks mrp: expected no other Base"
 
 
-def _faults_of_value(field, value):
+def _faults_of_value(field: str, value: str) -> Iterator[str]:
     form, meaning = _FORMS.get(field, (r"(?s).+", "a value"))
     if not re.fullmatch(form, value):
         yield f"expected {meaning}, in the field {field}; found {value!r}"
@@ -152,7 +170,7 @@ def _faults_of_value(field, value):
             yield f"expected a regular expression in the field {field}; found {value!r}: {error}"
 
 
-def read_all(folder=None):
+def read_all(folder: pathlib.Path | None = None) -> list[Defect]:
     """Return all defects, by name. Raises DefectError if one is not as it must be.
 
     folder: of the patches; without it, that of the workspace, or where it is installed
@@ -161,7 +179,7 @@ def read_all(folder=None):
     found = [read(path) for path in sorted(folder.glob("*.patch"))]
     if not found:
         raise DefectError(f"Expected patches in {folder}; there is none.")
-    orders = {}
+    orders: dict[int, Defect] = {}
     for one in found:
         if one.order and orders.setdefault(one.order, one) is not one:
             raise DefectError(
@@ -171,6 +189,6 @@ def read_all(folder=None):
     return found
 
 
-def exercises(folder=None):
+def exercises(folder: pathlib.Path | None = None) -> list[Defect]:
     """Return the defects that are exercises, in their order. Raises DefectError as read_all."""
     return sorted((one for one in read_all(folder) if one.order), key=lambda one: one.order)

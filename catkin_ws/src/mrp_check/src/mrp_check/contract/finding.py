@@ -4,6 +4,11 @@
 from __future__ import annotations
 
 import dataclasses
+from typing import Optional, Tuple
+
+Line = Tuple[str, int]  # a file, relative to the package, and a line of it
+Where = Tuple[Optional[str], Optional[int]]  # the same, as far as it is known
+Change = Tuple[str, str]  # a part of a line, and what to write for it
 
 ERROR, WARNING, NOTE = "error", "warning", "note"
 
@@ -37,4 +42,4 @@ class Finding:
     consequence_of: str | None = None
     stage: str = ""
     node: str | None = None
-    change: tuple[str, str] | None = None
+    change: Change | None = None

@@ -4,6 +4,9 @@
 from __future__ import annotations
 
 import typing
+from typing import Callable, Iterable, Mapping
+
+from mrp_check.contract.finding import Finding
 
 STAGES = ("files", "static", "build", "run", "stop")
 
@@ -20,12 +23,12 @@ class Requirement(typing.NamedTuple):
 
     title: str
     section: str
-    seen: typing.Callable
+    seen: Callable[..., str | None]
     shown: int | None = None
     stage: str = ""
 
     @property
-    def page(self):
+    def page(self) -> str:
         """Where it is explained: a file of the built pages, and the place in it."""
         page, _, anchor = self.section.partition("#")
         return f"pages/{page}.html" + (f"#{anchor}" if anchor else "")
@@ -43,13 +46,13 @@ class Rule(typing.NamedTuple):
 
     stage: str
     order: int
-    needs: tuple
-    findings: typing.Callable
-    requirements: dict = {}
-    also: tuple = ()
+    needs: tuple[str, ...]
+    findings: Callable[..., Iterable[Finding]]
+    requirements: Mapping[str, Requirement] = {}
+    also: tuple[str, ...] = ()
 
     @property
-    def ids(self):
+    def ids(self) -> tuple[str, ...]:
         return (*self.requirements, *self.also)
 
 
@@ -64,6 +67,6 @@ NEEDS = {
 }
 
 
-def closure(needs):
+def closure(needs: Iterable[str]) -> set[str]:
     """Return all that must be known for what is needed."""
     return {one for need in needs for one in (need, *closure(NEEDS[need]))}

@@ -7,6 +7,7 @@ import dataclasses
 import json
 import pathlib
 import re
+from typing import Any, Collection, Dict, Iterable, Mapping, NoReturn, Sequence
 
 import genmsg
 import jsonschema
@@ -15,7 +16,7 @@ import yaml
 from mrp_check.contract import resources
 from mrp_check.contract.errors import SpecError
 from mrp_check.contract.resources import SHARES
-from mrp_check.contract.words import nearest
+from mrp_check.contract.schema import Loader, near, no_such, sentence
 
 SCHEMA = resources.folder("schema") / "spec.json"
 PACKAGE = "PACKAGE"  # in a type: the package's own name
@@ -28,7 +29,7 @@ class Topic:
     field: str = "data"
     namespace: str = "group"
 
-    def type_in(self, package_name):
+    def type_in(self, package_name: str) -> str:
         """Return the type with the package's name in it."""
         package, name = self.type.split("/")
         return f"{package_name if package == PACKAGE else package}/{name}"
@@ -42,7 +43,7 @@ class Values:
     step: int
     modulus: int | None = None
 
-    def after(self, value):
+    def after(self, value: float) -> float:
         """Return the value that comes after `value`."""
         return value + self.step if self.modulus is None else (value + self.step) % self.modulus
 
@@ -73,7 +74,7 @@ class Relays:
     times: int = 1
     modulus: int | None = None
 
-    def of(self, value):
+    def of(self, value: int) -> int:
         """Return what is published when `value` is received."""
         product = value * self.times
         return product if self.modulus is None else product % self.modulus
@@ -91,18 +92,23 @@ class Node:
     prints: tuple[str, ...] = ()
 
     @property
-    def publishing(self):
+    def publishing(self) -> Topic | None:
         """The topic that the node publishes on, or None."""
         if self.publishes:
             return self.publishes.topic
         return self.relays.target if self.relays else None
 
     @property
-    def subscribing(self):
+    def subscribing(self) -> Topic | None:
         """The topic that the node subscribes to, or None."""
         if self.subscribes:
             return self.subscribes.topic
         return self.relays.source if self.relays else None
+
+    @property
+    def received_line(self) -> str | None:
+        """The line for a value that the node receives, one of `prints`, or None."""
+        return next((line for line in self.prints if "{value}" in line), None)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -129,13 +135,13 @@ class Spec:
     install: bool = False
     points: dict[str, float] = dataclasses.field(default_factory=dict)
 
-    def node_path(self, node_name, group=None):
+    def node_path(self, node_name: str, group: str | None = None) -> str:
         """Return a node's full name, such as /mrp/publisher_cpp_node."""
         group = self.launch.group if group is None else group
         return f"/{group}/{node_name}" if group else f"/{node_name}"
 
 
-def pattern(line, name=None):
+def pattern(line: str, name: str | None = None) -> re.Pattern[str]:
     """Return the compiled regular expression of a line in `prints`.
 
     name: the node's full name, put in for {name}; any name if None. {value} is any whole number,
@@ -146,21 +152,21 @@ def pattern(line, name=None):
     return re.compile(text)
 
 
-def find(name):
+def find(name: str) -> pathlib.Path:
     """Return the path of a spec: a file, or the name of one of ours, such as pub_sub."""
     path = pathlib.Path(name)
     ours = resources.folder("specs") / (name if name.endswith(".yaml") else f"{name}.yaml")
     return ours if not path.is_file() and ours.is_file() else path
 
 
-def read(path, requirements=None):
+def read(path: str | pathlib.Path, requirements: Collection[str] | None = None) -> Spec:
     """Return the Spec in a file. Raises SpecError if it is no spec.
 
     requirements: the ids of those that there are, to which points can be given; any if None
     """
     try:
         text = pathlib.Path(path).read_text(encoding="utf-8")
-        data = yaml.load(text, Loader=_Loader)
+        data = yaml.load(text, Loader=Loader)
     except OSError as error:
         raise SpecError(f"{path}: the spec cannot be read: {error.strerror}.") from None
     except UnicodeDecodeError as error:
@@ -174,34 +180,26 @@ def read(path, requirements=None):
     return _Reader(path, text, requirements).spec(data)
 
 
-class _Loader(yaml.SafeLoader):
-    """Says when a key stands twice: plain YAML would take the last one, in silence."""
-
-    def construct_mapping(self, node, deep=False):
-        seen = set()
-        for key, _ in node.value:
-            if isinstance(key, yaml.ScalarNode) and key.value in seen:
-                raise yaml.MarkedYAMLError(
-                    problem=f"the key '{key.value}' stands twice", problem_mark=key.start_mark
-                )
-            seen.add(getattr(key, "value", None) if isinstance(key, yaml.ScalarNode) else None)
-        return super().construct_mapping(node, deep)
+Entry = Dict[str, Any]  # of the YAML file
+Messages = Mapping[str, Dict[str, str]]  # name -> field -> type
 
 
 class _Reader:
     """Makes a Spec of what YAML says; an error names the line of the file."""
 
-    def __init__(self, path, text, requirements):
+    def __init__(
+        self, path: str | pathlib.Path, text: str, requirements: Collection[str] | None
+    ) -> None:
         self.path, self.requirements = path, requirements
         self.tree = yaml.compose(text, Loader=yaml.SafeLoader)
 
-    def fail(self, place, sentence):
+    def fail(self, place: Sequence[str | int], sentence: str) -> NoReturn:
         """Raise SpecError about the entry at `place`, a list of keys and indices."""
         line = self.line(place)
         name = ".".join(map(str, place)) or "the spec"
         raise SpecError(f"{self.path}:{line}: {name}: {sentence} What can be said: {SCHEMA}")
 
-    def line(self, place):
+    def line(self, place: Iterable[str | int]) -> int:
         """Return the line of the entry at `place`, or of the nearest one above it."""
         node, line = self.tree, 1
         for part in place:
@@ -217,14 +215,14 @@ class _Reader:
                 break
         return line
 
-    def spec(self, data):
+    def spec(self, data: Entry) -> Spec:
         schema = json.loads(SCHEMA.read_text())
         errors = list(jsonschema.Draft7Validator(schema).iter_errors(data))
         if errors:
             error = min(
                 errors, key=lambda error: (self.line(error.path), list(map(str, error.path)))
             )
-            self.fail(list(error.path), _sentence(error))
+            self.fail(list(error.path), sentence(error))
         topics = {name: Topic(name, **entry) for name, entry in data["topics"].items()}
         spec = Spec(
             title=data["title"],
@@ -243,10 +241,10 @@ class _Reader:
             self.field(topic, spec.messages)
         for id_ in spec.points:
             if self.requirements is not None and id_ not in self.requirements:
-                self.fail(["points", id_], _no_such("requirement", id_, self.requirements))
+                self.fail(["points", id_], no_such("requirement", id_, self.requirements))
         return spec
 
-    def own_messages(self, messages):
+    def own_messages(self, messages: Messages) -> None:
         """See that each field's type is one that there is."""
         for name, fields in messages.items():
             for field, kind in fields.items():
@@ -255,7 +253,7 @@ class _Reader:
                 if not (own or plain == "Header" or genmsg.msgs.is_builtin(plain)):
                     self.fields_of(plain, ["messages", name, field])
 
-    def fields_of(self, kind, place):
+    def fields_of(self, kind: str, place: Sequence[str | int]) -> dict[str, str]:
         """Return field -> type of a message of this machine, such as std_msgs/UInt32."""
         folders = {kind.split("/")[0]: [f"{share}/{kind.split('/')[0]}/msg" for share in SHARES]}
         try:
@@ -268,10 +266,10 @@ class _Reader:
                 for share in SHARES
                 for path in pathlib.Path(share).glob("*/msg/*.msg")
             ]
-            self.fail(place, f"there is no message '{kind}' on this machine." + _near(kind, names))
+            self.fail(place, f"there is no message '{kind}' on this machine." + near(kind, names))
         return dict(zip(found.names, found.types))
 
-    def field(self, topic, messages):
+    def field(self, topic: Topic, messages: Messages) -> None:
         """See that a topic's type is one that there is, and has the topic's field."""
         kind, place = topic.type, ["topics", topic.name, "type"]
         for part in topic.field.split("."):
@@ -288,108 +286,47 @@ class _Reader:
                 self.fail(
                     place[:-1] + ["field"],
                     f"expected a field of {topic.type}; found '{topic.field}'; {there}."
-                    + _near(part, fields),
+                    + near(part, fields),
                 )
             kind = fields[part]
 
-    def node(self, name, entry, topics):
-        def topic(role, key):
-            place = ["nodes", name, role, key]
+    def node(self, name: str, entry: Entry, topics: dict[str, Topic]) -> Node:
+        def topic(role: str, key: str = "topic") -> Topic:
             topic_name = entry[role][key]
             if topic_name not in topics:
-                self.fail(place, _no_such("topic", topic_name, topics))
+                self.fail(["nodes", name, role, key], no_such("topic", topic_name, topics))
             return topics[topic_name]
 
-        roles = {}
+        roles: Entry = {}
         if "publishes" in entry:
             values = entry["publishes"].get("values")
-            roles["publishes"] = Publishes(
-                **{
-                    **entry["publishes"],
-                    "topic": topic("publishes", "topic"),
-                    "values": Values(**values) if values else None,
-                }
-            )
+            more = {"topic": topic("publishes"), "values": Values(**values) if values else None}
+            roles["publishes"] = Publishes(**{**entry["publishes"], **more})
         if "subscribes" in entry:
             roles["subscribes"] = Subscribes(
-                **{**entry["subscribes"], "topic": topic("subscribes", "topic")}
+                **{**entry["subscribes"], "topic": topic("subscribes")}
             )
         if "relays" in entry:
             rest = {k: v for k, v in entry["relays"].items() if k not in ("from", "to")}
             roles["relays"] = Relays(topic("relays", "from"), topic("relays", "to"), **rest)
-            if "publishes" in entry or "subscribes" in entry:
+            if len(roles) > 1:
                 self.fail(
                     ["nodes", name, "relays"],
                     "a node that relays has no 'publishes' or 'subscribes' besides: 'from' and"
                     " 'to' say both.",
                 )
-        for index, line in enumerate(entry.get("prints", [])):
+        rest = {key: entry[key] for key in ("language", "file", "executable") if key in entry}
+        return Node(name, prints=self.lines(name, entry.get("prints", ())), **roles, **rest)
+
+    def lines(self, node: str, lines: Sequence[str]) -> tuple[str, ...]:
+        """Return a node's lines, each of which is a regular expression."""
+        for index, line in enumerate(lines):
             try:
                 pattern(line)
             except re.error as error:
                 self.fail(
-                    ["nodes", name, "prints", index],
+                    ["nodes", node, "prints", index],
                     f"'{line}' is no regular expression: {error}. A literal bracket is written"
                     r" \[ or \].",
                 )
-        rest = {key: entry[key] for key in ("language", "file", "executable") if key in entry}
-        return Node(name, prints=tuple(entry.get("prints", ())), **roles, **rest)
-
-
-def _no_such(kind, name, names):
-    return f"there is no {kind} '{name}'; there are: {', '.join(names)}." + _near(name, names)
-
-
-def _near(name, names):
-    near = nearest(name, names)
-    return f" Did you mean '{near}'?" if near else ""
-
-
-def _sentence(error):
-    """Return what is wrong, in words, for an error of jsonschema."""
-    if error.validator == "additionalProperties":
-        known = list(error.schema.get("properties", {}))
-        unknown = sorted(str(key) for key in error.instance if key not in known)
-        if known:
-            return _no_such("key", unknown[0], known)
-    if error.validator == "required":
-        missing = [key for key in error.validator_value if key not in error.instance]
-        return f"expected the key '{missing[0]}'; it is missing."
-    kinds = {
-        "object": "keys with values",
-        "array": "a list",
-        "string": "a text",
-        "integer": "a whole number",
-        "number": "a number",
-        "boolean": "true or false",
-    }
-    if error.validator == "type":
-        return f"expected {kinds[error.validator_value]}; found {_shown(error.instance)}."
-    if error.validator == "enum":
-        allowed = ", ".join(map(str, error.validator_value))
-        return f"expected one of: {allowed}; found {_shown(error.instance)}."
-    if error.validator == "pattern":
-        return f"'{error.instance}' does not match {error.validator_value}."
-    limits = {
-        "minimum": "at least",
-        "maximum": "at most",
-        "exclusiveMinimum": "more than",
-        "minLength": "a length of at least",
-        "minProperties": "entries: at least",
-    }
-    if error.validator in limits:
-        limit = f"{limits[error.validator]} {error.validator_value}"
-        return f"expected {limit}; found {_shown(error.instance)}."
-    return error.message + "."
-
-
-def _shown(value):
-    if value is None:
-        return "nothing"
-    if isinstance(value, (dict, list)) and not value:
-        return "nothing"
-    if isinstance(value, dict):
-        return "keys with values"
-    if isinstance(value, list):
-        return "a list"
-    return str(value).lower() if isinstance(value, bool) else repr(value)
+        return tuple(lines)

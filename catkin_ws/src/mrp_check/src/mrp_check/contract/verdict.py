@@ -29,3 +29,8 @@ class Report:
     requirements: dict[str, str]
     reason: str = ""
     unseen: dict[str, str] = dataclasses.field(default_factory=dict)
+
+
+def unchecked(reason: str) -> Report:
+    """Return the Report of a package that nothing could be checked of: why, in one sentence."""
+    return Report("", "", UNCHECKED, [], {}, reason)

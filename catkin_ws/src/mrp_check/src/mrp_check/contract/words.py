@@ -4,13 +4,14 @@
 from __future__ import annotations
 
 import difflib
+from typing import Iterable
 
 
-def nearest(name, names, alike=0.6):
+def nearest(name: str, names: Iterable[str], alike: float = 0.6) -> str | None:
     """Return the name that is most like it, or None. alike: how much at least, up to 1."""
     return next(iter(difflib.get_close_matches(name, list(names), 1, alike)), None)
 
 
-def perhaps(near):
+def perhaps(near: str | None) -> str:
     """Return a hint that this name is meant, or an empty text if there is none."""
     return f" Perhaps {near} is meant." if near else ""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The report for a reader at a terminal."""
+"""The report for a reader at a terminal, and what the other reports share with it."""
 
 from __future__ import annotations
 
@@ -21,10 +21,10 @@ _COLOURS = {
     WARNING: "33",
     NOTE: "36",
 }
-_WIDTH = 100
+_WIDTH = 100  # characters
 
-# What a package prints or has in its files must not steer the terminal of whoever checks it.
-_CONTROL = re.compile(r"[\x00-\x08\x0b-\x1f\x7f-\x9f]")
+# A package's output and file names must not steer a terminal, and must fit into UTF-8 and XML.
+_UNFIT = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\ud800-\udfff\ufffe\uffff]")
 
 
 class Progress:
@@ -37,7 +37,7 @@ class Progress:
     def show(self, sentence):
         end = "" if self.terminal else "\n"
         start = "\r\x1b[K" if self.terminal else ""
-        print(f"{start}check: {sentence}", end=end, file=self.stream, flush=True)
+        print(f"{start}check: {plain(sentence)}", end=end, file=self.stream, flush=True)
 
     def clear(self):
         if self.terminal:
@@ -56,19 +56,26 @@ def text(report, colours=False):
         return f"\x1b[{_COLOURS[colour]}m{text}\x1b[0m" if colours else text
 
     lines = []
-    for stage in STAGES:
-        ids = [id_ for id_ in report.requirements if REQUIREMENTS[id_].stage == stage]
-        if ids:
-            lines.append(stage)
+    for stage, ids in by_stage(report):
+        lines.append(stage)
         for id_ in ids:
             verdict = report.requirements[id_]
             title = f"{REQUIREMENTS[id_].title} ({id_})"
             lines.append(f"  {paint(MARKS[verdict], verdict)} {title}{why_not(report, id_)}")
-    for finding in in_order(report.findings):
-        first, *rest = finding_lines(finding, report)
-        head, _, message = first.partition(f" {finding.severity}: ")
-        lines += ["", f"{head} {paint(finding.severity + ':', finding.severity)} {message}", *rest]
+    for cause, following in with_consequences(report.findings):
+        for finding in (cause, *following):
+            first, *rest = finding_lines(finding, report)
+            head, mark, message = first.partition(f" {finding.severity}: ")
+            lines += ["", f"{head} {paint(mark.strip(), finding.severity)} {message}", *rest]
     return "\n".join([*lines, "", summary(report)])
+
+
+def by_stage(report):
+    """Return (stage, ids of its requirements) for each stage that has any in the report."""
+    stages: dict[str, list[str]] = {stage: [] for stage in STAGES}
+    for id_ in report.requirements:
+        stages[REQUIREMENTS[id_].stage].append(id_)
+    return [(stage, ids) for stage, ids in stages.items() if ids]
 
 
 def why_not(report, id_):
@@ -76,50 +83,56 @@ def why_not(report, id_):
     return f": {report.unseen[id_]}" if id_ in report.unseen else ""
 
 
-def in_order(findings):
-    """Return the findings with each consequence after its cause, errors first."""
+def with_consequences(findings):
+    """Return (finding, what follows from it) for each, errors first.
+
+    What follows from a finding that is not there stands by itself, at the end.
+    """
     rank = {ERROR: 0, WARNING: 1, NOTE: 2}
     causes = sorted((f for f in findings if not f.consequence_of), key=lambda f: rank[f.severity])
-    left, ordered = [f for f in findings if f.consequence_of], []
+    left, groups = [f for f in findings if f.consequence_of], []
     for cause in causes:
-        ordered.append(cause)
-        if cause.severity == ERROR:
-            ordered += [f for f in left if f.consequence_of == cause.id]
-            left = [f for f in left if f.consequence_of != cause.id]
-    return ordered + left
+        following = [f for f in left if cause.severity == ERROR and f.consequence_of == cause.id]
+        left = [f for f in left if f not in following]
+        groups.append((cause, following))
+    return groups + [(finding, []) for finding in left]
 
 
 def where(finding, report):
     """Return FILE:LINE of a finding, as far as it has them; else the package's name."""
-    parts = [str(part) for part in (finding.file, finding.line) if part is not None]
-    return plain(":".join(parts) or report.package)
+    return plain(place(finding.file, finding.line) or report.package)
+
+
+def place(file, line):
+    """Return FILE:LINE without what is None."""
+    return ":".join(str(part) for part in (file, line) if part is not None)
 
 
 def plain(text):
-    """Return a text in which nothing steers a terminal."""
-    return _CONTROL.sub("\ufffd", text)
+    """Return a text that steers no terminal, and that UTF-8 and XML can hold."""
+    return _UNFIT.sub("\ufffd", text)
 
 
 def finding_lines(finding, report):
     """Return a finding as lines, without colours."""
     lines = _wrapped(f"{where(finding, report)}: {finding.severity}: ", finding.message, "  ")
-    for name in ("expected", "seen", "fix"):
+    lines += detail_lines(finding, ("expected", "seen", "fix"))
+    cause = finding.consequence_of
+    if cause:
+        return [*lines, f"  This follows from: {REQUIREMENTS[cause].title} ({cause})"]
+    return [*lines, f"  page:     {REQUIREMENTS[finding.id].page}"]
+
+
+def detail_lines(finding, names):
+    """Return those of the named fields of a finding that say something, as lines."""
+    lines = []
+    for name in names:
         value = plain(getattr(finding, name))
-        if not value:
-            continue
         head = f"  {name + ':':<10}"
         if "\n" in value:
-            lines.append(head.rstrip())
-            lines += ["    " + line for line in value.split("\n")]
-        else:
+            lines += [head.rstrip(), *("    " + line for line in value.split("\n"))]
+        elif value:
             lines += _wrapped(head, value, " " * len(head))
-    if finding.consequence_of:
-        lines.append(
-            f"  This follows from: {REQUIREMENTS[finding.consequence_of].title}"
-            f" ({finding.consequence_of})"
-        )
-    else:
-        lines.append(f"  page:     {REQUIREMENTS[finding.id].page}")
     return lines
 
 

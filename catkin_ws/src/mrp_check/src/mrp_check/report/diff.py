@@ -20,6 +20,6 @@ def of_change(package, file, line, change):
     plain = text.encode() == package.bytes(file) and not lines[-1]
     if not plain or lines[line - 1].count(old) != 1:
         return ""
-    mended = [*lines[: line - 1], *lines[line - 1].replace(old, new).split("\n"), *lines[line:]]
-    diff = difflib.unified_diff(lines[:-1], mended[:-1], f"a/{file}", f"b/{file}", lineterm="")
+    changed = [*lines[: line - 1], *lines[line - 1].replace(old, new).split("\n"), *lines[line:]]
+    diff = difflib.unified_diff(lines[:-1], changed[:-1], f"a/{file}", f"b/{file}", lineterm="")
     return "\n".join(diff)

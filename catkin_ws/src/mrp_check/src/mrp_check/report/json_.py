@@ -3,32 +3,24 @@
 
 from __future__ import annotations
 
+import dataclasses
 import json
 
 from mrp_check.rules import REQUIREMENTS
 
-FIELDS = ("id stage severity file line message expected seen fix section consequence_of").split()
+_INNER = ("node", "change")  # what only the checker itself needs to know of a finding
 
 
 def data(report):
-    """Return what is written, as plain Python."""
-    result = {
-        "verdict": report.verdict,
-        "package": report.package,
-        "spec": report.spec,
-        "requirements": report.requirements,
-        "unseen": report.unseen,
-        "findings": [finding_data(finding) for finding in report.findings],
-    }
-    if report.reason:
-        result["reason"] = report.reason
+    """Return the report as plain Python, without a reason if it has none."""
+    result = dataclasses.asdict(report)
+    for finding in result["findings"]:
+        for name in _INNER:
+            del finding[name]
+        finding["section"] = REQUIREMENTS[finding["id"]].section
+    if not report.reason:
+        del result["reason"]
     return result
-
-
-def finding_data(finding):
-    """Return one finding, with the page that explains it."""
-    section = REQUIREMENTS[finding.id].section
-    return {field: section if field == "section" else getattr(finding, field) for field in FIELDS}
 
 
 def text(report):

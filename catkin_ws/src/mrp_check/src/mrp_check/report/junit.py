@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import re
 import xml.etree.ElementTree as ElementTree
 
 from mrp_check.contract.finding import ERROR
@@ -11,43 +10,39 @@ from mrp_check.contract.verdict import BROKEN, UNCHECKED
 from mrp_check.report import console
 from mrp_check.rules import REQUIREMENTS
 
-# What XML 1.0 cannot hold: a student's program may print it.
-_NOT_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
+# What the suite counts -> the element of a case that is counted.
+_COUNTED = {"tests": "testcase", "failures": "failure", "errors": "error", "skipped": "skipped"}
 
 
 def text(report):
-    suite = ElementTree.Element("testsuite", name=_xml(f"mrp_check.{report.package or 'check'}"))
-    counts = {"tests": 0, "failures": 0, "errors": 0, "skipped": 0}
+    name = console.plain(f"mrp_check.{report.package or 'check'}")
+    suite = ElementTree.Element("testsuite", name=name)
     for id_, verdict in report.requirements.items():
-        counts["tests"] += 1
-        case = ElementTree.SubElement(
-            suite, "testcase", classname=f"mrp_check.{REQUIREMENTS[id_].stage}", name=id_, time="0"
-        )
+        case = _case(suite, f"mrp_check.{REQUIREMENTS[id_].stage}", id_)
         findings = [finding for finding in report.findings if finding.id == id_]
-        told = "\n\n".join("\n".join(console.finding_lines(f, report)) for f in findings)
+        lines = "\n\n".join("\n".join(console.finding_lines(f, report)) for f in findings)
         if verdict == BROKEN:
-            counts["failures"] += 1
             errors = [f for f in findings if f.severity == ERROR and not f.consequence_of]
-            failure = ElementTree.SubElement(case, "failure", message=_xml(errors[0].message))
-            failure.text = _xml(told)
+            _add(case, "failure", lines, message=errors[0].message)
         elif verdict == UNCHECKED:
-            counts["skipped"] += 1
-            reason = report.unseen.get(id_, "could not be checked")
-            ElementTree.SubElement(case, "skipped", message=_xml(reason))
-        elif told:
-            ElementTree.SubElement(case, "system-out").text = _xml(told)
+            _add(case, "skipped", message=report.unseen.get(id_, "could not be checked"))
+        elif lines:
+            _add(case, "system-out", lines)
     if report.verdict == UNCHECKED:
-        counts["tests"] += 1
-        counts["errors"] += 1
-        case = ElementTree.SubElement(
-            suite, "testcase", classname="mrp_check", name="check", time="0"
-        )
-        ElementTree.SubElement(case, "error", message=_xml(report.reason))
-    for name, count in counts.items():
-        suite.set(name, str(count))
+        _add(_case(suite, "mrp_check", "check"), "error", message=report.reason)
+    for name, tag in _COUNTED.items():
+        suite.set(name, str(len(list(suite.iter(tag)))))
     body = ElementTree.tostring(suite, encoding="unicode")
     return f'<?xml version="1.0" encoding="UTF-8"?>\n{body}\n'
 
 
-def _xml(text):
-    return _NOT_XML.sub("\ufffd", text)
+def _case(suite, class_name, name):
+    return _add(suite, "testcase", classname=class_name, name=name, time="0")
+
+
+def _add(parent, tag, text=None, **attributes):
+    """Add an element, without the characters that XML cannot hold; return it."""
+    fit = {name: console.plain(value) for name, value in attributes.items()}
+    element = ElementTree.SubElement(parent, tag, fit)
+    element.text = text and console.plain(text)
+    return element

@@ -10,14 +10,14 @@ from __future__ import annotations
 import importlib
 import pkgutil
 
-from mrp_check.contract.requirements import STAGES
+from mrp_check.contract.requirements import STAGES, Requirement
 
 _NAMES = [f"{__name__}.{file.name}" for file in pkgutil.iter_modules(__path__)]
 RULES = [importlib.import_module(name).RULE for name in _NAMES]
 RULES.sort(key=lambda rule: (STAGES.index(rule.stage), rule.order))
 
 
-def _requirements():
+def _requirements() -> dict[str, Requirement]:
     found = [
         (rule.order if one.shown is None else one.shown, id_, one._replace(stage=rule.stage))
         for rule in RULES

@@ -3,28 +3,30 @@
 
 from __future__ import annotations
 
+from typing import Iterator
+
+from mrp_check import evidence
+from mrp_check.confined.places import Kind, Place
+from mrp_check.contract.finding import Finding
 from mrp_check.contract.requirements import Requirement, Rule
-from mrp_check.running import evidence
-from mrp_check.sources.node import each_node
+from mrp_check.sources.node import Node, each_node
 
 
-def _of(node):
+def _of(node: Node) -> Iterator[Finding]:
     said = set()
     for kind, id_, does in (
-        ("init", "node-start", "starts the node"),
-        ("publisher", "topic", "makes the publisher"),
-        ("subscriber", "topic", "makes the subscriber"),
-        ("publish", "callbacks", "publishes"),
+        (Kind.INIT, "node-start", "starts the node"),
+        (Kind.PUBLISHER, "topic", "makes the publisher"),
+        (Kind.SUBSCRIBER, "topic", "makes the subscriber"),
+        (Kind.PUBLISH, "callbacks", "publishes"),
     ):
         places = node.places(kind)
-        functions = {id(p): _unused_around(node, p) for p in places}
-        if not places or not all(functions.values()):
-            continue
-        function = functions[id(places[0])]
-        if (function.file, function.line) in said:
+        functions = [_unused_around(node, place) for place in places]
+        function = functions[0] if functions else None
+        if function is None or None in functions or (function.file, function.line) in said:
             continue
         said.add((function.file, function.line))
-        timer = " A timer has to be given it as its callback." if kind == "publish" else ""
+        timer = " A timer has to be given it as its callback." if kind is Kind.PUBLISH else ""
         yield node.finding(
             id_,
             f"{function.text} {does}, and nobody ever calls or uses it.{timer}",
@@ -34,8 +36,8 @@ def _of(node):
         )
 
 
-def _unused_around(node, place):
-    around = [f for f in node.places("function") if f.is_around(place) and f.values.get("unused")]
+def _unused_around(node: Node, place: Place) -> Place | None:
+    around = [f for f in node.places(Kind.FUNCTION) if f.is_around(place) and f.unused]
     return around[0] if around else None
 
 

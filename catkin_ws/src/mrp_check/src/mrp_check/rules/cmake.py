@@ -3,14 +3,19 @@
 
 from __future__ import annotations
 
+from typing import Iterable, Iterator
+
+from mrp_check import evidence
+from mrp_check.case import Case
 from mrp_check.contract.finding import Finding
 from mrp_check.contract.requirements import Requirement, Rule
-from mrp_check.running import evidence
+from mrp_check.student.cmake import Model
+from mrp_check.student.package import Package
 
 FILE = "CMakeLists.txt"
 
 
-def _missing():
+def _missing() -> Finding:
     return Finding(
         "cmake",
         "The package has no CMakeLists.txt: catkin_make cannot build it.",
@@ -20,10 +25,10 @@ def _missing():
     )
 
 
-def findings(package, model):
+def findings(package: Package, model: Model) -> Iterator[Finding]:
     """Yield findings about CMakeLists.txt, from a cmake.Model."""
     if model.project is None or model.catkin is None or model.catkin_package is None:
-        for call, found, why in (
+        for needed, found, why in (
             ("project(NAME)", model.project, "CMake needs it first of all"),
             ("find_package(catkin REQUIRED ...)", model.catkin, "without it there is no catkin"),
             (
@@ -37,28 +42,29 @@ def findings(package, model):
                 before = model.catkin or (model.project and model.project[1])
                 yield Finding(
                     "cmake",
-                    f"CMakeLists.txt does not call {call}: {why}.",
+                    f"CMakeLists.txt does not call {needed}: {why}.",
                     FILE,
                     before.line if before else 1,
-                    expected=call,
+                    expected=needed,
                     seen="no such call",
-                    fix=f"Add {call} after this line." if before else f"Add {call}.",
+                    fix=f"Add {needed} after this line." if before else f"Add {needed}.",
                 )
-    if model.late is not None:
+    call = model.catkin_package
+    if model.late is not None and call is not None:
         yield Finding(
             "cmake",
             f"catkin_package() comes after the target {model.late.name} of line {model.late.line}:"
             " the executable is then put where roslaunch and rosrun do not look.",
-            model.catkin_package.file,
-            model.catkin_package.line,
+            call.file,
+            call.line,
             expected="catkin_package() before the first add_executable()",
             seen=f"{model.late.name} in line {model.late.line},"
-            f" catkin_package() in line {model.catkin_package.line}",
+            f" catkin_package() in line {call.line}",
             fix="Move catkin_package() up, to before the first target.",
         )
 
 
-def _findings(case):
+def _findings(case: Case) -> Iterable[Finding]:
     there = FILE in case.package.files
     return findings(case.package, case.model) if there else [_missing()]
 

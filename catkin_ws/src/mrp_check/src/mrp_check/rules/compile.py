@@ -3,12 +3,16 @@
 
 from __future__ import annotations
 
+from typing import Iterator
+
+from mrp_check import evidence
 from mrp_check.building import compiler, configuring, linker
+from mrp_check.case import Case
+from mrp_check.contract.finding import Finding
 from mrp_check.contract.requirements import Requirement, Rule
-from mrp_check.running import evidence
 
 
-def findings(case):
+def findings(case: Case) -> Iterator[Finding]:
     if not case.built or case.built.ok:
         return
     output, package = case.built.output, case.package

@@ -3,14 +3,18 @@
 
 from __future__ import annotations
 
+from typing import Iterator
+
+from mrp_check import evidence
 from mrp_check.building import configuring
+from mrp_check.case import Case
 from mrp_check.contract.errors import CannotCheck
+from mrp_check.contract.finding import Finding
 from mrp_check.contract.requirements import Requirement, Rule
-from mrp_check.running import evidence
 from mrp_check.sources import uses
 
 
-def findings(case):
+def findings(case: Case) -> Iterator[Finding]:
     if case.built is not None:
         return
     package, step = case.package, case.catkin.configured

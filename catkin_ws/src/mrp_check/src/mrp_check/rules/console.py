@@ -5,25 +5,29 @@ from __future__ import annotations
 
 import difflib
 import re
+from typing import Iterator, Sequence
 
+from mrp_check import evidence
+from mrp_check.confined.places import Kind
+from mrp_check.confined.seen import Log
 from mrp_check.contract import spec as specs
+from mrp_check.contract.finding import Finding
 from mrp_check.contract.requirements import Requirement, Rule
-from mrp_check.running import evidence
-from mrp_check.running.node import each_node, received_line
+from mrp_check.running.node import Node, each_node
 from mrp_check.running.words import PREFIX
 
 _NEAR = 0.6  # how alike two lines are, from 0 to 1, to call one of them a misspelling
 _FLOOD = 2000  # lines that a node prints in its few seconds
 
 
-def _of(node):
+def _of(node: Node) -> Iterator[Finding]:
     """Yield a Finding for each line that the node should log otherwise, or prints too many."""
-    printed = (node.direct or {}).get("line_count", 0)
+    printed = node.direct.line_count if node.direct else 0
     if printed > _FLOOD:
         yield node.finding(
             "console",
             f"{node.name} floods the console: it printed {printed} lines in a few seconds.",
-            node.places.of(node.name, "print", "log"),
+            node.places.of(node.name, Kind.PRINT, Kind.LOG),
             expected="the lines of the contract, and few others",
             seen=f"{printed} lines",
         )
@@ -34,22 +38,20 @@ def _of(node):
         yield from _line_findings(node, line)
 
 
-def _runs_of(node):
+def _runs_of(node: Node) -> Iterator[tuple[str, Sequence[Log], Sequence[str]]]:
     """Return (full name, logs, lines of the console), by the launch file and by itself."""
     if node.in_launch:
-        yield node.path, node.of("logs"), node.console
-    if node.direct and node.direct.get("name"):
-        lines = [text for _, _, text in node.direct.get("lines", [])]
-        yield node.direct["name"], node.direct_of("logs"), lines
+        yield node.path, node.seen.logs, node.console
+    if node.direct and node.own_name:
+        lines = [text for _, _, text in node.direct.lines]
+        yield node.own_name, node.seen_alone.logs, lines
 
 
-def _line_findings(node, line):
+def _line_findings(node: Node, line: str) -> Iterator[Finding]:
     runs = [(path, logs, lines, specs.pattern(line, path)) for path, logs, lines in _runs_of(node)]
     if not runs:
         return
-    good = [
-        log for path, logs, _, pattern in runs for log in logs if pattern.fullmatch(log["text"])
-    ]
+    good = [log for path, logs, _, pattern in runs for log in logs if pattern.fullmatch(log.text)]
     path, logs, lines, pattern = runs[0]
     wanted = sample(line, None, path)
     if good:
@@ -63,44 +65,44 @@ def _line_findings(node, line):
         return
     near = _nearest(node, wanted, logs)
     if near:
-        yield other_words(node, near, wanted, _name_hint(near["text"], wanted, path))
+        yield other_words(node, near, wanted, _name_hint(near.text, wanted, path))
         return
     shown = [t for t in lines if _ratio(t, wanted) > 0.8 and not PREFIX.match(t)]
     yield node.finding(
         "console",
         f"{node.name} does not log the line “{wanted}”."
         + (f" It prints “{shown[0]}”." if shown else ""),
-        node.places.of(node.name, "print" if shown else "log", "init"),
+        node.places.of(node.name, Kind.PRINT if shown else Kind.LOG, Kind.INIT),
         expected=wanted,
         seen=shown[0] if shown else "no such line",
     )
 
 
-def not_logged(node, text, wanted):
+def not_logged(node: Node, text: str, wanted: str) -> Finding:
     """Return the finding about a line that is printed, and should be logged."""
     return node.finding(
         "console",
         f"{node.name} prints “{text}” without logging it: it does not reach /rosout, and has"
         " neither level nor time.",
-        node.places.of(node.name, "print", "subscriber", "init"),
+        node.places.of(node.name, Kind.PRINT, Kind.SUBSCRIBER, Kind.INIT),
         expected=f"[INFO] [time]: {wanted}",
         seen=text,
     )
 
 
-def other_words(node, log, wanted, fix=""):
+def other_words(node: Node, log: Log, wanted: str, fix: str = "") -> Finding:
     """Return the finding about a line that is logged in other words than the contract's."""
     return node.finding(
         "console",
-        f"{node.name} logs “{log['text']}”, where the contract says “{wanted}”, as the whole line.",
+        f"{node.name} logs “{log.text}”, where the contract says “{wanted}”, as the whole line.",
         node.places.of_log(node.name, log),
         expected=wanted,
-        seen=log["text"],
+        seen=log.text,
         fix=fix,
     )
 
 
-def _name_hint(text, wanted, path):
+def _name_hint(text: str, wanted: str, path: str) -> str:
     """Say how to get a node's full name, if that alone is wrong."""
     group = path.rsplit("/", 1)[0]
     start = wanted[: -len(path)] if wanted.endswith(path) else None
@@ -112,57 +114,58 @@ def _name_hint(text, wanted, path):
     )
 
 
-def _nearest(node, wanted, logs):
+def _nearest(node: Node, wanted: str, logs: Sequence[Log]) -> Log | None:
     others = [specs.pattern(line) for line in node.wanted.prints]
-    taken = [log for log in logs if any(p.fullmatch(log["text"]) for p in others)]
-    rest = [log for log in logs if log not in taken or _ratio(log["text"], wanted) > _NEAR]
-    best = max(rest, key=lambda log: _ratio(log["text"], wanted), default=None)
-    return best if best and _ratio(best["text"], wanted) > _NEAR else None
+    taken = [log for log in logs if any(p.fullmatch(log.text) for p in others)]
+    rest = [log for log in logs if log not in taken or _ratio(log.text, wanted) > _NEAR]
+    best = max(rest, key=lambda log: _ratio(log.text, wanted), default=None)
+    return best if best and _ratio(best.text, wanted) > _NEAR else None
 
 
-def _level_findings(node, line):
+def _level_findings(node: Node, line: str) -> Iterator[Finding]:
     """The line of a received value: is it a whole line, and of the right level?"""
     pattern = specs.pattern(line)
-    logs = [log for log in node.of("logs") + node.direct_of("logs") if pattern.search(log["text"])]
+    logs = [log for log in node.seen.logs + node.seen_alone.logs if pattern.search(log.text)]
     if not logs:
         return
-    log, wanted = logs[0], sample(line, int(pattern.search(logs[0]["text"])["value"]))
-    if not pattern.fullmatch(log["text"]):
+    log, found = logs[0], pattern.search(logs[0].text)
+    wanted = sample(line, int(found["value"]) if found else None)
+    if not pattern.fullmatch(log.text):
         yield other_words(node, log, wanted)
     else:
         yield from _level_finding(node, log, wanted)
 
 
-def _level_finding(node, log, wanted):
-    if log["level"] != "INFO":
+def _level_finding(node: Node, log: Log, wanted: str) -> Iterator[Finding]:
+    if log.level != "INFO":
         yield node.finding(
             "console",
-            f"{node.name} logs “{log['text']}” as {log['level']}, not as INFO.",
+            f"{node.name} logs “{log.text}” as {log.level}, not as INFO.",
             node.places.of_log(node.name, log),
             expected=f"[INFO] [time]: {wanted}",
-            seen=f"[{log['level']}] [time]: {log['text']}",
+            seen=f"[{log.level}] [time]: {log.text}",
         )
 
 
-def sample(line, value, path=""):
+def sample(line: str, value: int | None, path: str = "") -> str:
     """Return a line of the spec as it reads on the console."""
     text = line.replace("{name}", path).replace("{value}", str(value))
     return re.sub(r"\\(.)", r"\1", text)
 
 
-def received_pattern(node):
-    """Return the compiled pattern of received_line, or None."""
-    line = received_line(node)
+def received_pattern(node: Node) -> re.Pattern[str] | None:
+    """Return the compiled pattern of the line for a value that the node receives, or None."""
+    line = node.wanted.received_line
     return specs.pattern(line) if line else None
 
 
-def _is_logged(text, pattern):
+def _is_logged(text: str, pattern: re.Pattern[str]) -> bool:
     """Return whether a line of the console is what the pattern says, logged as INFO."""
     prefix = PREFIX.match(text)
     return bool(prefix and prefix["level"] == "INFO" and pattern.fullmatch(text[prefix.end() :]))
 
 
-def _ratio(a, b):
+def _ratio(a: str, b: str) -> float:
     return difflib.SequenceMatcher(None, a, b, autojunk=False).ratio()
 
 

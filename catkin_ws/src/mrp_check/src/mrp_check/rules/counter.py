@@ -3,25 +3,29 @@
 
 from __future__ import annotations
 
-from mrp_check.contract.finding import ERROR, WARNING
+from typing import Collection, Iterator
+
+from mrp_check.confined.places import Kind, Place
+from mrp_check.contract.finding import ERROR, WARNING, Finding
 from mrp_check.contract.requirements import Rule
-from mrp_check.sources.node import each_node
+from mrp_check.sources.node import Node, each_node
 
 
-def _of(node):
+def _of(node: Node) -> Iterator[Finding]:
     values = node.wanted.publishes.values if node.wanted.publishes else None
     if node.is_python or values is None or not values.modulus:
         return
-    used = {name for p in node.places("data") for name in p.values.get("names", ())}
-    yield from _resets(node, used, values)
+    modulus = values.modulus
+    used = {name for p in node.places(Kind.DATA) for name in p.names}
+    yield from _resets(node, used, abs(values.step), modulus)
     said = set()
-    for place in node.places("step"):
-        kind, bits = place.values.get("type", ""), place.values.get("bits", 0)
+    for place in node.places(Kind.STEP):
+        kind, bits = place.type, place.bits
         if place.text not in used or place.text in said or bits <= 0:
             continue
         floating = kind in ("float", "double")
         enough = bits - (0 if "unsigned" in kind else 1)
-        if not floating and 2**enough >= values.modulus:
+        if not floating and 2**enough >= modulus:
             continue
         said.add(place.text)
         if floating:
@@ -30,7 +34,7 @@ def _of(node):
         elif bits < 32:
             why = (
                 f"after {2**enough - 1} it begins again, and the message could hold up to"
-                f" {values.modulus - 1}."
+                f" {modulus - 1}."
             )
         else:
             why = f"what happens past {2**enough - 1} is undefined in C++."
@@ -44,23 +48,23 @@ def _of(node):
         )
 
 
-def _resets(node, used, values):
-    for place in node.places("reset"):
-        limit, value = place.values["limit"], place.values["value"]
+def _resets(node: Node, used: Collection[str], step: int, modulus: int) -> Iterator[Finding]:
+    for place in node.places(Kind.RESET):
+        limit, value = place.limit, place.value
         # Within the last two steps of the range whoever begins anew does no harm.
-        if place.text in used and limit < values.modulus - 2 * abs(values.step):
+        if place.text in used and limit < modulus - 2 * step:
             yield node.finding(
                 "wrap",
                 f"The counter {place.text} begins again at {value} when it comes to {limit};"
-                f" the message could hold up to {values.modulus - 1}.",
+                f" the message could hold up to {modulus - 1}.",
                 place,
-                expected=f"the next value up to {values.modulus - 1}",
+                expected=f"the next value up to {modulus - 1}",
                 fix="Take the limit away: a uint32_t begins again at 0 by itself.",
             )
 
 
-def _declared(node, place):
-    same = [p for p in node.places("counter") if p.text == place.text]
+def _declared(node: Node, place: Place) -> Place:
+    same = [p for p in node.places(Kind.COUNTER) if p.text == place.text]
     return same[0] if same else place
 
 

@@ -3,15 +3,25 @@
 
 from __future__ import annotations
 
+from typing import Collection, Iterable, Iterator, Mapping
+
+from catkin_pkg.package import Package as Manifest
+
+from mrp_check import evidence
 from mrp_check.contract.finding import NOTE, WARNING, Finding
 from mrp_check.contract.requirements import Requirement, Rule
+from mrp_check.contract.spec import Spec
 from mrp_check.contract.words import nearest
-from mrp_check.running import evidence
 from mrp_check.sources import uses
+from mrp_check.sources.uses import Use
+from mrp_check.student.cmake import Call, Model
 from mrp_check.student.manifest import FILE, declared, last_dependency
+from mrp_check.student.package import Package
 
 
-def findings(package, spec, manifest, model):
+def findings(
+    package: Package, spec: Spec, manifest: Manifest | None, model: Model
+) -> Iterator[Finding]:
     """Yield findings; manifest is catkin_pkg's, or None if it cannot be read."""
     used = uses.of(package, model)
     # Which packages the exercise is about: to leave one of them out is the manifest's fault. Any
@@ -27,18 +37,18 @@ def findings(package, spec, manifest, model):
             continue
         if not in_manifest:
             yield _not_in_manifest(package, name, use, manifest, used)
-        if not in_cmake:
-            yield _not_in_cmake(package, name, use, model)
+        if not in_cmake and model.catkin:
+            yield _not_in_cmake(name, use, model, model.catkin)
     if manifest is not None:
         yield from _passed_on(used, manifest, model)
 
 
-def _all(manifest, tests):
+def _all(manifest: Manifest, tests: bool) -> set[str]:
     known = declared(manifest)
     return set().union(*(names for kind, names in known.items() if kind != "test" or tests))
 
 
-def _foreign(package, name, use):
+def _foreign(package: Package, name: str, use: Use) -> Finding:
     return Finding(
         "dependencies",
         f"{use.file} uses the package {name}, which neither package.xml nor CMakeLists.txt names."
@@ -52,7 +62,7 @@ def _foreign(package, name, use):
     )
 
 
-def _kind(package, name, use, manifest):
+def _kind(package: Package, name: str, use: Use, manifest: Manifest) -> Iterator[Finding]:
     """Yield a finding if package.xml names a package for the wrong time."""
     known = declared(manifest)
     if use.language == "cpp" and name not in known["build"]:
@@ -75,13 +85,15 @@ def _kind(package, name, use, manifest):
     )
 
 
-def _misspelt(name, names, used):
+def _misspelt(name: str, names: Iterable[str], used: Collection[str]) -> str | None:
     """Return the name in `names` that is no package and looks like this one, or None."""
     others = [one for one in names if one not in used and not uses.is_ros_package(one)]
     return nearest(name, others, 0.75)
 
 
-def _not_in_manifest(package, name, use, manifest, used):
+def _not_in_manifest(
+    package: Package, name: str, use: Use, manifest: Manifest, used: Collection[str]
+) -> Finding:
     near = _misspelt(name, _all(manifest, tests=True), used)
     line = (near and package.find_line(FILE, f">{near}<")) or last_dependency(package)
     text = package.lines(FILE)[line - 1]
@@ -100,7 +112,7 @@ def _not_in_manifest(package, name, use, manifest, used):
     )
 
 
-def _not_in_cmake(package, name, use, model):
+def _not_in_cmake(name: str, use: Use, model: Model, call: Call) -> Finding:
     near = _misspelt(name, model.components, ())
     is_cpp = use.language == "cpp"
     return Finding(
@@ -112,8 +124,8 @@ def _not_in_cmake(package, name, use, model):
             else "Python finds it all the same; catkin does not know of it."
         )
         + (f" It names {near}, and there is no such package." if near else ""),
-        model.catkin.file,
-        model.catkin.line,
+        call.file,
+        call.line,
         severity="error" if is_cpp and use.firm else NOTE,
         expected=f"find_package(catkin REQUIRED COMPONENTS ... {name} ...)",
         seen=", ".join(model.components) or "no COMPONENTS",
@@ -122,7 +134,7 @@ def _not_in_cmake(package, name, use, model):
     )
 
 
-def _passed_on(used, manifest, model):
+def _passed_on(used: Mapping[str, Use], manifest: Manifest, model: Model) -> Iterator[Finding]:
     """Yield a finding about CATKIN_DEPENDS."""
     call = model.catkin_package
     if call is None or not model.complete:

@@ -4,13 +4,15 @@
 from __future__ import annotations
 
 import ast
+from typing import Iterator
 
+from mrp_check.contract.finding import Finding
 from mrp_check.contract.requirements import Rule
 from mrp_check.sources.python_rule import PythonRule, of_sources
 
 
 class EarlyTimer(PythonRule):
-    def findings(self):
+    def findings(self) -> Iterator[Finding]:
         for function in ast.walk(self.source.tree):
             if not isinstance(function, (ast.Module, ast.FunctionDef)):
                 continue
@@ -30,14 +32,14 @@ class EarlyTimer(PythonRule):
                         " line.",
                     )
 
-    def _calls(self, statement, name):
+    def _calls(self, statement: ast.stmt, name: str) -> bool:
         return (
             isinstance(statement, ast.Expr)
             and isinstance(statement.value, ast.Call)
             and self.source.dotted(statement.value.func) == name
         )
 
-    def _makes_timer(self, statement):
+    def _makes_timer(self, statement: ast.stmt) -> ast.Call | None:
         """Return the call in a statement that makes a rospy.Timer, or an object that makes one."""
         if isinstance(statement, (ast.FunctionDef, ast.ClassDef)):
             return None

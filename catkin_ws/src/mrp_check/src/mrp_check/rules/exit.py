@@ -5,34 +5,41 @@ from __future__ import annotations
 
 import re
 import signal
+from typing import Iterator, Sequence
 
+from mrp_check import evidence
+from mrp_check.case import Case
+from mrp_check.confined.places import Kind
+from mrp_check.confined.seen import Alone, LaunchResult
+from mrp_check.contract.finding import Finding, Where
 from mrp_check.contract.requirements import Requirement, Rule
-from mrp_check.running import evidence
+from mrp_check.contract.spec import Shutdown
 from mrp_check.running.node import Node
+from mrp_check.running.places import Traceback
 from mrp_check.running.words import code_text, last_words
 
+_BEFORE = 0.1  # seconds: what is printed so shortly before it is asked belongs to its end, too
 # What rospy itself may say when a message is published at the very moment of the end.
 _AT_THE_END = ("closed topic", "ROSInterruptException: rospy shutdown")
 
 
-def findings(case):
+def findings(case: Case) -> Iterator[Finding]:
     """Yield a Finding for each node that does not end as the spec says."""
     for node in case.nodes.values():
-        if node.direct and node.direct.get("asked") is not None:
-            yield from _of(node, case.spec.shutdown)
+        if node.direct and node.direct.asked is not None:
+            yield from _of(node, node.direct, node.direct.asked, case.spec.shutdown)
 
 
-def _of(node, shutdown):
-    direct, places = node.direct, node.places
-    since = direct["asked"] - 0.1
-    lines = [text for time, stream, text in direct["lines"] if stream == "err" and time >= since]
+def _of(node: Node, direct: Alone, asked: float, shutdown: Shutdown) -> Iterator[Finding]:
+    places, since = node.places, asked - _BEFORE
+    lines = [text for time, stream, text in direct.lines if stream == "err" and time >= since]
     expected = f"exit code {shutdown.exit_code} within {shutdown.seconds:g} s of {shutdown.signal}"
 
-    def finding(message, place, seen, fix=""):
+    def finding(message: str, place: Where, seen: str, fix: str = "") -> Finding:
         return node.finding("exit", message, place, expected=expected, seen=seen, fix=fix)
 
-    code, traceback = direct["code"], places.traceback(lines)
-    if direct["stopped_in"] is None:
+    code, traceback = direct.code, places.traceback(lines)
+    if direct.stopped_in is None:
         # If roslaunch could end it, the machine was too busy.
         if _needs_force(node.name, places.observed.launch):
             yield finding(
@@ -46,7 +53,7 @@ def _of(node, shutdown):
     elif code != shutdown.exit_code and "lock_error" in "\n".join(lines):
         yield finding(*_outlives(node, code), "Let an object in main() own it.")
     elif code != shutdown.exit_code:
-        place, why = _cause(node, code, lines, traceback)
+        place, why = _cause(node, direct, lines, traceback)
         yield finding(
             f"On {shutdown.signal}, {node.name} ends {code_text(code)}, not with exit code"
             f" {shutdown.exit_code}.{why}",
@@ -56,22 +63,22 @@ def _of(node, shutdown):
     elif traceback and not any(words in line for words in _AT_THE_END for line in lines):
         place, kind, text = traceback
         yield finding(f"{node.name} ends with an error: {kind}: {text}", place, f"{kind}: {text}")
-    elif direct["still_registered"] and shutdown.signal == "SIGINT":
+    elif direct.still_registered and shutdown.signal == "SIGINT":
         yield finding(
             f"{node.name} ends without telling the master, which still lists it.",
-            places.of(node.name, "signal", "init"),
+            places.of(node.name, Kind.SIGNAL, Kind.INIT),
             "still registered",
         )
 
 
-def _outlives(node, code):
+def _outlives(node: Node, code: int | None) -> tuple[str, Where, str]:
     """Return (message, place, what was seen) of an object that is destroyed after ROS itself."""
     # A publisher at file scope does no harm; a timer does.
-    globals_ = node.places.facts_of(node.name, "global", "owner")
-    globals_.sort(key=lambda p: "ros::Timer" not in (p.text, *p.values.get("holds", ())))
-    what, place = "a ROS object", node.places.of(node.name, "timer", "handle")
+    globals_ = node.places.facts_of(node.name, Kind.GLOBAL, Kind.OWNER)
+    globals_.sort(key=lambda p: "ros::Timer" not in (p.text, *p.holds))
+    what, place = "a ROS object", node.places.of(node.name, Kind.TIMER, Kind.HANDLE)
     if globals_:
-        what = f"{globals_[0].text} {globals_[0].values['name']}"
+        what = f"{globals_[0].text} {globals_[0].name}"
         place = globals_[0].file, globals_[0].line
     message = (
         f"{node.name} aborts when it ends: {what}, which lives as long as the program, is destroyed"
@@ -80,28 +87,30 @@ def _outlives(node, code):
     return message, place, f"{code_text(code)}, boost::lock_error"
 
 
-def _cause(node, code, lines, traceback):
+def _cause(
+    node: Node, direct: Alone, lines: Sequence[str], traceback: Traceback | None
+) -> tuple[Where, str]:
     """Return (place, what more to say) of what gives a node another exit code."""
-    exits = [e for e in node.direct["events"] if e["event"] == "exit" and e.get("file")]
+    exits = [event for event in direct.events if event.event == "exit" and event.file]
     if exits:
-        return (exits[-1]["file"], exits[-1]["line"]), ""
-    if traceback and code == 1:  # of another thread than main's, it does not set the code
+        return (exits[-1].file, exits[-1].line), ""
+    if traceback and direct.code == 1:  # of another thread than main's, it does not set the code
         return traceback[0], f" {traceback[1]}: {traceback[2]}"
     said = last_words(lines)
-    return _leaves(node, code), f" Its last words: {said}" if said else ""
+    return _leaves(node, direct.code), f" Its last words: {said}" if said else ""
 
 
-def _needs_force(name, launch):
+def _needs_force(name: str, launch: LaunchResult | None) -> bool:
     """Return whether roslaunch, too, needed more than Ctrl-C to end a node, or did not run it."""
     if not launch:
         return True
-    lines = [text for _, _, text in launch["lines"]]
+    lines = [text for _, _, text in launch.lines]
     started = any(re.search(rf"\bprocess\[(\S+/)?{name}-\d+\]: started", text) for text in lines)
     forced = any(re.search(rf"[\[/]{name}-\d+\] escalating", text) for text in lines)
-    return forced or not started or launch["stopped_in"] is None
+    return forced or not started or launch.stopped_in is None
 
 
-def _waits(node):
+def _waits(node: Node) -> Where:
     """Return the place of what may keep a C++ node from ending: a handler of its own, or a loop."""
     handler = r"\bSIG_IGN\b|\bsignal\s*\(|\bsigaction\s*\("
     endless = r"\bwhile\s*\(\s*(true|1)\s*\)|\bfor\s*\(\s*;\s*;|\bwhile True"
@@ -109,11 +118,11 @@ def _waits(node):
     return (
         node.package.first_match(files, handler)
         or node.package.first_match(files, endless)
-        or node.places.of(node.name, "loop", "spin", "init")
+        or node.places.of(node.name, Kind.LOOP, Kind.SPIN, Kind.INIT)
     )
 
 
-def _leaves(node, code):
+def _leaves(node: Node, code: int | None) -> Where:
     """Return the place at which a node says its exit code, or may break."""
     ends = rf"\b(return|exit|_exit|SystemExit)\b\s*\(?\s*{code}\b|EXIT_FAILURE"
     breaks = r"\bstd::thread\b|\bboost::thread\b|\babort\s*\("
@@ -122,8 +131,8 @@ def _leaves(node, code):
     files = node.places.sources(node.name)
     return (
         node.package.first_match(files, ends)
-        or (code < 0 and node.package.first_match(files, breaks))
-        or node.places.of(node.name, "spin", "init")
+        or (code is not None and code < 0 and node.package.first_match(files, breaks))
+        or node.places.of(node.name, Kind.SPIN, Kind.INIT)
     )
 
 

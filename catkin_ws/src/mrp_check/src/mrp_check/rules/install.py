@@ -3,12 +3,25 @@
 
 from __future__ import annotations
 
+from typing import Iterator, Mapping
+
+from mrp_check import evidence
+from mrp_check.case import Case
+from mrp_check.confined.launch_dump import Started
 from mrp_check.contract.finding import Finding
 from mrp_check.contract.requirements import Requirement, Rule
-from mrp_check.running import evidence
+from mrp_check.contract.spec import Spec
+from mrp_check.student.cmake import Model
+from mrp_check.student.package import Package
 
 
-def findings(package, spec, model, launch_file, started):
+def findings(
+    package: Package,
+    spec: Spec,
+    model: Model,
+    launch_file: str | None,
+    started: Mapping[str, Started],
+) -> Iterator[Finding]:
     """Yield a finding for each thing that is needed to run and is not installed."""
     words = {word for call in model.installs for word in call.arguments}
     wanted = [(name, target.line) for name, target in model.targets.items()]
@@ -30,7 +43,7 @@ def findings(package, spec, model, launch_file, started):
         yield _finding(f"the launch file {launch_file}", "install(DIRECTORY launch ...)", 1)
 
 
-def _finding(what, expected, line):
+def _finding(what: str, expected: str, line: int) -> Finding:
     return Finding(
         "install",
         f"CMakeLists.txt does not install {what}: after catkin_make install, it is missing.",
@@ -42,7 +55,7 @@ def _finding(what, expected, line):
     )
 
 
-def _findings(case):
+def _findings(case: Case) -> Iterator[Finding]:
     if case.spec.install:
         file = case.launch_file[0]
         yield from findings(case.package, case.spec, case.model, file, case.started)

@@ -4,16 +4,21 @@
 from __future__ import annotations
 
 import re
+from typing import Callable, Iterator, Optional, Sequence, Tuple
 
-from mrp_check.contract.finding import WARNING, Finding
+from mrp_check import evidence
+from mrp_check.case import Case
+from mrp_check.contract.finding import WARNING, Finding, Line
 from mrp_check.contract.requirements import Requirement, Rule
 from mrp_check.contract.words import nearest
-from mrp_check.running import evidence
+from mrp_check.student.launch import Launch
+from mrp_check.student.package import Package
+from mrp_check.student.xml_file import Element
 
 _TAGS = ("launch node group arg param rosparam remap include env machine test master").split()
 
 
-def findings(package, launch):
+def findings(package: Package, launch: Launch) -> Iterator[Finding]:
     """Yield findings about a launch file that is XML, from a launch.Launch."""
     tags = launch.elements(package)
     if launch.error:
@@ -22,7 +27,7 @@ def findings(package, launch):
         yield from _unknown(tags)
 
 
-def _unknown(tags):
+def _unknown(tags: Sequence[tuple[str, Element]]) -> Iterator[Finding]:
     """roslaunch passes over elements and attributes that it does not know."""
     for file, element in tags:
         if element.tag not in _TAGS:
@@ -39,49 +44,53 @@ def _unknown(tags):
             )
 
 
+# Where the fault is, what it is, and what to do.
+_Words = Tuple[Line, str, Optional[str]]
+
+
 class _Said:
     """What roslaunch said instead of loading a file; finds the element that is to blame."""
 
-    def __init__(self, launch, tags):
+    def __init__(self, launch: Launch, tags: Sequence[tuple[str, Element]]) -> None:
         self.text = " ".join(launch.error.split())
         self.tags, self.start = tags, (launch.file, 1)
 
-    def first(self, condition):
+    def first(self, condition: Callable[[Element], bool]) -> Line:
         """Return the place of the first element for which the condition holds."""
         return next(((f, e.line) for f, e in self.tags if condition(e)), self.start)
 
-    def named(self, tag, name):
+    def named(self, tag: str, name: str) -> list[Line]:
         """Return the places of the elements of that tag and name."""
         same = ((f, e) for f, e in self.tags if e.tag == tag and e.attributes.get("name") == name)
         return [(file, element.line) for file, element in same]
 
-    def not_understood(self, name=None):
+    def not_understood(self, name: str | None = None) -> _Words:
         words = [name] if name else re.findall(r"[\w./$()-]+", self.text)
         place = self.first(lambda e: any(v in words for v in e.attributes.values()))
         return place, f"roslaunch cannot load the launch file: {self.text}", None
 
 
-def _twice(said, name):
+def _twice(said: _Said, name: str) -> _Words:
     name = name.rsplit("/", 1)[-1]
     place = [said.start, *said.named("node", name)][-1]
     message = f"Two nodes of the launch file have the name {name}; each needs its own."
     return place, message, "Give each <node> its own name."
 
 
-def _attribute(said, tag, name):
+def _attribute(said: _Said, tag: str, name: str) -> _Words:
     place = said.first(lambda e: e.tag == tag and name not in e.attributes)
     message = f'A <{tag}> in the launch file has no {name}="...".'
     return place, message, f'Add {name}="...".'
 
 
-def _not_there(said, name):
+def _not_there(said: _Said, name: str) -> _Words:
     name = name.strip("'\".,")
     place = said.first(lambda e: any(name in v for v in e.attributes.values()))
     message = f"The launch file names a package or a file that is not there: {name}."
     return place, message, None
 
 
-def _argument(said, name):
+def _argument(said: _Said, name: str) -> _Words:
     declared = said.named("arg", name)
     if declared:
         message = f"The launch file's argument {name} has no value: roslaunch asks for one."
@@ -100,7 +109,7 @@ _WORDS = (
 )
 
 
-def _error(launch, tags):
+def _error(launch: Launch, tags: Sequence[tuple[str, Element]]) -> Finding:
     """Return the Finding about what roslaunch said instead of loading the file."""
     said = _Said(launch, tags)
     match, words = next((m, w) for shape, w in _WORDS for m in [re.search(shape, said.text)] if m)
@@ -111,11 +120,12 @@ def _error(launch, tags):
         *place,
         expected="a file that roslaunch can load",
         seen=said.text[:500],
-        fix=fix or "Mend this line, and try again: roslaunch --nodes says whether it can be read.",
+        fix=fix
+        or "Correct this line, and try again: roslaunch --nodes says whether it can be read.",
     )
 
 
-def _findings(case):
+def _findings(case: Case) -> Iterator[Finding]:
     yield from case.launch_file[1]
     if case.launch:
         yield from findings(case.package, case.launch)

@@ -4,16 +4,25 @@
 from __future__ import annotations
 
 import re
+from typing import Iterator, Sequence
 
+from mrp_check import evidence
+from mrp_check.case import Case
+from mrp_check.confined.launch_dump import Started
 from mrp_check.contract.finding import WARNING, Finding
 from mrp_check.contract.requirements import Requirement, Rule
-from mrp_check.running import evidence
+from mrp_check.contract.spec import Spec
+from mrp_check.student.launch import Launch
+from mrp_check.student.xml_file import Element
 
 
-def findings(spec, launch, tags):
+def findings(spec: Spec, launch: Launch, tags: Sequence[tuple[str, Element]]) -> Iterator[Finding]:
     """Yield findings about the namespace of the spec's nodes."""
-    group, wrong = spec.launch.group, {}
-    for node in launch.nodes if group else ():
+    group = spec.launch.group
+    if not group:
+        return
+    wrong: dict[str, list[Started]] = {}
+    for node in launch.nodes:
         if node.name in spec.nodes and node.namespace.strip("/") != group:
             wrong.setdefault(node.namespace, []).append(node)
     for namespace, nodes in wrong.items():
@@ -23,7 +32,7 @@ def findings(spec, launch, tags):
         for f, e in tags
         if e.tag in ("group", "node", "include") and e.attributes.get("ns", "").strip("/") == group
     ]
-    if group and plain and not wrong:
+    if plain and not wrong:
         file, element = plain[0]
         yield Finding(
             "launch-group",
@@ -38,7 +47,9 @@ def findings(spec, launch, tags):
         )
 
 
-def _elsewhere(group, namespace, nodes, tags):
+def _elsewhere(
+    group: str, namespace: str, nodes: Sequence[Started], tags: Sequence[tuple[str, Element]]
+) -> Finding:
     """Return the Finding about nodes that are started in another namespace than the group's."""
     names = ", ".join(n.name for n in nodes)
     elements = [e for f, e in tags if f == nodes[0].file]
@@ -55,7 +66,7 @@ def _elsewhere(group, namespace, nodes, tags):
     )
 
 
-def _line(nodes, elements, has_groups):
+def _line(nodes: Sequence[Started], elements: Sequence[Element], has_groups: bool) -> int | None:
     """Return the line that gives nodes their namespace: an <arg>, a <group>, or their own."""
     line = nodes[0].line
     here = [e for e in elements if e.line == line]
@@ -80,7 +91,7 @@ def _line(nodes, elements, has_groups):
     return next(e.line for tag in ("group", "launch") for e in elements if e.tag == tag)
 
 
-def _findings(case):
+def _findings(case: Case) -> Iterator[Finding]:
     launch = case.launch
     if launch and not launch.error:
         yield from findings(case.spec, launch, launch.elements(case.package))

@@ -3,11 +3,14 @@
 
 from __future__ import annotations
 
+from typing import Iterator
+
+from mrp_check.case import Case
 from mrp_check.contract.finding import Finding
 from mrp_check.contract.requirements import Rule
 
 
-def findings(case):
+def findings(case: Case) -> Iterator[Finding]:
     spec, seen = case.spec, case.observed
     if seen.moved is None:
         return

@@ -4,16 +4,23 @@
 from __future__ import annotations
 
 import os
+from typing import Iterator
 
+from mrp_check import evidence
+from mrp_check.case import Case
+from mrp_check.confined.launch_dump import Started
 from mrp_check.contract.finding import Finding
 from mrp_check.contract.requirements import Requirement, Rule
+from mrp_check.contract.spec import Spec
 from mrp_check.contract.words import nearest
-from mrp_check.running import evidence
 from mrp_check.sources import uses
+from mrp_check.student.cmake import Model
+from mrp_check.student.launch import Launch
+from mrp_check.student.package import Package
 from mrp_check.student.xml_file import elements
 
 
-def findings(package, spec, model, launch):
+def findings(package: Package, spec: Spec, model: Model, launch: Launch) -> Iterator[Finding]:
     """Yield findings about the <node>s of a launch.Launch that roslaunch has read."""
     for name in spec.nodes:
         found = [node for node in launch.nodes if node.name == name]
@@ -26,7 +33,7 @@ def findings(package, spec, model, launch):
             yield from _can_start(package, model, node)
 
 
-def _missing(package, spec, model, launch, name):
+def _missing(package: Package, spec: Spec, model: Model, launch: Launch, name: str) -> Finding:
     """Return the Finding about a node that the launch file does not start."""
     spare = [n for n in launch.nodes if n.name not in spec.nodes and n.package == package.name]
     # What is started by another name has, most of all, the executable of that name.
@@ -56,14 +63,14 @@ def _missing(package, spec, model, launch, name):
     )
 
 
-def _last_line(package, launch):
+def _last_line(package: Package, launch: Launch) -> int:
     lines = [
         e.line for e in elements(package.bytes(launch.file)) if e.tag in ("node", "group", "launch")
     ]
     return lines[-1] if lines else 1
 
 
-def _executables(package, model):
+def _executables(package: Package, model: Model) -> set[str]:
     """Return the names that roslaunch can find in the package: built ones and scripts."""
     names = set(model.executables())
     names |= {script.path.rsplit("/", 1)[-1] for script in model.scripts}
@@ -71,46 +78,23 @@ def _executables(package, model):
     return names
 
 
-def _can_start(package, model, node, spec_node=None):
+def _can_start(
+    package: Package, model: Model, node: Started, spec_node: str | None = None
+) -> Iterator[Finding]:
     """Yield a finding if roslaunch cannot find what a <node> names."""
     if node.package != package.name:
         if spec_node and not uses.is_ros_package(node.package):
-            manifest_line = package.find_line("package.xml", "<name>", 1)
-            # CMakeLists.txt says the same: then package.xml is wrong, which has been said.
-            same = model.project and model.project[0] == node.package
-            yield Finding(
-                "package-name",
-                f"The launch file looks for {node.type} in the package {node.package};"
-                f" package.xml calls this package {package.name} (line {manifest_line}).",
-                node.file,
-                node.line,
-                node=spec_node,
-                expected=f'pkg="{package.name}"',
-                seen=f'pkg="{node.package}"',
-                fix=f'Write pkg="{package.name}".',
-                consequence_of="package-name" if same else None,
-            )
+            yield _other_package(package, model, node, spec_node)
         return
     names = _executables(package, model)
     # Where CMake failed, nobody knows what it would have made.
     if node.type in names or not model.complete:
         return
     stems = {os.path.splitext(name)[0]: name for name in names}
-    near = stems.get(os.path.splitext(node.type)[0])
-    near = near or nearest(node.type, names, 0.75)
-    built = _source_of(package, model, node.type)
-    if built and near is None and model.complete:
-        yield Finding(
-            "targets",
-            f"The launch file starts {node.type}, and CMakeLists.txt makes no executable of that"
-            f" name: {built} is built by no add_executable().",
-            "CMakeLists.txt",
-            _targets_line(model),
-            node=spec_node,
-            expected=f"add_executable({node.type} {built})",
-            seen=", ".join(model.executables()) or "no executable",
-            fix=f"Add add_executable({node.type} {built}), and link it with ${{catkin_LIBRARIES}}.",
-        )
+    near = stems.get(os.path.splitext(node.type)[0]) or nearest(node.type, names, 0.75)
+    source = _source_of(package, model, node.type)
+    if source and near is None:
+        yield _not_built(model, node, source, spec_node)
         return
     yield Finding(
         "launch-nodes",
@@ -125,7 +109,39 @@ def _can_start(package, model, node, spec_node=None):
     )
 
 
-def _source_of(package, model, name):
+def _other_package(package: Package, model: Model, node: Started, spec_node: str | None) -> Finding:
+    line = package.find_line("package.xml", "<name>", 1)
+    # CMakeLists.txt says the same: then package.xml is wrong, which has been said.
+    same = model.project and model.project[0] == node.package
+    return Finding(
+        "package-name",
+        f"The launch file looks for {node.type} in the package {node.package};"
+        f" package.xml calls this package {package.name} (line {line}).",
+        node.file,
+        node.line,
+        node=spec_node,
+        expected=f'pkg="{package.name}"',
+        seen=f'pkg="{node.package}"',
+        fix=f'Write pkg="{package.name}".',
+        consequence_of="package-name" if same else None,
+    )
+
+
+def _not_built(model: Model, node: Started, source: str, spec_node: str | None) -> Finding:
+    return Finding(
+        "targets",
+        f"The launch file starts {node.type}, and CMakeLists.txt makes no executable of that"
+        f" name: {source} is built by no add_executable().",
+        "CMakeLists.txt",
+        _targets_line(model),
+        node=spec_node,
+        expected=f"add_executable({node.type} {source})",
+        seen=", ".join(model.executables()) or "no executable",
+        fix=f"Add add_executable({node.type} {source}), and link it with ${{catkin_LIBRARIES}}.",
+    )
+
+
+def _source_of(package: Package, model: Model, name: str) -> str | None:
     """Return a C++ source that no target is made of and that is called like the executable."""
     built = {source for target in model.targets.values() for source in target.sources}
     spare = [path for path in package.of_kind("cpp") if path not in built]
@@ -135,12 +151,12 @@ def _source_of(package, model, name):
     return spare[0] if len(spare) == 1 else None
 
 
-def _targets_line(model):
+def _targets_line(model: Model) -> int:
     lines = [target.line for target in model.targets.values() if target.file == "CMakeLists.txt"]
     return max(lines) if lines else model.catkin_package.line if model.catkin_package else 1
 
 
-def _findings(case):
+def _findings(case: Case) -> Iterator[Finding]:
     if case.launch and not case.launch.error:
         yield from findings(case.package, case.spec, case.model, case.launch)
 

@@ -3,12 +3,15 @@
 
 from __future__ import annotations
 
+from typing import Iterator
+
+from mrp_check import evidence
+from mrp_check.case import Case
 from mrp_check.contract.finding import Finding
 from mrp_check.contract.requirements import Requirement, Rule
-from mrp_check.running import evidence
 
 
-def findings(case):
+def findings(case: Case) -> Iterator[Finding]:
     for node in case.launch.of_spec(case.spec) if case.launch else ():
         if node.output != "screen":
             yield Finding(

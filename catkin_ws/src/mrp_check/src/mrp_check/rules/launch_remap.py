@@ -3,17 +3,23 @@
 
 from __future__ import annotations
 
+from typing import Iterator
+
+from mrp_check.case import Case
+from mrp_check.confined.launch_dump import Started
 from mrp_check.contract.finding import Finding
 from mrp_check.contract.requirements import Rule
+from mrp_check.contract.spec import Spec
+from mrp_check.student.package import Package
 from mrp_check.student.xml_file import elements
 
 
-def findings(case):
+def findings(case: Case) -> Iterator[Finding]:
     for node in case.launch.of_spec(case.spec) if case.launch else ():
         yield from _of(case.package, case.spec, node)
 
 
-def _of(package, spec, node):
+def _of(package: Package, spec: Spec, node: Started) -> Iterator[Finding]:
     topics = {
         topic
         for topic in (spec.nodes[node.name].publishing, spec.nodes[node.name].subscribing)
@@ -37,8 +43,9 @@ def _of(package, spec, node):
                 )
 
 
-def _remap_line(package, node, old, new):
-    for element in elements(package.bytes(node.file)):
+def _remap_line(package: Package, node: Started, old: str, new: str) -> int | None:
+    # A file of another package has no lines that could be named.
+    for element in elements(package.bytes(node.file)) if node.file else ():
         if element.tag == "remap" and old.endswith(
             element.attributes.get("from", "?").lstrip("~/")
         ):

@@ -4,43 +4,47 @@
 from __future__ import annotations
 
 import re
+from typing import Iterator
 
-from mrp_check.contract.finding import Finding
+from mrp_check import evidence
+from mrp_check.case import Case
+from mrp_check.confined.places import Kind
+from mrp_check.contract.finding import Finding, Where
 from mrp_check.contract.requirements import Requirement, Rule
-from mrp_check.running import evidence
+from mrp_check.running.places import Places
+from mrp_check.student.package import Package
 
 
-def findings(case):
+def findings(case: Case) -> Iterator[Finding]:
     seen, spec, package, places = case.observed, case.spec, case.package, case.places
-    told = set()
-    for left in (seen.direct or {}).get("left", []) + (seen.launch or {}).get("left", []):
-        name = left["node"]
+    told: set[object] = set()
+    for left in [one for run in (seen.direct, seen.launch) if run for one in run.left]:
+        name = left.node
         if name is None or name not in spec.nodes:
-            found = re.search(r"__name:=(\w+)", left["command"])
+            found = re.search(r"__name:=(\w+)", left.command)
             name = found.group(1) if found and found.group(1) in spec.nodes else None
-        stuck = (seen.alone(name) or {}).get("ended_by")
-        if {(name, "left"), left["command"]} & told or stuck:
+        alone = seen.alone(name)
+        if {(name, "left"), left.command} & told or alone and alone.killed:
             continue
-        told |= {(name, "left"), left["command"]}
+        told |= {(name, "left"), left.command}
         file, line = _starts_program(name, package, places)
         name = name or next((node for node in spec.nodes if file in places.sources(node)), None)
         yield Finding(
             "leftovers",
-            f"{name or 'The package'} leaves a process behind when it ends:"
-            f" {left['command'][:120]}",
+            f"{name or 'The package'} leaves a process behind when it ends: {left.command[:120]}",
             file,
             line,
             expected="no process of the package after its end",
-            seen=left["command"][:200],
+            seen=left.command[:200],
             node=name,
         )
 
 
-def _starts_program(name, package, places):
+def _starts_program(name: str | None, package: Package, places: Places) -> Where:
     files = places.sources(name) if name else package.of_kind("python", "cpp")
     starts = r"\b(Popen|fork|system|popen|Process)\s*\(|subprocess\.\w+\("
     place = package.first_match(files, starts)
-    return place or (places.of(name, "init") if name else (None, None))
+    return place or (places.of(name, Kind.INIT) if name else (None, None))
 
 
 RULE = Rule(

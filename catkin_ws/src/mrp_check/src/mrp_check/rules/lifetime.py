@@ -3,16 +3,20 @@
 
 from __future__ import annotations
 
+from typing import Iterator
+
+from mrp_check import evidence
+from mrp_check.confined.places import Kind
+from mrp_check.contract.finding import Finding
 from mrp_check.contract.requirements import Requirement, Rule
-from mrp_check.running import evidence
-from mrp_check.sources.node import each_node
+from mrp_check.sources.node import Node, each_node
 
 
-def _of(node):
+def _of(node: Node) -> Iterator[Finding]:
     topics = {"subscribe": node.wanted.subscribing, "advertise": node.wanted.publishing}
-    kinds = {"subscribe": "subscriber", "advertise": "publisher"}
-    for place in node.places("discarded", "local"):
-        call = place.text
+    kinds = {"subscribe": Kind.SUBSCRIBER, "advertise": Kind.PUBLISHER}
+    for place in node.places(Kind.DISCARDED, Kind.LOCAL):
+        call = place.text or ""
         if call in kinds:
             same = [
                 p
@@ -21,13 +25,13 @@ def _of(node):
             ]
             if not same:
                 continue
-        what = {"subscribe": "subscriber", "advertise": "publisher"}.get(call, "timer")
-        if place.kind == "discarded":
+        what = kinds.get(call, Kind.TIMER).value
+        if place.kind is Kind.DISCARDED:
             how = "is kept nowhere: it ends with this very line"
         else:
             how = (
-                f"is kept in {place.values['name']}, a variable of"
-                f" {place.values['function']}(): it ends when that returns"
+                f"is kept in {place.name}, a variable of"
+                f" {place.function}(): it ends when that returns"
             )
         yield node.finding(
             "lifetime",

@@ -3,13 +3,19 @@
 
 from __future__ import annotations
 
+from typing import Iterable, Iterator
+
+from catkin_pkg.package import Package as Manifest
+
+from mrp_check import evidence
+from mrp_check.case import Case
 from mrp_check.contract.finding import Finding
 from mrp_check.contract.requirements import Requirement, Rule
-from mrp_check.running import evidence
 from mrp_check.student.manifest import FILE
+from mrp_check.student.package import Package
 
 
-def findings(package, manifest):
+def findings(package: Package, manifest: Manifest) -> Iterator[Finding]:
     """Yield findings about a manifest that catkin_pkg can read."""
     if "catkin" not in {d.name for d in manifest.buildtool_depends}:
         yield Finding(
@@ -24,7 +30,7 @@ def findings(package, manifest):
         )
 
 
-def _findings(case):
+def _findings(case: Case) -> Iterable[Finding]:
     parsed, problem = case.manifest
     return [problem] if problem else findings(case.package, parsed)
 

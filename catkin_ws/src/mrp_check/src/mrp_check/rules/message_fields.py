@@ -4,19 +4,22 @@
 from __future__ import annotations
 
 import ast
+from typing import Iterator
 
+from mrp_check.contract.finding import Finding
 from mrp_check.contract.requirements import Rule
 from mrp_check.contract.words import nearest, perhaps
 from mrp_check.sources.python_facts import argument
-from mrp_check.sources.python_rule import PythonRule, of_sources
+from mrp_check.sources.python_rule import MessageClass, PythonRule, of_sources
+from mrp_check.sources.python_source import Function, Variable
 
 
 class Messages(PythonRule):
-    def findings(self):
+    def findings(self) -> Iterator[Finding]:
         yield from self.unknown_fields()
         yield from self.unknown_arguments()
 
-    def unknown_fields(self):
+    def unknown_fields(self) -> Iterator[Finding]:
         for key, class_ in self._messages().items():
             for node in ast.walk(self.source.tree):
                 if (
@@ -35,10 +38,10 @@ class Messages(PythonRule):
                         f" AttributeError when it comes here.{hint}",
                         node,
                         expected=", ".join(class_.__slots__) or "no field at all",
-                        fix=f"Write {near} for {node.attr}." if near else "Mend the name.",
+                        fix=f"Write {near} for {node.attr}." if near else "Correct the name.",
                     )
 
-    def _messages(self):
+    def _messages(self) -> dict[Variable, MessageClass]:
         """Return variable -> class, for the variables that hold a message of a known class."""
         found = {}
         for node in ast.walk(self.source.tree):
@@ -62,7 +65,7 @@ class Messages(PythonRule):
                         found[key] = class_
         return found
 
-    def _called(self, function):
+    def _called(self, function: Function) -> bool:
         """Return whether a function is called, or handed over, in more than one place."""
         name = getattr(function, "name", None)
         uses_ = [
@@ -76,13 +79,13 @@ class Messages(PythonRule):
         ]
         return name is not None and len(uses_) > 1
 
-    def unknown_arguments(self):
+    def unknown_arguments(self) -> Iterator[Finding]:
         for node in ast.walk(self.source.tree):
-            class_ = self.message_class(node.func) if isinstance(node, ast.Call) else None
-            if class_ is not None:
-                yield from self._arguments(node, class_)
+            if isinstance(node, ast.Call):
+                class_ = self.message_class(node.func)
+                yield from self._arguments(node, class_) if class_ is not None else ()
 
-    def _arguments(self, node, class_):
+    def _arguments(self, node: ast.Call, class_: MessageClass) -> Iterator[Finding]:
         for keyword in node.keywords:
             if keyword.arg and keyword.arg not in class_.__slots__:
                 near = nearest(keyword.arg, class_.__slots__)
@@ -92,7 +95,7 @@ class Messages(PythonRule):
                     " AttributeError when it comes here." + perhaps(near),
                     node,
                     expected=", ".join(class_.__slots__),
-                    fix=f"Write {near} for {keyword.arg}." if near else "Mend the name.",
+                    fix=f"Write {near} for {keyword.arg}." if near else "Correct the name.",
                 )
 
 

@@ -3,85 +3,97 @@
 
 from __future__ import annotations
 
+from typing import Iterator, Mapping, Sequence
+
+from catkin_pkg.package import Package as Manifest
+
+from mrp_check import evidence
 from mrp_check.contract.finding import ERROR, WARNING, Finding
 from mrp_check.contract.requirements import Requirement, Rule
-from mrp_check.contract.spec import PACKAGE
+from mrp_check.contract.spec import PACKAGE, Spec
 from mrp_check.contract.words import nearest
-from mrp_check.running import evidence
 from mrp_check.sources import uses
+from mrp_check.student.cmake import Model, Target
 from mrp_check.student.manifest import declared, last_dependency
+from mrp_check.student.package import Package
 
 FILE = "CMakeLists.txt"
 
 
-def findings(package, spec, model, manifest):
+def findings(
+    package: Package, spec: Spec, model: Model, manifest: Manifest | None
+) -> Iterator[Finding]:
     """Yield findings about the messages of the package itself."""
-    files = {path: path for path in package.of_kind("message") if path.count("/") <= 1}
+    files = [path for path in package.of_kind("message") if path.count("/") <= 1]
     for name, fields in spec.messages.items():
         yield from _definition(package, name, fields)
-    if not files and not model.message_files:
+    if not files and not model.message_files or not model.complete and model.catkin is None:
         return
-    if not model.complete and model.catkin is None:
-        return
-    catkin_line = model.catkin.line if model.catkin else 1
+    yield from _in_cmake(spec, model, files)
+    if manifest is not None:
+        yield from _in_manifest(package, manifest)
+    yield from _order(package, model)
+
+
+def _in_cmake(spec: Spec, model: Model, files: Sequence[str]) -> Iterator[Finding]:
+    """Yield a finding for each call of CMakeLists.txt that lacks, or lacks something."""
+    catkin_line, call = model.catkin.line if model.catkin else 1, model.add_message_files
     brings = {"message_generation", "genmsg"}  # the first is all of it; the second builds, too
     if not brings & {*model.components} and files and model.catkin:
         yield _message_finding(
             "find_package(catkin ...) does not name message_generation, which makes code of the"
             " package's own messages.",
-            FILE,
             catkin_line,
             "find_package(catkin REQUIRED COMPONENTS message_generation ...)",
             "Add message_generation to COMPONENTS.",
         )
-    needed = [path for path in files if path.rsplit("/", 1)[-1][:-4] in (spec.messages or files)]
-    for path in files if not spec.messages else needed:
-        if path not in model.message_files:
-            call = model.add_message_files
+    for path in files:
+        file = path.rsplit("/", 1)[-1]
+        if path not in model.message_files and (not spec.messages or file[:-4] in spec.messages):
             yield _message_finding(
                 f"{path} is not named in add_message_files(): no code is made of it.",
-                FILE,
                 call.line if call else catkin_line,
-                f"add_message_files(FILES {path.rsplit('/', 1)[-1]})",
-                f"Add {path.rsplit('/', 1)[-1]} to add_message_files(FILES ...).",
+                f"add_message_files(FILES {file})",
+                f"Add {file} to add_message_files(FILES ...).",
             )
-    if model.message_files and model.generate is None:
+    if call and model.message_files and model.generate is None:
         yield _message_finding(
             "CMakeLists.txt never calls generate_messages(): no code is made of the messages.",
-            FILE,
-            model.add_message_files.line,
+            call.line,
             "generate_messages(...) after add_message_files(...)",
             "Add generate_messages(DEPENDENCIES std_msgs).",
         )
-    if manifest is not None:
-        known = declared(manifest)
-        for name, kind, tag in (
-            ("message_generation", "build", "build_depend"),
-            ("message_runtime", "exec", "exec_depend"),
-        ):
-            builds = kind == "build" and "genmsg" in known[kind]
-            if name not in known[kind]:
-                yield Finding(
-                    "dependencies",
-                    f"package.xml does not name {name} as a <{tag}>: the package has a message of"
-                    " its own, and needs it.",
-                    "package.xml",
-                    last_dependency(package),
-                    severity=WARNING if builds else ERROR,
-                    expected=f"<{tag}>{name}</{tag}>",
-                    seen=f"no <{tag}> with {name}",
-                    fix=f"Add the line <{tag}>{name}</{tag}>.",
-                )
-    yield from _order(package, model)
 
 
-def _message_finding(message, file, line, expected, fix):
+def _in_manifest(package: Package, manifest: Manifest) -> Iterator[Finding]:
+    """Yield a finding for each package that makes or runs messages, and is not declared."""
+    known = declared(manifest)
+    for name, kind, tag in (
+        ("message_generation", "build", "build_depend"),
+        ("message_runtime", "exec", "exec_depend"),
+    ):
+        builds = kind == "build" and "genmsg" in known[kind]
+        if name not in known[kind]:
+            yield Finding(
+                "dependencies",
+                f"package.xml does not name {name} as a <{tag}>: the package has a message of"
+                " its own, and needs it.",
+                "package.xml",
+                last_dependency(package),
+                severity=WARNING if builds else ERROR,
+                expected=f"<{tag}>{name}</{tag}>",
+                seen=f"no <{tag}> with {name}",
+                fix=f"Add the line <{tag}>{name}</{tag}>.",
+            )
+
+
+def _message_finding(message: str, line: int, expected: str, fix: str) -> Finding:
     return Finding(
-        "messages", message, file, line, expected=expected, seen="no such entry", fix=fix
+        "messages", message, FILE, line, expected=expected, seen="no such entry", fix=fix
     )
 
 
-def _definition(package, name, fields):
+def _definition(package: Package, name: str, fields: Mapping[str, str]) -> Iterator[Finding]:
     path = f"msg/{name}.msg"
     expected = "; ".join(f"{kind} {field}" for field, kind in fields.items())
     if path not in package.files:
@@ -117,7 +129,7 @@ def _definition(package, name, fields):
             )
 
 
-def _order(package, model):
+def _order(package: Package, model: Model) -> Iterator[Finding]:
     """Yield a finding for each target that uses a message's header before it is made."""
     own = {path.rsplit("/", 1)[-1][:-4] for path in package.of_kind("message")}
     for target in model.targets.values():
@@ -147,7 +159,7 @@ def _order(package, model):
             )
 
 
-def _headers(package, model, target):
+def _headers(package: Package, model: Model, target: Target) -> list[str]:
     """Return the package's headers that a target's sources include, directly."""
     names = {
         header.rsplit("/", 1)[-1]

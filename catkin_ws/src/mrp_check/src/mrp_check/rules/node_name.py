@@ -3,30 +3,33 @@
 
 from __future__ import annotations
 
-from mrp_check.contract.finding import WARNING
+from typing import Iterator
+
+from mrp_check import evidence
+from mrp_check.confined.places import Kind
+from mrp_check.contract.finding import WARNING, Finding
 from mrp_check.contract.requirements import Requirement, Rule
-from mrp_check.running import evidence
-from mrp_check.sources.node import each_node
-from mrp_check.sources.python_source import GAP
+from mrp_check.sources.node import Node, each_node
+from mrp_check.sources.python_text import GAP
 
 
-def _of(node):
-    inits = node.places("init")
-    names = {p.text for p in inits}
-    if len(inits) != 1 or None in names or GAP in inits[0].text:
+def _of(node: Node) -> Iterator[Finding]:
+    inits = node.places(Kind.INIT)
+    name = inits[0].text if len(inits) == 1 else None
+    if name is None or GAP in name:
         return
     init = inits[0]
-    if init.text.lstrip("/") != node.name:
+    if name.lstrip("/") != node.name:
         yield node.finding(
             "node-name",
-            f"The node gives itself the name {init.text}; expected {node.name}. roslaunch"
+            f"The node gives itself the name {name}; expected {node.name}. roslaunch"
             " hides it, as the launch file's name wins; rosrun does not.",
             init,
             expected=node.name,
             fix=f'Write "{node.name}".',
-            change=(f'"{init.text}"', f'"{node.name}"'),
+            change=(f'"{name}"', f'"{node.name}"'),
         )
-    elif init.values.get("anonymous") is True:
+    elif init.anonymous is True:
         yield node.finding(
             "node-name",
             "The node asks for an anonymous name: rosrun starts it under another name each time.",

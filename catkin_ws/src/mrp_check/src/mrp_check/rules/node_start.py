@@ -3,13 +3,17 @@
 
 from __future__ import annotations
 
+from typing import Iterator
+
+from mrp_check import evidence
+from mrp_check.confined.places import Kind, Place
+from mrp_check.contract.finding import Finding
 from mrp_check.contract.requirements import Requirement, Rule
-from mrp_check.running import evidence
-from mrp_check.sources.node import each_node
+from mrp_check.sources.node import Node, each_node
 
 
-def _of(node):
-    inits = node.places("init")
+def _of(node: Node) -> Iterator[Finding]:
+    inits = node.places(Kind.INIT)
     if not inits:
         yield _no_init(node)
         return
@@ -18,10 +22,10 @@ def _of(node):
         yield from _too_early(node, inits[0])
 
 
-def _no_init(node):
+def _no_init(node: Node) -> Finding:
     call = "rospy.init_node(...)" if node.is_python else "ros::init(...)"
-    where = [p for p in node.places("function") if p.text == "main"] or node.places(
-        "publisher", "subscriber", "timer"
+    where = [p for p in node.places(Kind.FUNCTION) if p.text == "main"] or node.places(
+        Kind.PUBLISHER, Kind.SUBSCRIBER, Kind.TIMER
     )
     return node.finding(
         "node-start",
@@ -35,12 +39,12 @@ def _no_init(node):
     )
 
 
-def _at_file_scope(node):
-    for place in node.places("global"):
-        if "ros::NodeHandle" in (place.text, *place.values.get("holds", ())):
+def _at_file_scope(node: Node) -> Iterator[Finding]:
+    for place in node.places(Kind.GLOBAL):
+        if "ros::NodeHandle" in (place.text, *place.holds):
             yield node.finding(
                 "node-start",
-                f"{place.values.get('name')} is made before main begins, and so before"
+                f"{place.name} is made before main begins, and so before"
                 " ros::init(): a ros::NodeHandle then ends the program.",
                 place,
                 expected="no NodeHandle at file scope",
@@ -48,19 +52,19 @@ def _at_file_scope(node):
             )
 
 
-def _too_early(node, init):
+def _too_early(node: Node, init: Place) -> Iterator[Finding]:
     early = [
         p
-        for p in node.places("handle")
+        for p in node.places(Kind.HANDLE)
         if p.file == init.file
-        and p.values.get("function") == "main"
-        and p.values["offset"] < init.values.get("offset", 0)
-        and "ros::NodeHandle" in (p.text, *p.values.get("holds", ()))
+        and p.function == "main"
+        and p.offset < init.offset
+        and "ros::NodeHandle" in (p.text, *p.holds)
     ]
     if early:
         yield node.finding(
             "node-start",
-            f"{early[0].values.get('name')} is made in line {early[0].line}, before"
+            f"{early[0].name} is made in line {early[0].line}, before"
             f" ros::init() in line {init.line}: that ends the program.",
             early[0],
             expected="ros::init() before the first ros::NodeHandle",

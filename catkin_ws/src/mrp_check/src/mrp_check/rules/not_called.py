@@ -4,14 +4,16 @@
 from __future__ import annotations
 
 import ast
+from typing import Iterator
 
+from mrp_check.contract.finding import Finding
 from mrp_check.contract.requirements import Rule
 from mrp_check.sources.python_modules import is_ros, resolve
 from mrp_check.sources.python_rule import PythonRule, ast_text, of_sources
 
 
 class NotCalled(PythonRule):
-    def findings(self):
+    def findings(self) -> Iterator[Finding]:
         for node in ast.walk(self.source.tree):
             if not isinstance(node, ast.Expr) or not isinstance(
                 node.value, (ast.Attribute, ast.Name)
@@ -19,8 +21,8 @@ class NotCalled(PythonRule):
                 continue
             name = self.source.dotted(node.value)
             own = self.source.definition(node.value)
-            of_ros = name and is_ros(name) and not self.is_own(name)
-            found, missing = resolve(name) if of_ros else (None, "")
+            of_ros = name is not None and is_ros(name) and not self.is_own(name)
+            found, missing = resolve(name) if name and of_ros else (None, "")
             is_function = missing is None and callable(found) or isinstance(own, ast.FunctionDef)
             if isinstance(node.value, ast.Attribute) and node.value.attr == "publish":
                 is_function = True

@@ -4,14 +4,15 @@
 from __future__ import annotations
 
 import ast
+from typing import Iterator
 
-from mrp_check.contract.finding import NOTE
+from mrp_check.contract.finding import NOTE, Finding
 from mrp_check.contract.requirements import Rule
 from mrp_check.sources.python_rule import PythonRule, of_sources
 
 
 class NotKept(PythonRule):
-    def findings(self):
+    def findings(self) -> Iterator[Finding]:
         for node in ast.walk(self.source.tree):
             if isinstance(node, ast.Expr) and isinstance(node.value, ast.Call):
                 name = self.source.dotted(node.value.func)

@@ -4,13 +4,15 @@
 from __future__ import annotations
 
 import re
+from typing import Iterator
 
-from mrp_check.contract.finding import WARNING
+from mrp_check.confined.places import Kind
+from mrp_check.contract.finding import WARNING, Finding
 from mrp_check.contract.requirements import Rule
-from mrp_check.running.node import each_node
+from mrp_check.running.node import Node, each_node
 
 
-def _of(node):
+def _of(node: Node) -> Iterator[Finding]:
     own = node.own_name
     if not own:
         return
@@ -20,7 +22,7 @@ def _of(node):
             "node-name",
             "The node asks for an anonymous name: rosrun starts it under another name each time;"
             " the launch file gives it its own.",
-            node.places.of(node.name, "init"),
+            node.places.of(node.name, Kind.INIT),
             WARNING,
             expected=node.name,
             seen=name,
@@ -30,7 +32,7 @@ def _of(node):
             "node-name",
             f"Started by itself, {node.name} calls itself {name}: the launch file hides it, but"
             " with rosrun the node has the wrong name.",
-            node.places.of(node.name, "init"),
+            node.places.of(node.name, Kind.INIT),
             expected=node.name,
             seen=name,
         )

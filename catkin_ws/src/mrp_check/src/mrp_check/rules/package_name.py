@@ -4,13 +4,18 @@
 from __future__ import annotations
 
 import collections
+from typing import Iterable, Iterator
 
+from mrp_check import evidence
+from mrp_check.case import Case
 from mrp_check.contract.finding import Finding
 from mrp_check.contract.requirements import Requirement, Rule
-from mrp_check.running import evidence
+from mrp_check.student.cmake import Model
+from mrp_check.student.launch import Launch
+from mrp_check.student.package import Package
 
 
-def findings(package, model, launch):
+def findings(package: Package, model: Model, launch: Launch | None) -> Iterator[Finding]:
     """Yield a finding if package.xml and CMakeLists.txt disagree; the others say who is right."""
     if model.project is None:
         return
@@ -39,7 +44,7 @@ def findings(package, model, launch):
     )
 
 
-def _findings(case):
+def _findings(case: Case) -> Iterable[Finding]:
     return findings(case.package, case.model, case.launch) if case.manifest[0] else ()
 
 

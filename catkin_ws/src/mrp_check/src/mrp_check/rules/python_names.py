@@ -6,29 +6,32 @@ from __future__ import annotations
 import ast
 import re
 import sys
+from typing import Collection, Iterator, Sequence
 
 from pyflakes import checker, messages
 
-from mrp_check.contract.finding import NOTE
+from mrp_check import evidence
+from mrp_check.contract.finding import NOTE, Change, Finding
 from mrp_check.contract.requirements import Requirement, Rule
 from mrp_check.contract.words import nearest, perhaps
-from mrp_check.running import evidence
 from mrp_check.sources import uses
 from mrp_check.sources.python_facts import last_line
 from mrp_check.sources.python_modules import is_module, is_ros, load, resolve, ros_modules
 from mrp_check.sources.python_rule import PythonRule, of_sources
+from mrp_check.sources.python_source import Source
+from mrp_check.student.package import Package
 
 # Names of Python 2, which old code mentions where Python 3 does not come by.
 _PYTHON2 = {"unicode", "xrange", "raw_input", "long", "basestring", "reduce", "unichr", "file"}
 
 
 class Names(PythonRule):
-    def __init__(self, package, source):
+    def __init__(self, package: Package, source: Source) -> None:
         super().__init__(package, source)
-        self.not_imported = []  # names whose import fails
+        self.not_imported: list[str] = []  # names whose import fails
         self.message_names = {path.rsplit("/", 1)[-1][:-4] for path in package.of_kind("message")}
 
-    def findings(self):
+    def findings(self) -> Iterator[Finding]:
         yield from [*self.imports()]
         undefined = [*self.undefined_names()]
         for finding in undefined:
@@ -39,7 +42,7 @@ class Names(PythonRule):
         yield from self.attributes()
         yield from self.own_attributes()
 
-    def imports(self):
+    def imports(self) -> Iterator[Finding]:
         for node in self.source.import_nodes:
             if self.source.is_guarded(node, "ImportError", "ModuleNotFoundError"):
                 continue
@@ -48,11 +51,9 @@ class Names(PythonRule):
                     yield from self._module(node, alias.name)
             elif not node.level and node.module:
                 problem = list(self._module(node, node.module))
-                yield from problem
-                if not problem:
-                    yield from self._imported(node)
+                yield from problem or self._imported(node, node.module)
 
-    def _module(self, node, name):
+    def _module(self, node: ast.stmt, name: str) -> Iterator[Finding]:
         if self.is_own(name):
             return
         missing, parent = None, None
@@ -83,43 +84,43 @@ class Names(PythonRule):
             + perhaps(near),
             node,
             expected="a module that is installed",
-            fix=f"Write {near}." if near else "Mend the name of the module.",
+            fix=f"Write {near}." if near else "Correct the name of the module.",
         )
 
-    def _absent(self, node, module):
+    def _absent(self, node: ast.stmt, module: str) -> Finding:
         self.source.absent[module] = said = uses.absent(module, "python")
         return self.finding("python-names", said, node, severity=NOTE)
 
-    def _imported(self, node):
-        if node.module == f"{self.package.name}.msg":
+    def _imported(self, node: ast.ImportFrom, origin: str) -> Iterator[Finding]:
+        if origin == f"{self.package.name}.msg":
             names = self.message_names
-        elif self.is_own(node.module) or not is_ros(node.module):
+        elif self.is_own(origin) or not is_ros(origin):
             return
         else:
-            module = load(node.module)
+            module = load(origin)
             if module is None:
                 return
             names = set(dir(module))
         for alias in node.names:
             if alias.name == "*" or alias.name in names:
                 continue
-            if is_module(f"{node.module}.{alias.name}"):
+            if is_module(f"{origin}.{alias.name}"):
                 continue
             self.not_imported.append(alias.name)
             near = nearest(alias.name, {n for n in names if not n.startswith("_")})
             hint = perhaps(near)
-            messages_ = load(f"{node.module}.msg") if is_module(f"{node.module}.msg") else None
+            messages_ = load(f"{origin}.msg") if is_module(f"{origin}.msg") else None
             if hasattr(messages_, alias.name):
-                hint = f" It is in {node.module}.msg."
+                hint = f" It is in {origin}.msg."
             yield self.finding(
                 "python-names",
-                f"{node.module} has no {alias.name}: Python ends with an ImportError.{hint}",
+                f"{origin} has no {alias.name}: Python ends with an ImportError.{hint}",
                 node,
-                expected=f"a name that {node.module} has",
-                fix=f"Write {near} for {alias.name}." if near else "Mend the name.",
+                expected=f"a name that {origin} has",
+                fix=f"Write {near} for {alias.name}." if near else "Correct the name.",
             )
 
-    def undefined_names(self):
+    def undefined_names(self) -> Iterator[Finding]:
         try:
             found = checker.Checker(self.source.tree, self.file).messages
         except RecursionError:
@@ -134,20 +135,7 @@ class Names(PythonRule):
             said.add(name)
             yield self._undefined(name, message)
 
-    def _undefined(self, name, message):
-        names = {
-            node.id
-            for node in ast.walk(self.source.tree)
-            if isinstance(node, ast.Name) and node.id != name
-        }
-        names |= set(self.source.imports) | {"print", "range", "str", "int", "len", "True", "False"}
-        names |= {
-            n.name
-            for n in ast.walk(self.source.tree)
-            if isinstance(n, (ast.FunctionDef, ast.ClassDef))
-        }
-        hint = perhaps(nearest(name, names))
-        fix = "Mend the name, or define it before it is used."
+    def _undefined(self, name: str, message: messages.Message) -> Finding:
         if isinstance(message, messages.UndefinedLocal):
             return self.finding(
                 "python-names",
@@ -157,27 +145,10 @@ class Names(PythonRule):
                 expected=f"self.{name}, or 'global {name}' at the beginning of the function",
                 fix=f"Make it a member of the class (self.{name}), or declare it global.",
             )
-        attributes = {
-            node.attr
-            for node in ast.walk(self.source.tree)
-            if isinstance(node, ast.Attribute)
-            and isinstance(node.value, ast.Name)
-            and node.value.id == "self"
-        }
-        methods = {
-            n.name
-            for n in ast.walk(self.source.tree)
-            if isinstance(n, ast.FunctionDef) and self.source.class_(n)
-        }
-        if name in attributes | methods:
-            hint, fix = f" Perhaps self.{name} is meant.", f"Write self.{name}."
-        elif name == "self":
+        members = self._members()
+        if name == "self" and name not in members:
             return self._no_self(message)
-        elif uses.is_ros_package(name) or is_module(name):
-            hint, fix = f" The import of {name} is missing.", f"Add the line: import {name}"
-        elif re.fullmatch(r"U?Int\d+|Float\d+|String|Bool|Empty|Header|Char|Byte", name):
-            hint = f" The import of {name} is missing."
-            fix = f"Add the line: from std_msgs.msg import {name}"
+        hint, fix = self._meant(name, members)
         return self.finding(
             "python-names",
             f"Nothing is called {name}: Python ends with a NameError when it comes here.{hint}",
@@ -186,7 +157,34 @@ class Names(PythonRule):
             fix=fix,
         )
 
-    def _no_self(self, message):
+    def _members(self) -> set[str]:
+        """Return the names that stand behind self, and those of methods."""
+        source, found = self.source, set()
+        for node in ast.walk(source.tree):
+            if isinstance(node, ast.Attribute) and getattr(node.value, "id", None) == "self":
+                found.add(node.attr)
+            elif isinstance(node, ast.FunctionDef) and source.class_(node):
+                found.add(node.name)
+        return found
+
+    def _meant(self, name: str, members: Collection[str]) -> tuple[str, str]:
+        """Return what may be meant by a name that nothing has, and what to do."""
+        if name in members:
+            return f" Perhaps self.{name} is meant.", f"Write self.{name}."
+        if uses.is_ros_package(name) or is_module(name):
+            return f" The import of {name} is missing.", f"Add the line: import {name}"
+        if re.fullmatch(r"U?Int\d+|Float\d+|String|Bool|Empty|Header|Char|Byte", name):
+            line = f"from std_msgs.msg import {name}"
+            return f" The import of {name} is missing.", f"Add the line: {line}"
+        names = {*self.source.imports, "print", "range", "str", "int", "len", "True", "False"}
+        for node in ast.walk(self.source.tree):
+            if isinstance(node, ast.Name) and node.id != name:
+                names.add(node.id)
+            elif isinstance(node, (ast.FunctionDef, ast.ClassDef)):
+                names.add(node.name)
+        return perhaps(nearest(name, names)), "Correct the name, or define it before it is used."
+
+    def _no_self(self, message: messages.Message) -> Finding:
         """Return the finding about a method without self: its def line is to blame."""
         around = [
             node
@@ -204,7 +202,7 @@ class Names(PythonRule):
             change=_self_first(method) if method else None,
         )
 
-    def attributes(self):
+    def attributes(self) -> Iterator[Finding]:
         """Names of ROS's own modules that do not exist, such as rospy.spln."""
         for node in ast.walk(self.source.tree):
             if not isinstance(node, ast.Attribute) or isinstance(
@@ -227,10 +225,10 @@ class Names(PythonRule):
                 " here." + perhaps(near),
                 node,
                 expected=f"a name that {called} has",
-                fix=f"Write {near} for {missing}." if near else "Mend the name.",
+                fix=f"Write {near} for {missing}." if near else "Correct the name.",
             )
 
-    def own_attributes(self):
+    def own_attributes(self) -> Iterator[Finding]:
         """self.NAME that no method ever sets."""
         for class_ in ast.walk(self.source.tree):
             if not isinstance(class_, ast.ClassDef) or class_.keywords or class_.decorator_list:
@@ -250,7 +248,7 @@ class Names(PythonRule):
                 continue
             yield from self._of_class(class_, inside)
 
-    def _of_class(self, class_, inside):
+    def _of_class(self, class_: ast.ClassDef, inside: Sequence[ast.AST]) -> Iterator[Finding]:
         known = set(dir(object)) | {"__dict__", "__class__", "__name__", "__module__"}
         # Whoever sets an attribute of any object may set it of this one.
         known |= {
@@ -258,10 +256,10 @@ class Names(PythonRule):
             for n in ast.walk(self.source.tree)
             if isinstance(n, ast.Attribute) and isinstance(n.ctx, ast.Store)
         }
-        for node in class_.body:
-            if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)):
-                known.add(node.name)
-            for one in ast.walk(node):
+        for statement in class_.body:
+            if isinstance(statement, (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)):
+                known.add(statement.name)
+            for one in ast.walk(statement):
                 if isinstance(one, ast.Name) and isinstance(one.ctx, ast.Store):
                     known.add(one.id)
         said = set()
@@ -289,7 +287,7 @@ class Names(PythonRule):
             )
 
 
-def _self_first(method):
+def _self_first(method: ast.FunctionDef) -> Change:
     rest = ", " if method.args.args or method.args.vararg or method.args.kwarg else ""
     return f"def {method.name}(", f"def {method.name}(self{rest}"
 

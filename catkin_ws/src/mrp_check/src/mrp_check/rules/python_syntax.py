@@ -3,12 +3,15 @@
 
 from __future__ import annotations
 
-from mrp_check.contract.finding import WARNING
+from typing import Iterator
+
+from mrp_check import evidence
+from mrp_check.case import Case
+from mrp_check.contract.finding import WARNING, Finding
 from mrp_check.contract.requirements import Requirement, Rule
-from mrp_check.running import evidence
 
 
-def findings(case):
+def findings(case: Case) -> Iterator[Finding]:
     for problem in case.facts.problems:
         if problem.file not in case.facts.relevant:
             problem.severity = WARNING

@@ -3,24 +3,29 @@
 
 from __future__ import annotations
 
-from mrp_check.contract.finding import ERROR, WARNING
+from typing import Iterator
+
+from mrp_check import evidence
+from mrp_check.confined.places import Kind, Place
+from mrp_check.contract.finding import ERROR, WARNING, Finding
 from mrp_check.contract.requirements import Requirement, Rule
-from mrp_check.running import evidence
-from mrp_check.sources.node import each_node
+from mrp_check.sources.node import Node, each_node
 
 
-def _of(node):
+def _of(node: Node) -> Iterator[Finding]:
     wanted = node.wanted
     for kind, topic, role in (
-        ("subscriber", wanted.subscribing, wanted.subscribes or wanted.relays),
-        ("publisher", wanted.publishing, wanted.publishes or wanted.relays),
+        (Kind.SUBSCRIBER, wanted.subscribing, wanted.subscribes or wanted.relays),
+        (Kind.PUBLISHER, wanted.publishing, wanted.publishes or wanted.relays),
     ):
-        asked = role and role.queue
-        for place in node.on_topic(kind, topic) if asked else ():
-            queue = place.values.get("queue")
+        asked = role.queue if role else None
+        if not asked:
+            continue
+        for place in node.on_topic(kind, topic):
+            queue = place.queue
             if isinstance(queue, int) and queue is not True and queue != asked:
                 yield _other_queue(node, place, kind, queue, asked)
-            elif node.is_python and kind == "publisher" and _says_none(node, place):
+            elif node.is_python and kind is Kind.PUBLISHER and _says_none(node, place):
                 yield node.finding(
                     "queue",
                     "rospy.Publisher() is given no queue_size: it then sends each message"
@@ -32,13 +37,17 @@ def _of(node):
                 )
 
 
-def _other_queue(node, place, kind, queue, asked):
+def _other_queue(node: Node, place: Place, kind: Kind, queue: int, asked: int) -> Finding:
     why = {
-        (True, "subscriber", 0): "rospy.Subscriber() takes no queue_size of 0: it raises an error.",
-        (True, "subscriber", 1): "The subscriber's queue has room for one message. In rospy"
+        (
+            True,
+            Kind.SUBSCRIBER,
+            0,
+        ): "rospy.Subscriber() takes no queue_size of 0: it raises an error.",
+        (True, Kind.SUBSCRIBER, 1): "The subscriber's queue has room for one message. In rospy"
         " each publisher has a queue of its own; a callback that is late loses messages all"
         " the same.",
-        (False, "subscriber", 1): "The subscriber's queue has room for one message. All"
+        (False, Kind.SUBSCRIBER, 1): "The subscriber's queue has room for one message. All"
         " publishers of the topic share it: two that publish at the same moment push out each"
         " other's values.",
     }
@@ -46,8 +55,8 @@ def _other_queue(node, place, kind, queue, asked):
     return node.finding(
         "queue",
         why.get((node.is_python, kind, queue))
-        or f"The {kind}'s queue {rooms}; the contract asks for {asked}.",
-        (place.file, place.values.get("queue_line", place.line)),
+        or f"The {kind.value}'s queue {rooms}; the contract asks for {asked}.",
+        (place.file, place.queue_line or place.line),
         # A longer one loses nothing, and one that is little shorter hardly ever.
         severity=ERROR if queue == 1 or (node.is_python, kind, queue) in why else WARNING,
         expected=f"queue_size={asked}" if node.is_python else f"a queue of {asked}",
@@ -58,7 +67,7 @@ def _other_queue(node, place, kind, queue, asked):
     )
 
 
-def _says_none(node, place):
+def _says_none(node: Node, place: Place) -> bool:
     """Return whether a call that begins in a line has no queue_size in its lines."""
     lines = node.package.lines(place.file)[place.line - 1 : place.line + 6]
     text, depth = "", 0
@@ -67,7 +76,7 @@ def _says_none(node, place):
         depth += line.count("(") - line.count(")")
         if depth <= 0:
             break
-    if "queue" in place.values:
+    if place.queue is not None:
         return False
     return "queue_size" not in text and "**" not in text and text.count(",") < 6
 

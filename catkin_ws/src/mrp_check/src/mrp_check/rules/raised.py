@@ -3,12 +3,15 @@
 
 from __future__ import annotations
 
+from typing import Iterator
+
+from mrp_check.contract.finding import Finding
 from mrp_check.contract.requirements import Rule
-from mrp_check.running.node import each_node
+from mrp_check.running.node import Node, each_node
 from mrp_check.running.starting import id_of_error
 
 
-def _of(node):
+def _of(node: Node) -> Iterator[Finding]:
     if node.not_up:
         return
     found = node.places.traceback(node.errors())
@@ -23,9 +26,9 @@ def _of(node):
             seen=f"{kind}: {text}, in: {source}",
         )
         return
-    found = node.places.wrong_arguments(node.errors())
-    if found:
-        place, text = found
+    called = node.places.wrong_arguments(node.errors())
+    if called:
+        place, text = called
         yield node.finding(
             "callbacks",
             f"{node.name} has a callback that cannot be called as ROS calls it: {text}.",

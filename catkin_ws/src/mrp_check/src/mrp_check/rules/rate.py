@@ -4,29 +4,33 @@
 from __future__ import annotations
 
 import statistics
+from typing import Iterator, Sequence
 
+from mrp_check import evidence
+from mrp_check.confined.places import Kind
+from mrp_check.contract.finding import Finding, Where
 from mrp_check.contract.requirements import Requirement, Rule
-from mrp_check.running import evidence
+from mrp_check.contract.spec import Publishes
 from mrp_check.running.node import Node, each_node
 
 
-def _of(node):
+def _of(node: Node) -> Iterator[Finding]:
     role = node.wanted.publishes
-    messages = node.published() if role and role.period else ()
-    if not messages:
+    messages = node.published()
+    if not role or not role.period or not messages:
         return
-    place = node.places.of(node.name, "rate", "timer", "publish")
+    place = node.places.of(node.name, Kind.TIMER, Kind.PUBLISH)
     expected = f"a message every {role.period:g} s"
-    times = [m["time"] for m in messages]
+    times = [message.time for message in messages]
     if not node.has_rate():
-        yield from _too_few(node, role, times, place, expected)
+        yield from _too_few(node, role.period, times, place, expected)
         return
     gaps = [b - a for a, b in zip(times, times[1:])]
     # A busy machine can delay messages, and let them come in a burst after that; it can change
     # neither the middle one of all gaps by much, nor the time that all together take.
     middle, mean = statistics.median(gaps), (times[-1] - times[0]) / len(gaps)
     low, high = role.period * (1 - role.tolerance), role.period * (1 + role.tolerance)
-    lag = node.all.get("lag", 0)
+    lag = node.seen.lag
     too_fast = middle < low and mean < low
     too_slow = middle > high + 2 * lag and mean > high + 2 * lag
     if too_slow and not _is_slow_by_itself(node, role, high):
@@ -34,8 +38,9 @@ def _of(node):
     if too_fast or too_slow:
         seen = f"a message every {middle:.2g} s"
         # Beside a timer: a loop's own sleep is what its rate is made of.
-        timer = "Timer" in (node.package.lines(place[0])[place[1] - 1] if place[0] else "")
-        sleep = too_slow and timer and node.places.sleep_beside(node.name, "publish")
+        file, line = place
+        timer = "Timer" in (node.package.lines(file)[line - 1] if file and line else "")
+        sleep = too_slow and timer and node.places.sleep_beside(node.name, Kind.PUBLISH)
         yield node.finding(
             "rate",
             f"{node.name} publishes too {'often' if too_fast else 'seldom'}: {seen}, where the"
@@ -47,24 +52,25 @@ def _of(node):
         )
 
 
-def _too_few(node, role, times, place, expected):
+def _too_few(
+    node: Node, period: float, times: Sequence[float], place: Where, expected: str
+) -> Iterator[Finding]:
     """Yield a Finding if there are too few messages, though there was time for more."""
     waited = node.asked - times[-1]
-    if waited <= 3 * role.period + 10 * node.all.get("lag", 0):
+    if waited <= 3 * period + 10 * node.seen.lag:
         return
     count = "once" if len(times) == 1 else f"{len(times)} messages"
-    slow = len(times) > 1 and times[-1] - times[0] > 2 * role.period
+    slow = len(times) > 1 and times[-1] - times[0] > 2 * period
     rest = " in all, far too seldom." if slow else f", and then no more for {waited:.0f} s."
     yield node.finding(
         "rate", f"{node.name} published {count}{rest}", place, expected=expected, seen=count
     )
 
 
-def _is_slow_by_itself(node, role, high):
+def _is_slow_by_itself(node: Node, role: Publishes, high: float) -> bool:
     """Return whether the node was as slow when it ran by itself: two runs agree."""
-    messages = node.direct_of("messages")
-    topics = {m["topic"] for m in messages if m["topic"].endswith("/" + role.topic.name)}
-    times = [m["time"] for m in messages if m["topic"] in topics]
+    messages = node.seen_alone.messages
+    times = [m.time for m in messages if m.topic.endswith("/" + role.topic.name)]
     gaps = [b - a for a, b in zip(times, times[1:])]
     return not gaps or statistics.median(gaps) > high
 

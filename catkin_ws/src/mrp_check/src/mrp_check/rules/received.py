@@ -4,31 +4,35 @@
 from __future__ import annotations
 
 import re
+from typing import Collection, Iterator, Sequence
 
-from mrp_check.contract.finding import ERROR, WARNING
+from mrp_check import evidence
+from mrp_check.confined.places import Kind
+from mrp_check.confined.seen import Log
+from mrp_check.contract.finding import ERROR, WARNING, Finding, Where
 from mrp_check.contract.requirements import Requirement, Rule
+from mrp_check.contract.spec import Subscribes
 from mrp_check.rules.console import not_logged, other_words, received_pattern, sample
-from mrp_check.running import evidence
-from mrp_check.running.node import each_node, received_line
-from mrp_check.running.observing import BURST, PACED
+from mrp_check.running.node import Node, each_node
+from mrp_check.running.planning import BURST, PACED
 from mrp_check.running.words import PREFIX, few
 
 
-def _of(node):
+def _of(node: Node) -> Iterator[Finding]:
     """Yield a Finding if the node does not log each value that it is sent, once."""
-    sent, pattern = node.sent(), received_pattern(node)
-    if not node.wanted.subscribes or not sent or pattern is None:
+    sent, pattern, role = node.sent(), received_pattern(node), node.wanted.subscribes
+    if not role or not sent or pattern is None:
         return
-    logs = node.direct_of("logs")
-    heard = {int(m["value"]) for m in (pattern.search(log["text"]) for log in logs) if m}
+    logs = node.seen_alone.logs
+    heard = {int(m["value"]) for m in (pattern.search(log.text) for log in logs) if m}
     lost = [value for value in sent if value not in heard]
     if not lost or heard - set(sent):
         yield from _repeated_finding(node, sent, logs, pattern)
         return
-    wanted = sample(received_line(node), lost[0])
+    wanted = sample(node.wanted.received_line or "", lost[0])
     number = re.compile(rf"(?<!\d){lost[0]}(?!\d)")
-    near = [g for g in logs if number.search(g["text"]) and not pattern.search(g["text"])]
-    lines = [text for _, _, text in node.direct.get("lines", [])]
+    near = [g for g in logs if number.search(g.text) and not pattern.search(g.text)]
+    lines = [text for _, _, text in node.direct.lines] if node.direct else []
     printed = [text for text in lines if number.search(text) and not PREFIX.match(text)]
     if near:
         yield other_words(node, near[-1], wanted)
@@ -38,30 +42,34 @@ def _of(node):
         yield node.finding(
             "received",
             f"{node.name} was sent {len(sent)} messages, and logs none of them.",
-            node.places.of(node.name, "subscriber", "init"),
+            node.places.of(node.name, Kind.SUBSCRIBER, Kind.INIT),
             expected=wanted,
             seen="no such line",
         )
     elif not set(lost) & set(PACED):
-        yield _short_queue(node, lost, heard & set(BURST))
+        yield _short_queue(node, role, lost, heard & set(BURST))
     else:
         yield _gaps(node, sent, lost, heard, _logged_place(node, logs, pattern))
 
 
-def _short_queue(node, lost, burst):
+def _short_queue(
+    node: Node, role: Subscribes, lost: Sequence[int], burst: Collection[int]
+) -> Finding:
     return node.finding(
         "queue",
         f"{node.name} was sent {len(BURST)} messages at once, and lost {len(lost)} of them:"
         " its queue is too short.",
-        node.places.of_topic(node.name, "subscriber", node.wanted.subscribing.name),
+        node.places.of_topic(node.name, Kind.SUBSCRIBER, role.topic.name),
         ERROR if len(burst) <= 2 else WARNING,
-        expected=f"a queue of {node.wanted.subscribes.queue or 10}",
+        expected=f"a queue of {role.queue or 10}",
         seen=f"received {sorted(burst)}",
     )
 
 
-def _gaps(node, sent, lost, heard, place):
-    sleep = node.places.sleep_beside(node.name, "log")
+def _gaps(
+    node: Node, sent: Sequence[int], lost: Sequence[int], heard: Collection[int], place: Where
+) -> Finding:
+    sleep = node.places.sleep_beside(node.name, Kind.LOG)
     kept = ", ".join(str(value) for value in sent if value in heard)
     why = " While its callback sleeps, more arrives than its queue holds." if sleep else ""
     return node.finding(
@@ -74,7 +82,7 @@ def _gaps(node, sent, lost, heard, place):
     )
 
 
-def _whose(node, lost, heard):
+def _whose(node: Node, lost: Sequence[int], heard: Collection[int]) -> str:
     """Say whose values all that were lost could be, and none of the others."""
     for other in node.spec.nodes.values():
         rule = other.publishes.values if other.publishes else None
@@ -86,8 +94,10 @@ def _whose(node, lost, heard):
     return ""
 
 
-def _repeated_finding(node, sent, logs, pattern):
-    values = [int(m["value"]) for m in (pattern.search(log["text"]) for log in logs) if m]
+def _repeated_finding(
+    node: Node, sent: Sequence[int], logs: Sequence[Log], pattern: re.Pattern[str]
+) -> Iterator[Finding]:
+    values = [int(m["value"]) for m in (pattern.search(log.text) for log in logs) if m]
     extra = [value for value in values if value not in sent]
     repeated = [value for value in sent if values.count(value) > 1]
     if extra:
@@ -106,11 +116,11 @@ def _repeated_finding(node, sent, logs, pattern):
     )
 
 
-def _logged_place(node, logs, pattern):
+def _logged_place(node: Node, logs: Sequence[Log], pattern: re.Pattern[str]) -> Where:
     for log in logs:
-        if pattern.search(log["text"]):
+        if pattern.search(log.text):
             return node.places.of_log(node.name, log)
-    return node.places.of(node.name, "subscriber")
+    return node.places.of(node.name, Kind.SUBSCRIBER)
 
 
 RULE = Rule(
@@ -123,7 +133,7 @@ RULE = Rule(
             "Subscribers hear every value",
             "subscriber",
             evidence.when(
-                lambda node: node.sent() and received_line(node),
+                lambda node: node.sent() and node.wanted.received_line,
                 "logged no value",
                 lambda wanted: wanted.subscribes,
             ),

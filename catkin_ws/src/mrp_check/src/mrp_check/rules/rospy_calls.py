@@ -6,17 +6,20 @@ from __future__ import annotations
 import ast
 import inspect
 import re
+from typing import Iterator
 
+from mrp_check.contract.finding import Finding
 from mrp_check.contract.requirements import Rule
 from mrp_check.contract.words import nearest, perhaps
 from mrp_check.sources.python_facts import argument
 from mrp_check.sources.python_modules import cannot_bind, resolve, signature
 from mrp_check.sources.python_rule import PythonRule, ast_text, of_sources
-from mrp_check.sources.python_source import UNKNOWN
+from mrp_check.sources.python_source import Function
+from mrp_check.sources.python_text import UNKNOWN
 
 
 class Calls(PythonRule):
-    def findings(self):
+    def findings(self) -> Iterator[Finding]:
         for node in ast.walk(self.source.tree):
             if not isinstance(node, ast.Call):
                 continue
@@ -24,7 +27,7 @@ class Calls(PythonRule):
             if name and name.startswith("rospy.") and not self.is_own("rospy"):
                 yield from self._call(node, name)
 
-    def _call(self, node, name):
+    def _call(self, node: ast.Call, name: str) -> Iterator[Finding]:
         function, missing = resolve(name)
         if missing is not None or not callable(function):
             return
@@ -45,7 +48,7 @@ class Calls(PythonRule):
         if name in _CHECKED:
             yield from _CHECKED[name](self, node)
 
-    def _init_node(self, node):
+    def _init_node(self, node: ast.Call) -> Iterator[Finding]:
         given = argument(node, 0, "name")
         value = self.source.value(given)
         if value is not UNKNOWN and not isinstance(value, str) or self._is_type(given):
@@ -57,12 +60,12 @@ class Calls(PythonRule):
                 fix="Hand the node's name over first.",
             )
 
-    def _is_type(self, node):
+    def _is_type(self, node: ast.expr | None) -> bool:
         return self.message_class(node) is not None or isinstance(
             self.source.definition(node), (ast.FunctionDef, ast.ClassDef)
         )
 
-    def _topic_and_type(self, node, what):
+    def _topic_and_type(self, node: ast.Call, what: str) -> Iterator[Finding]:
         topic, class_ = argument(node, 0, "name"), argument(node, 1, "data_class")
         value = self.source.value(class_)
         is_text = isinstance(value, str)
@@ -88,10 +91,10 @@ class Calls(PythonRule):
                 fix="Compare the call with the one on the page.",
             )
 
-    def _publisher(self, node):
+    def _publisher(self, node: ast.Call) -> Iterator[Finding]:
         yield from self._topic_and_type(node, "Publisher")
 
-    def _subscriber(self, node):
+    def _subscriber(self, node: ast.Call) -> Iterator[Finding]:
         yield from self._topic_and_type(node, "Subscriber")
         class_ = self.message_class(argument(node, 1, "data_class"))
         extra = argument(node, 3, "callback_args")
@@ -112,20 +115,18 @@ class Calls(PythonRule):
                     fix="Hand the callback over, without calling it.",
                 )
 
-    def _callback_added(self, parent):
+    def _callback_added(self, parent: ast.AST | None) -> bool:
         names = {n.attr for n in ast.walk(self.source.tree) if isinstance(n, ast.Attribute)}
         return bool(names & {"add_callback", "registerCallback"}) or not isinstance(
             parent, (ast.Assign, ast.Expr)
         )
 
-    def _timer(self, node):
+    def _timer(self, node: ast.Call) -> Iterator[Finding]:
         period, callback = argument(node, 0, "period"), argument(node, 1, "callback")
         is_number = isinstance(period, ast.Constant) and isinstance(period.value, (int, float))
-        if (
-            is_number
-            or isinstance(self.source.value(period), (int, float))
-            and isinstance(period, (ast.BinOp, ast.UnaryOp))
-        ):
+        is_computed = isinstance(period, (ast.BinOp, ast.UnaryOp))
+        plain = isinstance(self.source.value(period), (int, float))
+        if period is not None and (is_number or is_computed and plain):
             yield self.finding(
                 "callbacks",
                 "rospy.Timer() takes a rospy.Duration, not a number: the timer's thread ends with"
@@ -135,25 +136,19 @@ class Calls(PythonRule):
                 fix="Write rospy.Duration(...) around the number.",
                 change=(self.written(period) + ",", f"rospy.Duration({self.written(period)}),"),
             )
-        yield from self._callback(callback, 1, "rospy.Timer", "a TimerEvent")
+        if callback is not None:
+            yield from self._callback(callback, 1, "rospy.Timer", "a TimerEvent")
 
-    def _callback(self, callback, count, taker, given):
+    def _callback(
+        self, callback: ast.expr, count: int, taker: str, given: str
+    ) -> Iterator[Finding]:
         """Yield a finding if what is handed over as a callback cannot be called with `count`."""
         if isinstance(callback, ast.Call):
             called = self.source.definition(callback.func)
             if isinstance(called, ast.FunctionDef) and not _returns(called):
-                yield self.finding(
-                    "callbacks",
-                    f"{called.name}() is called here, once, and what it returns, nothing, is handed"
-                    f" over to {taker}(): it is never called again.",
-                    callback,
-                    expected=f"{ast_text(callback.func)}, without brackets",
-                    fix=f"Write {ast_text(callback.func)} for {ast_text(callback.func)}(...).",
-                    change=(self.written(callback), self.written(callback.func)),
-                )
+                yield self._called_at_once(callback, called, taker)
             return
-        value = self.source.value(callback)
-        if isinstance(value, (str, int, float)):
+        if isinstance(self.source.value(callback), (str, int, float)):
             yield self.finding(
                 "callbacks",
                 f"{taker}() takes a function to call, and is given a plain value.",
@@ -163,41 +158,49 @@ class Calls(PythonRule):
             )
             return
         function = self.source.definition(callback)
-        if not isinstance(function, (ast.FunctionDef, ast.Lambda)):
-            return
-        if getattr(function, "decorator_list", None):
-            decorators = {getattr(d, "id", "") for d in function.decorator_list}
-            if decorators - {"staticmethod"}:
-                return
-            bound = 0 if "staticmethod" in decorators else 1
-        else:
-            bound = 1
-        is_method = isinstance(callback, ast.Attribute)
-        gets = count + (
-            bound
-            if is_method
-            and isinstance(function, ast.FunctionDef)
-            and isinstance(self.source.parents.get(function), ast.ClassDef)
-            else 0
+        if isinstance(function, (ast.FunctionDef, ast.Lambda)):
+            bound = self._bound(function, isinstance(callback, ast.Attribute))
+            if bound is not None:
+                yield from self._parameters(function, count, bound, taker, given)
+
+    def _called_at_once(self, callback: ast.Call, called: ast.FunctionDef, taker: str) -> Finding:
+        name = ast_text(callback.func)
+        return self.finding(
+            "callbacks",
+            f"{called.name}() is called here, once, and what it returns, nothing, is handed"
+            f" over to {taker}(): it is never called again.",
+            callback,
+            expected=f"{name}, without brackets",
+            fix=f"Write {name} for {name}(...).",
+            change=(self.written(callback), self.written(callback.func)),
         )
-        takes = function.args
-        most = len(getattr(takes, "posonlyargs", [])) + len(takes.args)
+
+    def _bound(self, function: Function, is_attribute: bool) -> int | None:
+        """Return how many arguments a method is called with by itself; None if nobody knows."""
+        decorators = {getattr(one, "id", "") for one in getattr(function, "decorator_list", ())}
+        if decorators:
+            return 0 if decorators == {"staticmethod"} else None
+        in_class = isinstance(self.source.parents.get(function), ast.ClassDef)
+        return int(is_attribute and in_class and isinstance(function, ast.FunctionDef))
+
+    def _parameters(
+        self, function: Function, count: int, bound: int, taker: str, given: str
+    ) -> Iterator[Finding]:
+        """Yield a finding if a function cannot be called with so many arguments."""
+        gets, takes = count + bound, function.args
+        most = len(takes.posonlyargs) + len(takes.args)
         least = most - len(takes.defaults)
-        if (
-            (gets > most and not takes.vararg)
-            or gets < least
-            or any(default is None for default in takes.kw_defaults)
-        ):
-            name = getattr(function, "name", "the lambda")
+        is_too_many = gets > most and not takes.vararg
+        if is_too_many or gets < least or None in takes.kw_defaults:
+            name, s = getattr(function, "name", "the lambda"), "s" if count > 1 else ""
             yield self.finding(
                 "callbacks",
                 f"{taker}() calls {name}() with {given}; {name}() takes"
-                f" {_count(max(0, least - (gets - count)))}. Python ends the call with a TypeError,"
+                f" {_count(max(0, least - bound))}. Python ends the call with a TypeError,"
                 " each time.",
                 function,
-                expected=f"{count} parameter{'s' if count > 1 else ''}"
-                + (" besides self" if gets > count else ""),
-                fix=f"Give {name} the parameter{'s' if count > 1 else ''} that it is called with.",
+                expected=f"{count} parameter{s}" + (" besides self" if bound else ""),
+                fix=f"Give {name} the parameter{s} that it is called with.",
             )
 
 
@@ -209,11 +212,11 @@ _CHECKED = {
 }
 
 
-def _count(number):
+def _count(number: int) -> str:
     return {0: "no argument", 1: "one argument"}.get(number, f"{number} arguments")
 
 
-def _returns(function):
+def _returns(function: ast.FunctionDef) -> bool:
     """Return whether a function returns or yields anything."""
     return any(
         isinstance(n, ast.Return)

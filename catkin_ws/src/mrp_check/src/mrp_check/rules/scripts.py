@@ -9,19 +9,23 @@ import functools
 import os
 import shutil
 import subprocess
+from typing import Iterator, Mapping
 
+from mrp_check import evidence
 from mrp_check.building.catkin import search_path
+from mrp_check.confined.launch_dump import Started
 from mrp_check.contract.finding import ERROR, NOTE, Finding
 from mrp_check.contract.requirements import Requirement, Rule
 from mrp_check.contract.words import nearest, perhaps
-from mrp_check.running import evidence
 from mrp_check.sources.uses import is_test
+from mrp_check.student.cmake import Model
+from mrp_check.student.package import Package
 
 _MARKS = (codecs.BOM_UTF8, codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)
 PYTHON = "python"  # what catkin_install_python replaces in the first line
 
 
-def names_no_program(shebang):
+def names_no_program(shebang: str) -> str | None:
     """Return the program that a first line names and this machine has not, or None."""
     words = shebang[2:].strip().split()
     if not words:
@@ -33,7 +37,7 @@ def names_no_program(shebang):
     return None if os.access(words[0], os.X_OK) and os.path.isfile(words[0]) else words[0]
 
 
-def findings(package, model, started):
+def findings(package: Package, model: Model, started: Mapping[str, Started]) -> Iterator[Finding]:
     """Yield findings about the scripts.
 
     started: file -> the launch.Started node that it is, for the scripts that the launch file starts
@@ -51,14 +55,14 @@ def findings(package, model, started):
 
 
 @functools.lru_cache(maxsize=None)
-def _modules_of_rospy():
+def _modules_of_rospy() -> set[str]:
     """Return the names of the modules that Python loads when a node imports rospy."""
     code = "import sys, rospy, std_msgs.msg; print(*(n for n in sys.modules if '.' not in n))"
     done = subprocess.run(["/usr/bin/python3", "-c", code], stdout=subprocess.PIPE, text=True)
     return set(done.stdout.split()) - {"__main__"}
 
 
-def _shadowing(path):
+def _shadowing(path: str) -> Iterator[Finding]:
     """Yield a finding if a script is found where a module that rospy imports is looked for."""
     folder, name = os.path.split(path)
     stem, ending = os.path.splitext(name)
@@ -75,7 +79,7 @@ def _shadowing(path):
         )
 
 
-def _is_node(package, path):
+def _is_node(package: Package, path: str) -> bool:
     """Return whether a script calls rospy.init_node: others may be anything."""
     try:
         tree = ast.parse(package.text(path))
@@ -89,7 +93,7 @@ def _is_node(package, path):
     return "init_node" in names
 
 
-def _listed(package, model):
+def _listed(package: Package, model: Model) -> Iterator[Finding]:
     """Yield a finding for each script that CMakeLists.txt names and that is not there."""
     for script in model.scripts:
         if script.path in package.files or "$" in script.path or script.path.startswith("/"):
@@ -113,7 +117,9 @@ _MODE = (
 )
 
 
-def _of(package, model, path, shebang, relayed):
+def _of(
+    package: Package, model: Model, path: str, shebang: str, relayed: bool
+) -> Iterator[Finding]:
     plain = shebang.rstrip("\r")
     absent = names_no_program(plain) if plain else None
     if absent == PYTHON and not relayed:
@@ -137,7 +143,7 @@ def _of(package, model, path, shebang, relayed):
         )
 
 
-def _no_first_line(package, path):
+def _no_first_line(package: Package, path: str) -> Finding:
     lines = package.lines(path)[:20]
     hidden = next((n for n, text in enumerate(lines, 1) if text.startswith("#!")), None)
     return Finding(
@@ -152,7 +158,7 @@ def _no_first_line(package, path):
     )
 
 
-def _not_relayed(model, path, plain):
+def _not_relayed(model: Model, path: str, plain: str) -> Finding:
     """Debian has no `python`: it takes catkin_install_python to put the right one there."""
     calls = [s for s in model.scripts if s.by == "catkin_install_python"]
     add = (
@@ -173,7 +179,7 @@ def _not_relayed(model, path, plain):
     )
 
 
-def _other_program(path, plain, relayed, absent):
+def _other_program(path: str, plain: str, relayed: bool, absent: str | None) -> Iterator[Finding]:
     """Yield the finding about a first line that asks for the wrong program."""
     if absent and absent != PYTHON:
         what = f"names {absent}, a program that is not there"

@@ -4,50 +4,55 @@
 from __future__ import annotations
 
 import re
+from typing import Iterator, Sequence
 
+from mrp_check import evidence
+from mrp_check.confined.places import Kind, Place
+from mrp_check.contract.finding import Finding
 from mrp_check.contract.requirements import Requirement, Rule
-from mrp_check.running import evidence
-from mrp_check.sources.node import each_node
+from mrp_check.sources.node import Node, each_node
 
 
-def _of(node):
-    waits = node.places("loop", "sleep")
-    spins = node.places("spin")
+def _of(node: Node) -> Iterator[Finding]:
+    waits, spins = node.places(Kind.LOOP, Kind.SLEEP), node.places(Kind.SPIN)
     if spins and {place.text for place in spins} == {"spinOnce"}:
         if not waits:
-            yield node.finding(
-                "spin",
-                "ros::spinOnce() calls the callbacks of what has arrived, and returns at once:"
-                " the program then comes to its end.",
-                spins[0],
-                expected="ros::spin() at the end of main",
-                fix="Write ros::spin() for ros::spinOnce().",
-                change=("spinOnce", "spin"),
-            )
+            yield _only_once(node, spins[0])
         return
     if spins:
         yield from _made_too_late(node, spins)
         return
-    called_back = node.places("subscriber") + (
-        []
-        if node.is_python
-        else [
-            p
-            for p in node.places("timer")
-            if p.values.get("oneshot") is not True and not _is_rate(node, p)
-        ]
+    called_back = node.places(Kind.SUBSCRIBER)
+    if not node.is_python:
+        timers = [place for place in node.places(Kind.TIMER) if place.oneshot is not True]
+        called_back += [place for place in timers if not _is_rate(node, place)]
+    # rospy calls back in threads of its own: there a loop is enough.
+    if waits and (node.is_python or not called_back):
+        return
+    if called_back or node.places(Kind.TIMER, Kind.PUBLISHER):
+        yield _never(node, bool(waits))
+
+
+def _only_once(node: Node, spin: Place) -> Finding:
+    return node.finding(
+        "spin",
+        "ros::spinOnce() calls the callbacks of what has arrived, and returns at once:"
+        " the program then comes to its end.",
+        spin,
+        expected="ros::spin() at the end of main",
+        fix="Write ros::spin() for ros::spinOnce().",
+        change=("spinOnce", "spin"),
     )
-    if node.is_python and waits or not node.is_python and waits and not called_back:
-        return
-    if not called_back and not node.places("timer", "publisher"):
-        return
+
+
+def _never(node: Node, loops: bool) -> Finding:
     call = "rospy.spin()" if node.is_python else "ros::spin()"
-    yield node.finding(
+    return node.finding(
         "spin",
         f"{node.main} never calls {call}: "
         + (
             "the program loops, and no callback is ever called."
-            if waits
+            if loops
             else "the program comes to its end at once."
         ),
         node.facts.end_of_main(node.name) or (node.main, _last_line(node)),
@@ -57,13 +62,13 @@ def _of(node):
     )
 
 
-def _last_line(node):
+def _last_line(node: Node) -> int:
     """Return the last line of the main source in which something stands."""
     lines = node.package.lines(node.main)
     return max((n for n, text in enumerate(lines, 1) if text.strip()), default=1)
 
 
-def _made_too_late(node, spins):
+def _made_too_late(node: Node, spins: Sequence[Place]) -> Iterator[Finding]:
     """Yield a finding if the node's parts are made below a spin() of the same function."""
     classes = {
         name
@@ -72,10 +77,10 @@ def _made_too_late(node, spins):
         for name in re.findall(r"^\s*(?:class|struct) (\w+)", line)
     }
     for spin in spins:
-        ends = [f.values["end"] for f in node.places("function") if f.is_around(spin)]
+        ends = [f.end for f in node.places(Kind.FUNCTION) if f.is_around(spin)]
         if spin.text not in (None, "spin", "waitForShutdown") or not ends:
             continue
-        made = {p.line for p in node.places("publisher", "subscriber") if p.file == spin.file}
+        made = {p.line for p in node.places(Kind.PUBLISHER, Kind.SUBSCRIBER) if p.file == spin.file}
         for number in range(spin.line + 1, min(ends) + 1):
             line = node.package.lines(spin.file)[number - 1]
             if number in made or classes & set(re.findall(r"\w+", line)):
@@ -91,7 +96,7 @@ def _made_too_late(node, spins):
                 return
 
 
-def _is_rate(node, place):
+def _is_rate(node: Node, place: Place) -> bool:
     return "Rate" in node.package.lines(place.file)[place.line - 1]
 
 

@@ -4,13 +4,19 @@
 from __future__ import annotations
 
 import re
+from typing import Iterator
 
-from mrp_check.contract.finding import Finding
+from mrp_check import evidence
+from mrp_check.case import Case
+from mrp_check.contract.finding import Finding, Where
 from mrp_check.contract.requirements import Requirement, Rule
-from mrp_check.running import evidence
+from mrp_check.contract.spec import Spec
+from mrp_check.running.node import Node
+from mrp_check.running.observing import Observed
+from mrp_check.student.package import Package
 
 
-def findings(case):
+def findings(case: Case) -> Iterator[Finding]:
     yield from _problems(case)
     yield from _launch_findings(case.package, case.spec, case.observed)
     for node in case.nodes.values():
@@ -20,7 +26,7 @@ def findings(case):
         yield from node.not_up
 
 
-def _problems(case):
+def _problems(case: Case) -> Iterator[Finding]:
     for problem in case.observed.problems:
         yield Finding(
             "starts",
@@ -30,11 +36,11 @@ def _problems(case):
         )
 
 
-def _launch_findings(package, spec, seen):
+def _launch_findings(package: Package, spec: Spec, seen: Observed) -> Iterator[Finding]:
     """Yield a Finding if roslaunch gives up, and ends what it has started."""
-    if not seen.own_launch or not seen.launch or seen.launch["ending"] != "itself":
+    if not seen.own_launch or not seen.launch or seen.launch.ending != "itself":
         return
-    texts = [text for _, _, text in seen.launch["lines"] if text.strip()]
+    texts = [text for _, _, text in seen.launch.lines if text.strip()]
     for index, text in enumerate(texts):
         if not text.startswith("RLException: "):
             continue
@@ -58,14 +64,14 @@ def _launch_findings(package, spec, seen):
         return
 
 
-def _launch_place(package, spec, seen):
+def _launch_place(package: Package, spec: Spec, seen: Observed) -> Where:
     for started in seen.started.values():
         if started.file:
             return started.file, started.line
     return ("CMakeLists.txt" if "CMakeLists.txt" in package.files else "package.xml"), 1
 
 
-def _no_executable(node):
+def _no_executable(node: Node) -> Finding:
     return node.finding(
         "starts",
         f"{node.name} could not be run: it has no executable.",

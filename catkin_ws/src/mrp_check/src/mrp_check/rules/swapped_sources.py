@@ -3,19 +3,25 @@
 
 from __future__ import annotations
 
+from typing import Iterator
+
+from mrp_check.case import Case
+from mrp_check.contract import spec as specs
+from mrp_check.contract.finding import Finding, Line
 from mrp_check.contract.requirements import Rule
+from mrp_check.sources.node import Node
 
 
-def findings(case):
+def findings(case: Case) -> Iterator[Finding]:
     for node in case.coded:
         other = node.mistaken_for
         if other and node.mistaken_in(other) == "targets":
             yield _target(node, other)
-        elif other:
-            yield _launch(node, other)
+        elif other and node.started and node.started.file:
+            yield _launch(node, other, (node.started.file, node.started.line or 1))
 
 
-def _target(node, other):
+def _target(node: Node, other: specs.Node) -> Finding:
     target, own = node.model.executables()[node.executable], node.own_source()
     return node.finding(
         "targets",
@@ -27,12 +33,12 @@ def _target(node, other):
     )
 
 
-def _launch(node, other):
+def _launch(node: Node, other: specs.Node, place: Line) -> Finding:
     return node.finding(
         "launch-nodes",
         f"The launch file starts {node.executable} under the name {node.name}; it is the"
         f" executable of {other.name}.",
-        (node.started.file, node.started.line or 1),
+        place,
         expected=f"the executable of {node.name}",
         seen=f'type="{node.executable}"',
         fix="Name the node's own executable as its type.",

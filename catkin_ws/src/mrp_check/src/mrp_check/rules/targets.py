@@ -3,13 +3,17 @@
 
 from __future__ import annotations
 
+from typing import Iterator
+
+from mrp_check import evidence
 from mrp_check.contract.finding import Finding
 from mrp_check.contract.requirements import Requirement, Rule
 from mrp_check.contract.words import nearest, perhaps
-from mrp_check.running import evidence
+from mrp_check.student.cmake import Model
+from mrp_check.student.package import Package
 
 
-def findings(package, model):
+def findings(package: Package, model: Model) -> Iterator[Finding]:
     """Yield a finding for each source that CMakeLists.txt names and that is not there."""
     for target in model.targets.values():
         for source, file, line in target.missing:
@@ -34,7 +38,7 @@ RULE = Rule(
     requirements={
         "targets": Requirement(
             "Each executable is built of its own sources",
-            "wrong#a-target-is-made-of-another-node-s-source",
+            "wrong#a-target-is-built-from-another-node-s-source",
             evidence.cpp,
         )
     },

@@ -5,16 +5,19 @@ from __future__ import annotations
 
 import codecs
 import re
+from typing import Collection, Iterator
 
+from mrp_check import evidence
+from mrp_check.case import Case
 from mrp_check.contract.finding import NOTE, Finding
 from mrp_check.contract.requirements import Requirement, Rule
-from mrp_check.running import evidence
+from mrp_check.student.package import Package
 
 _TEXT = ("python", "cpp", "header", "launch", "message", "cmake")
 _CODING = re.compile(rb"^[ \t\f]*#.*?coding[:=][ \t]*([-\w.]+)")
 
 
-def findings(package, relayed):
+def findings(package: Package, relayed: Collection[str]) -> Iterator[Finding]:
     """Yield findings about bytes; relayed: the scripts that catkin_install_python starts."""
     for path in package.files:
         kind = package.kind(path)
@@ -22,7 +25,7 @@ def findings(package, relayed):
             yield from _of(package, path, kind, path in relayed)
 
 
-def _of(package, path, kind, relayed):
+def _of(package: Package, path: str, kind: str, relayed: bool) -> Iterator[Finding]:
     data = package.bytes(path)
     is_script = kind == "python" and data.lstrip(codecs.BOM_UTF8).startswith(b"#!")
     if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)) or b"\0" in data:
@@ -52,7 +55,7 @@ def _of(package, path, kind, relayed):
     yield from _encoding(data, path, kind, relayed)
 
 
-def _windows_ends(data, path, kind, is_script):
+def _windows_ends(data: bytes, path: str, kind: str, is_script: bool) -> Iterator[Finding]:
     fix = f"Convert the file: sed -i 's/\\r$//' {path}"
     if kind not in ("python", "message"):
         works = f"{path} has Windows line ends. It works all the same; scripts with them do not."
@@ -70,7 +73,7 @@ def _windows_ends(data, path, kind, is_script):
         )
 
 
-def _encoding(data, path, kind, relayed):
+def _encoding(data: bytes, path: str, kind: str, relayed: bool) -> Iterator[Finding]:
     try:
         data.decode("utf-8")
         return
@@ -104,7 +107,7 @@ def _encoding(data, path, kind, relayed):
     )
 
 
-def _findings(case):
+def _findings(case: Case) -> Iterator[Finding]:
     relayed = {s.path for s in case.model.scripts if s.by == "catkin_install_python"}
     return findings(case.package, relayed)
 

@@ -4,47 +4,55 @@
 from __future__ import annotations
 
 import difflib
+from typing import Iterator, Mapping
 
+from mrp_check import evidence
+from mrp_check.confined.places import Kind
+from mrp_check.contract.finding import Finding, Where
 from mrp_check.contract.requirements import Requirement, Rule
-from mrp_check.running import evidence
-from mrp_check.running.node import each_node
-from mrp_check.running.observing import resolved
+from mrp_check.contract.spec import Topic
+from mrp_check.running.node import Node, each_node
+from mrp_check.running.planning import resolved
 
 
-def _of(node):
+def _of(node: Node) -> Iterator[Finding]:
     """Yield a Finding for each topic of the node with another name, type or namespace."""
     roles = (
-        ("publishes on", "publications", "publisher", node.wanted.publishing),
-        ("subscribes to", "subscriptions", "subscriber", node.wanted.subscribing),
+        ("publishes on", Kind.PUBLISHER, node.wanted.publishing),
+        ("subscribes to", Kind.SUBSCRIBER, node.wanted.subscribing),
     )
-    for verb, kind, place_kind, topic in roles:
+    for verb, kind, topic in roles:
         seen = node.topics(kind)
         if topic is None:
-            yield from _unexpected_topic(node, seen, kind, verb, place_kind)
+            yield from _unexpected_topic(node, seen, verb, kind)
         elif node.in_launch:
-            yield from _topic_finding(node, seen, topic, kind, verb, place_kind)
+            yield from _topic_finding(node, seen, topic, verb, kind)
         else:
-            yield from _direct_topic_finding(node, topic, kind, verb, place_kind)
+            yield from _direct_topic_finding(node, topic, verb, kind)
 
 
-def _unexpected_topic(node, seen, kind, verb, place_kind):
+def _unexpected_topic(
+    node: Node, seen: Mapping[str, str], verb: str, kind: Kind
+) -> Iterator[Finding]:
     for topic in node.spec.topics.values():
         name = resolved(topic, node.path)
         if name in seen:
             yield node.finding(
                 "topic",
                 f"{node.name} {verb} {name}, which is not what it is for.",
-                node.places.of_topic(node.name, place_kind, name),
-                expected=f"no {place_kind} in this node",
+                node.places.of_topic(node.name, kind, name),
+                expected=f"no {kind.value} in this node",
                 seen=name,
             )
 
 
-def _topic_finding(node, seen, topic, kind, verb, place_kind):
+def _topic_finding(
+    node: Node, seen: Mapping[str, str], topic: Topic, verb: str, kind: Kind
+) -> Iterator[Finding]:
     expected = resolved(topic, node.path)
     if expected in seen:
-        yield from _type_finding(node, seen[expected], topic, kind, verb, place_kind)
-        yield from _namespace_finding(node, topic, kind, verb, place_kind)
+        yield from _type_finding(node, seen[expected], topic, verb, kind)
+        yield from _namespace_finding(node, topic, verb, kind)
         return
     others = sorted(seen)
     if others:
@@ -52,37 +60,36 @@ def _topic_finding(node, seen, topic, kind, verb, place_kind):
         yield node.finding(
             "topic",
             f"{node.name} {verb} {nearest}, not {expected}." + _topic_hint(node, nearest, topic),
-            _topic_place(node, place_kind, nearest, topic),
+            _topic_place(node, kind, nearest, topic),
             expected=expected,
             seen=", ".join(others),
         )
-    elif node.topics(kind, direct=True):  # it was late under the launch file: a busy machine
-        yield from _direct_topic_finding(node, topic, kind, verb, place_kind)
+    elif node.topics(kind, alone=True):  # it was late under the launch file: a busy machine
+        yield from _direct_topic_finding(node, topic, verb, kind)
     else:
         yield node.finding(
             "topic",
             f"{node.name} {verb} no topic.",
-            node.places.of(node.name, place_kind, "init"),
+            node.places.of(node.name, kind, Kind.INIT),
             expected=expected,
             seen="no topic",
         )
 
 
-def _topic_place(node, place_kind, seen, topic):
+def _topic_place(node: Node, kind: Kind, seen: str, topic: Topic) -> Where:
     """Return the place that names a wrong topic: a remap in the launch file, or the source."""
-    for old, new in node.started.remaps if node.started else ():
+    started = node.started
+    for old, new in started.remaps if started else ():
         renamed = new.rsplit("/", 1)[-1] == seen.rsplit("/", 1)[-1]
-        if renamed and old.rsplit("/", 1)[-1] == topic.name and old != new:
-            file = node.started.file
-            line = node.package.find_line(file, f'"{new}"', node.started.line)
-            for number, text in enumerate(node.package.lines(file), 1):
-                if "remap" in text and new in text:
-                    line = number
-            return file, line
-    return node.places.of_topic(node.name, place_kind, seen)
+        if started and renamed and old.rsplit("/", 1)[-1] == topic.name and old != new:
+            lines = node.package.lines(started.file) if started.file else []
+            named = [n for n, text in enumerate(lines, 1) if "remap" in text and new in text]
+            line = next((n for n, text in enumerate(lines, 1) if f'"{new}"' in text), started.line)
+            return started.file, [line, *named][-1]
+    return node.places.of_topic(node.name, kind, seen)
 
 
-def _topic_hint(node, seen, topic):
+def _topic_hint(node: Node, seen: str, topic: Topic) -> str:
     if topic.namespace != "group" or seen.rsplit("/", 1)[-1] != topic.name:
         return ""
     if seen == node.path + "/" + topic.name:
@@ -90,29 +97,29 @@ def _topic_hint(node, seen, topic):
     return " A name that begins with / does not follow the group."
 
 
-def _direct_topic_finding(node, topic, kind, verb, place_kind):
-    name = node.direct and node.direct.get("name")
+def _direct_topic_finding(node: Node, topic: Topic, verb: str, kind: Kind) -> Iterator[Finding]:
+    name = node.own_name
     if not name:
         return
-    seen, expected = node.topics(kind, direct=True), resolved(topic, name)
+    seen, expected = node.topics(kind, alone=True), resolved(topic, name)
     if expected in seen:
-        yield from _type_finding(node, seen[expected], topic, kind, verb, place_kind)
+        yield from _type_finding(node, seen[expected], topic, verb, kind)
         return
     others = ", ".join(sorted(seen)) or "no topic"
     yield node.finding(
         "topic",
         f"{node.name} {verb} {others}, not {topic.name}.",
-        node.places.of_topic(node.name, place_kind, others),
+        node.places.of_topic(node.name, kind, others),
         expected=topic.name,
         seen=others,
     )
 
 
-def _type_finding(node, seen, topic, kind, verb, place_kind):
+def _type_finding(node: Node, seen: str, topic: Topic, verb: str, kind: Kind) -> Iterator[Finding]:
     expected = topic.type_in(node.package.name)
     if seen in (expected, "*"):
         return
-    place = node.places.of_topic(node.name, place_kind, topic.name)
+    place = node.places.of_topic(node.name, kind, topic.name)
     yield node.finding(
         "type",
         f"{node.name} {verb} {topic.name} with messages of type {seen}: nothing arrives where"
@@ -123,19 +130,19 @@ def _type_finding(node, seen, topic, kind, verb, place_kind):
     )
 
 
-def _namespace_finding(node, topic, kind, verb, place_kind):
+def _namespace_finding(node: Node, topic: Topic, verb: str, kind: Kind) -> Iterator[Finding]:
     """In a namespace of its own, the node must take its relative topic with it."""
-    name = node.direct and node.direct.get("name")
+    name = node.own_name
     if not name or topic.namespace != "group":
         return
-    seen, expected = node.topics(kind, direct=True), resolved(topic, name)
+    seen, expected = node.topics(kind, alone=True), resolved(topic, name)
     if seen and expected not in seen:
         nearest = next((t for t in seen if t.endswith("/" + topic.name)), sorted(seen)[0])
         yield node.finding(
             "namespace",
             f"{node.name} {verb} {nearest} in whatever group it runs: the name is written down"
             " with its group, and so two robots would share it.",
-            node.places.of_topic(node.name, place_kind, nearest),
+            node.places.of_topic(node.name, kind, nearest),
             expected=f"the relative name {topic.name}",
             seen=nearest,
         )

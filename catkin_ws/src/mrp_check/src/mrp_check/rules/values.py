@@ -3,20 +3,26 @@
 
 from __future__ import annotations
 
+from typing import Iterator, Sequence
+
+from mrp_check import evidence
+from mrp_check.confined.places import Kind
+from mrp_check.confined.seen import Number
+from mrp_check.contract.finding import Finding, Where
 from mrp_check.contract.requirements import Requirement, Rule
-from mrp_check.running import evidence
+from mrp_check.contract.spec import Publishes, Values
 from mrp_check.running.node import Node, each_node
-from mrp_check.running.observing import resolved
+from mrp_check.running.planning import resolved
 from mrp_check.running.words import few
 
 
-def _of(node):
+def _of(node: Node) -> Iterator[Finding]:
     yield from _relayed(node)
     role = node.wanted.publishes
     if role is None:
         return
     messages = node.published()
-    announced = resolved(role.topic, node.path) in node.topics("publications")
+    announced = resolved(role.topic, node.path) in node.topics(Kind.PUBLISHER)
     if announced and not messages:
         silent = _silent_seconds(node)
         waits = _long_period(node, role)
@@ -26,33 +32,34 @@ def _of(node):
             "values",
             f"{node.name} announces {role.topic.name}, but published nothing in {silent:.0f} s"
             + (f": a timer of it waits {waits:g} s." if waits else "."),
-            node.places.of(node.name, "timer", "rate", "publish", "publisher"),
+            node.places.of(node.name, Kind.TIMER, Kind.PUBLISH, Kind.PUBLISHER),
             expected=_rule_text(role) + (f", every {role.period:g} s" if role.period else ""),
             seen="no message",
         )
     values = [node.value(m, role.topic) for m in messages]
-    if role.values and values and None not in values:
-        yield from _value_findings(node, values, role)
+    numbers = [value for value in values if value is not None]
+    if role.values and numbers and len(numbers) == len(values):
+        yield from _value_findings(node, numbers, role.values, _rule_text(role))
 
 
-def _silent_seconds(node):
-    last = max([p["time"] for p in node.of("publications")] or [0])
+def _silent_seconds(node: Node) -> float:
+    last = max([p.time for p in node.seen.publications] or [0])
     return max(node.asked - last, 0)
 
 
-def _long_period(node, role):
+def _long_period(node: Node, role: Publishes) -> float | None:
     """Return the period of a timer of the node that is far too long, or None."""
-    periods = [p.values.get("period") for p in node.places.facts_of(node.name, "timer", "rate")]
+    periods = [p.period for p in node.places.facts_of(node.name, Kind.TIMER)]
     numbers = [p for p in periods if isinstance(p, (int, float))]
     return next((p for p in numbers if p > 3 * (role.period or p)), None)
 
 
-def _value_findings(node, values, role):
-    rule = role.values
+def _value_findings(
+    node: Node, values: Sequence[Number], rule: Values, expected: str
+) -> Iterator[Finding]:
     shown = ", ".join(map(str, values[:5]))
-    expected = _rule_text(role)
     file_line = node.places.of_counter(node.name, node.counter_names())
-    publish = node.places.of(node.name, "publish")
+    publish = node.places.of(node.name, Kind.PUBLISH)
     wrong = [(a, b) for a, b in zip(values, values[1:]) if b != rule.after(a)]
     if wrong:
         before, after = wrong[0]
@@ -71,24 +78,21 @@ def _value_findings(node, values, role):
         yield node.finding(
             "values",
             f"{node.name} begins with {values[0]}, not with {rule.start}: it publishes {shown}.",
-            _start_place(node, values[0], publish),
+            _start_place(node, publish),
             expected=expected,
             seen=shown,
         )
 
 
-def _start_place(node, first, publish):
+def _start_place(node: Node, publish: Where) -> Where:
     """Return the place at which the counter gets its first value."""
-    for kind in ("counter", "start"):
-        for place in node.places.facts_of(node.name, kind):
-            return place.file, place.line
-    if node.places.facts_of(node.name, "step"):
-        place = node.places.facts_of(node.name, "step")[0]
-        return place.file, place.line
-    return publish
+    places = node.places.facts_of(node.name, Kind.COUNTER) or node.places.facts_of(
+        node.name, Kind.STEP
+    )
+    return (places[0].file, places[0].line) if places else publish
 
 
-def _relayed(node):
+def _relayed(node: Node) -> Iterator[Finding]:
     """Yield a Finding if a node that relays publishes something else for what it is sent."""
     relay = node.wanted.relays
     if relay is None:
@@ -98,14 +102,14 @@ def _relayed(node):
     if not sent or not name:
         return
     target = resolved(relay.target, name)
-    published = [m for m in node.direct_of("messages") if m["topic"] == target]
-    values = [node.value(m, relay.target) for m in published]
+    published = [one for one in node.seen_alone.messages if one.topic == target]
+    values = [node.value(one, relay.target) for one in published]
     expected = [relay.of(value) for value in sent]
     if values == expected or None in values:
         return
-    place = node.places.of(node.name, "publish", "publisher")
+    place = node.places.of(node.name, Kind.PUBLISH, Kind.PUBLISHER)
     if not values:
-        if target not in node.topics("publications", direct=True):
+        if target not in node.topics(Kind.PUBLISHER, alone=True):
             return  # another topic: said elsewhere
         said = f"{node.name} was sent {len(sent)} messages, and published none."
     else:
@@ -115,7 +119,7 @@ def _relayed(node):
     )
 
 
-def _rule_text(role):
+def _rule_text(role: Publishes) -> str:
     rule = role.values
     if not rule:
         return f"messages on {role.topic.name}"

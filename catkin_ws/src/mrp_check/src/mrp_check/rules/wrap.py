@@ -3,86 +3,96 @@
 
 from __future__ import annotations
 
-from mrp_check.contract.finding import NOTE
+from typing import Iterator, Sequence
+
+from mrp_check import evidence
+from mrp_check.confined.places import Kind
+from mrp_check.confined.seen import Number
+from mrp_check.contract.finding import NOTE, Finding
 from mrp_check.contract.requirements import Requirement, Rule
-from mrp_check.running import evidence
+from mrp_check.contract.spec import Values
 from mrp_check.running.node import Node, each_node
 
+_TOLD = 4  # messages that the hook tells of after it has set the counter
+_FEW_STEPS = 20  # near its first value, a counter has made no more
 
-def _of(node):
+
+def _of(node: Node) -> Iterator[Finding]:
     """Yield a Finding if a Python publisher goes wrong at the end of its numbers."""
-    role = node.wanted.publishes
-    if not (role and role.values and role.values.modulus and node.wrap):
+    rule = node.wanted.publishes.values if node.wanted.publishes else None
+    if not (rule and rule.modulus and node.wrap):
         return
-    rule, events = role.values, node.wrap.get("events", [])
-    by_kind = {event["event"]: event for event in events}
+    events = {event.event: event for event in node.wrap.events}
     last = rule.start + (rule.modulus - 1 - rule.start) // rule.step * rule.step
     expected = f"after {last} comes {rule.after(last)}, modulo {rule.modulus}"
     power = rule.modulus.bit_length() - 1
     if rule.modulus == 2**power:
         expected += f" (2^{power})"
-    place = node.places.of_counter(node.name, node.counter_names())
-    if "set" not in by_kind:
-        if "not_found" in by_kind:
-            yield _unchecked(node, last, expected, "was not found")
-        return
-    after = [e["value"] for e in events if e["event"] == "after"]
-    if "error" in by_kind:
-        error = by_kind["error"]
+    if "not_found" in events:
+        yield _unchecked(node, last, expected, "was not found")
+    elif "error" in events:
+        text = events["error"].text
         yield node.finding(
             "wrap",
             f"{node.name} stops publishing when its counter has gone past {rule.modulus - 1}:"
-            f" {error['text']}",
-            place,
+            f" {text}",
+            node.places.of_counter(node.name, node.counter_names()),
             expected=expected,
-            seen=error["text"],
+            seen=text,
         )
-    elif after and after[0] not in (last, rule.after(last)):
+    elif "set" in events:
+        told = [event for event in node.wrap.events if event.event == "after"]
+        after = [event.value for event in told if event.value is not None]
+        yield from _at_the_end(node, rule, last, after, expected)
+
+
+def _at_the_end(
+    node: Node, rule: Values, last: int, after: Sequence[Number], expected: str
+) -> Iterator[Finding]:
+    """Yield a Finding about the values that are published after the counter was set."""
+    if not after:
+        return
+    if after[0] not in (last, rule.after(last)):
         # What was set had no effect, or it wraps round before its end.
         if _continues(after, rule):
             yield _unchecked(node, last, expected, "could not be set")
         else:
-            yield _wrap_finding(node, after, place, expected)
-    elif after:
-        index = after.index(last) if last in after else -1
-        rest = after[index + 1 :]
-        good = (rule.after(last), rule.start)
-        if rest and rest[0] not in good or not rest and _stopped(events):
-            yield _wrap_finding(node, after, place, expected)
+            yield _wrap_finding(node, rule, after, expected)
+        return
+    rest = after[after.index(last) + 1 :] if last in after else after
+    good = (rule.after(last), rule.start)
+    if rest and rest[0] not in good or not rest and len(after) < _TOLD:
+        yield _wrap_finding(node, rule, after, expected)
 
 
-def _unchecked(node, last, expected, why):
+def _unchecked(node: Node, last: int, expected: str, why: str) -> Finding:
     return node.finding(
         "wrap",
         f"It could not be checked what {node.name} publishes after {last}: its counter {why}.",
-        node.places.of(node.name, "publish"),
+        node.places.of(node.name, Kind.PUBLISH),
         NOTE,
         expected=expected,
     )
 
 
-def _wrap_finding(node, after, place, expected):
-    rule = node.wanted.publishes.values
-    wrong = next((v for v in after if v % rule.modulus < rule.start + 20 * abs(rule.step)), None)
-    place = node.places.of_counter(node.name, node.counter_names(), wrong) or place
+def _wrap_finding(node: Node, rule: Values, after: Sequence[Number], expected: str) -> Finding:
+    largest, names = (rule.modulus or 1) - 1, node.counter_names()
+    near_start = rule.start + _FEW_STEPS * abs(rule.step)
+    wrong = next((value for value in after if value % (largest + 1) < near_start), None)
     shown = ", ".join(map(str, after))
     return node.finding(
         "wrap",
-        f"Near the end of its numbers, which is {rule.modulus - 1}, {node.name} publishes {shown}.",
-        place,
+        f"Near the end of its numbers, which is {largest}, {node.name} publishes {shown}.",
+        node.places.of_counter(node.name, names, wrong),
         expected=expected,
         seen=shown,
     )
 
 
-def _continues(after, rule):
+def _continues(after: Sequence[Number], rule: Values) -> bool:
     """Return whether the values simply go on from where they were before."""
-    near = after[0] < rule.start + 20 * abs(rule.step)
+    near = after[0] < rule.start + _FEW_STEPS * abs(rule.step)
     return near and (after[0] - rule.start) % rule.step == 0
-
-
-def _stopped(events):
-    return len([e for e in events if e["event"] == "after"]) < 4
 
 
 RULE = Rule(

@@ -5,8 +5,15 @@ from __future__ import annotations
 
 import ast
 import re
+from typing import Collection, Iterable, Tuple
 
-from mrp_check.running.observing import WRAP
+from mrp_check.confined.places import Kind, Place
+from mrp_check.confined.seen import Event, Log, Number
+from mrp_check.contract.finding import Line, Where
+from mrp_check.running.observing import Observed
+from mrp_check.running.planning import WRAP
+from mrp_check.sources.facts import Facts
+from mrp_check.student.workspace import Workspace
 
 # Of a traceback, and of what faulthandler prints.
 _FRAME = re.compile(r'^\s*File "(?P<path>[^"]+)", line (?P<line>\d+)')
@@ -16,6 +23,9 @@ _ARGUMENTS = re.compile(
 )
 
 
+Traceback = Tuple[Line, str, str]  # its last own line, the error's class, its text
+
+
 class Places:
     """Finds places: each is (file relative to the package, line), or (None, None).
 
@@ -23,12 +33,11 @@ class Places:
     of the sources.
     """
 
-    def __init__(self, case):
-        self.package, self.spec, self.observed = case.package, case.spec, case.observed
-        self.copy = str(case.package_folder.resolve()) + "/"
-        self.facts = case.facts
+    def __init__(self, workspace: Workspace, facts: Facts, observed: Observed) -> None:
+        self.package, self.facts, self.observed = workspace.package, facts, observed
+        self.copy = str(workspace.package_folder.resolve()) + "/"
 
-    def sources(self, node):
+    def sources(self, node: str) -> list[str]:
         """Return the source files of a node of the spec, the main one first."""
         found = list(self.facts.sources.get(node, []))
         executable = self.observed.executables.get(node)
@@ -39,57 +48,58 @@ class Places:
                 found.append(file)
         return found
 
-    def of(self, node, *kinds):
+    def of(self, node: str, *kinds: Kind) -> Where:
         """Return the place of the first kind that there is: of what the node did, or its sources
         say. In the end it is the line at which the node's main source begins to do something."""
         for kind in kinds:
             for event in self.events(node):
-                if event["event"] == kind and event.get("file"):
-                    return event["file"], event["line"]
+                if event.event == kind.value and event.file:
+                    return event.file, event.line
             for place in self.facts.of(node, kind):
                 return place.file, place.line
-        for kind in ("main", "init", "handle"):
+        for kind in (Kind.INIT, Kind.HANDLE):
             for place in self.facts.of(node, kind):
                 return place.file, place.line
         for file in self.sources(node):
             return file, self.first_statement(file)
         return self.in_launch_file(node)
 
-    def facts_of(self, node, *kinds):
+    def facts_of(self, node: str, *kinds: Kind) -> list[Place]:
         return self.facts.of(node, *kinds)
 
-    def sleep_beside(self, node, *kinds):
+    def sleep_beside(self, node: str, *kinds: Kind) -> Line | None:
         """Return the place of a sleep in the same function as a place of these kinds, or None."""
-        places, sleeps = self.facts_of(node, *kinds), self.facts_of(node, "sleep")
-        for function in self.facts_of(node, "function"):
+        places, sleeps = self.facts_of(node, *kinds), self.facts_of(node, Kind.SLEEP)
+        for function in self.facts_of(node, Kind.FUNCTION):
             beside = [sleep for sleep in sleeps if function.is_around(sleep)]
             if beside and any(function.is_around(place) for place in places):
                 return beside[0].file, beside[0].line
         return None
 
-    def of_topic(self, node, kind, topic):
+    def of_topic(self, node: str, kind: Kind, topic: str) -> Where:
         """Return the place at which a node names a topic: the kind is publisher or subscriber."""
         base = topic.rsplit("/", 1)[-1]
         for event in self.events(node):
-            if event["event"] == kind and event.get("topic", "").rsplit("/", 1)[-1] == base:
-                return event["file"], event["line"]
+            is_named = event.topic is not None and event.topic.rsplit("/", 1)[-1] == base
+            if event.event == kind.value and is_named:
+                return event.file, event.line
         for place in self.facts_of(node, kind):
             if place.text and place.text.rsplit("/", 1)[-1] == base:
                 return place.file, place.line
         return self.of(node, kind)
 
-    def in_launch_file(self, node):
+    def in_launch_file(self, node: str) -> Where:
         started = self.observed.started.get(node)
         if started and started.file:
             return started.file, started.line
         return self.facts.launch.get(node, (None, None))
 
-    def events(self, node):
+    def events(self, node: str) -> list[Event]:
         """Return what the node told while it ran by itself."""
         runs = (self.observed.alone(node), self.observed.alone(WRAP + node))
-        return [event for run in runs if run for event in run.get("events", [])]
+        return [event for run in runs if run for event in run.events]
 
-    def first_statement(self, file):
+    def first_statement(self, file: str) -> int:
         """Return the line of a source at which something is done: main(), or the first statement
         that is no import."""
         if self.package.kind(file) == "python":
@@ -101,11 +111,11 @@ class Places:
             return next((s.lineno for s in body if not isinstance(s, skip)), 1)
         return self.package.find_line(file, " main(", 1)
 
-    def condition_of_publish(self, node):
+    def condition_of_publish(self, node: str) -> Line | None:
         """Return the place of the condition before publish() in the same function, or None."""
-        publish = self.facts_of(node, "publish")[:1]
+        publish = self.facts_of(node, Kind.PUBLISH)[:1]
         functions = [
-            f for f in self.facts_of(node, "function") if publish and f.is_around(publish[0])
+            f for f in self.facts_of(node, Kind.FUNCTION) if publish and f.is_around(publish[0])
         ]
         for function in functions[-1:]:
             lines = self.package.lines(function.file)[function.line - 1 : publish[0].line]
@@ -114,17 +124,19 @@ class Places:
                     return function.file, number
         return None
 
-    def of_log(self, node, log):
+    def of_log(self, node: str, log: Log) -> Where:
         """Return the place of a line that a node has logged: /rosout says it."""
-        path = log["file"]
+        path = log.file
         if path.startswith(self.copy):
-            return path[len(self.copy) :], log["line"]
+            return path[len(self.copy) :], log.line
         files = [f for f in self.package.files if f.rsplit("/", 1)[-1] == path.rsplit("/", 1)[-1]]
         own = self.sources(node)
         files.sort(key=lambda file: (file not in own, file))
-        return (files[0], log["line"]) if files else self.of(node, "log")
+        return (files[0], log.line) if files else self.of(node, Kind.LOG)
 
-    def of_counter(self, node, names=(), reset=None):
+    def of_counter(
+        self, node: str, names: Collection[str] = (), reset: Number | None = None
+    ) -> Where:
         """Return the place at which the counter of a publisher is counted on; or is set back to
         `reset`, if there is such a place."""
         for file in self.sources(node):
@@ -132,9 +144,9 @@ class Places:
                 line = _counting_line(self.package.text(file), names, reset)
                 if line:
                     return file, line
-        return self.of(node, "step", "counter", "publish")
+        return self.of(node, Kind.STEP, Kind.COUNTER, Kind.PUBLISH)
 
-    def traceback(self, lines):
+    def traceback(self, lines: Iterable[str]) -> Traceback | None:
         """Return (place, error's class, its text) of the last traceback that has a line of the
         package's own code in it, or None."""
         found, place, inside = None, None, False
@@ -154,7 +166,7 @@ class Places:
                     inside = False
         return found
 
-    def wrong_arguments(self, lines):
+    def wrong_arguments(self, lines: Iterable[str]) -> tuple[Line, str] | None:
         """Return (place of the function, text) of a call of one of the package's own functions with
         too many or too few arguments, though no line of the package made it; or None."""
         for text in lines:
@@ -166,21 +178,21 @@ class Places:
                         return (file, line), found["text"]
         return None
 
-    def stack(self, lines):
+    def stack(self, lines: Iterable[str]) -> Line | None:
         """Return the first own place in what faulthandler printed, or None."""
         for text in lines:
             frame = _FRAME.match(text)
             own = self.own(frame["path"]) if frame else None
-            if own:
+            if frame and own:
                 return own, int(frame["line"])
         return None
 
-    def own(self, path):
+    def own(self, path: str) -> str | None:
         """Return a path relative to the package, if it is the package's own, or None."""
         return path[len(self.copy) :] if path.startswith(self.copy) else None
 
 
-def _counting_line(text, names, reset):
+def _counting_line(text: str, names: Collection[str], reset: Number | None) -> int | None:
     """Return the line at which a name is counted on, as in `counter += 2`, or None."""
     try:
         tree = ast.parse(text)
@@ -201,5 +213,5 @@ def _counting_line(text, names, reset):
     return None
 
 
-def _last_name(node):
+def _last_name(node: ast.AST) -> str | None:
     return getattr(node, "attr", None) or getattr(node, "id", None)

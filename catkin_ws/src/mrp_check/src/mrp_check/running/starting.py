@@ -4,24 +4,29 @@
 from __future__ import annotations
 
 import re
+from typing import Iterator
 
-from mrp_check.contract.finding import ERROR, NOTE
+from mrp_check.confined.places import Kind
+from mrp_check.confined.seen import Alone
+from mrp_check.contract.finding import ERROR, NOTE, Finding, Where
+from mrp_check.running.places import Traceback
+from mrp_check.running.traces import Traces
 from mrp_check.running.words import code_text, last_words
 
 _EXPECTED = "a node that goes on until Ctrl-C"
 
 
-def start_findings(node):
+def start_findings(node: Traces) -> Iterator[Finding]:
     """Yield a Finding if the node is not up soon after it is started."""
-    direct = node.direct or {}
-    code, registered = direct.get("code"), node.of("publications") or node.of("subscriptions")
+    direct = node.direct or Alone()
+    code, registered = direct.code, node.is_registered
     died = node.died()
     if node.in_launch and registered and died is None:
         # Under its launch file it is well; by itself it may need what that gives it.
         return
     if node.in_launch and died is not None:
         code = died
-    elif direct.get("ended_after") is None:
+    elif direct.ended_after is None:
         if node.in_launch and not registered and not node.own_name:
             yield _not_registered(node)
         return
@@ -36,14 +41,14 @@ def start_findings(node):
         yield node.finding(
             "node-start",
             f"{node.name} ends at once, without having started ROS.",
-            node.places.of(node.name, "init"),
+            node.places.of(node.name, Kind.INIT),
             expected=_EXPECTED,
             seen="it ended with exit code 0, and the master never heard of it",
             fix="See to it that main() is called, and that it starts the node.",
         )
 
 
-def _traceback(node):
+def _traceback(node: Traces) -> Traceback | None:
     """Return the last traceback of the node: of its own run, or of what roslaunch shows."""
     found = node.places.traceback(node.errors())
     if found is None:
@@ -54,7 +59,7 @@ def _traceback(node):
     return found
 
 
-def _raised(node, place, kind, text):
+def _raised(node: Traces, place: Where, kind: str, text: str) -> Finding:
     module = re.match(r"No module named '(\w+)", text)
     is_absent = module and module.group(1) in node.places.facts.absent(node.name)
     return node.finding(
@@ -67,17 +72,17 @@ def _raised(node, place, kind, text):
     )
 
 
-def _ended(node):
+def _ended(node: Traces) -> Finding:
     """Return the Finding about a node that started ROS, and came to its end."""
-    ends = [p for p in node.places.facts_of(node.name, "exit") if p.text != "return"]
-    if ends and node.places.facts_of(node.name, "spin"):
+    ends = [p for p in node.places.facts_of(node.name, Kind.EXIT) if p.text != "return"]
+    if ends and node.places.facts_of(node.name, Kind.SPIN):
         why = f", though it waits: most likely by its call of {ends[0].text}()."
-        place = ends[0].file, ends[0].line
+        place: Where = ends[0].file, ends[0].line
         fix = "Leave the call out, or see to it that it is only made at the end."
     else:
         why = ": nothing keeps it waiting for messages or for its timer."
         end = node.places.facts.end_of_main(node.name)
-        place = end or node.places.of(node.name, "init", "spin")
+        place = end or node.places.of(node.name, Kind.INIT, Kind.SPIN)
         fix = "Call rospy.spin() or ros::spin() at the end of main()."
     return node.finding(
         "spin",
@@ -89,29 +94,29 @@ def _ended(node):
     )
 
 
-def _failed(node, code, started_ros):
+def _failed(node: Traces, code: int | None, started_ros: bool) -> Finding:
     said = last_words(node.errors())
     return node.finding(
         "starts" if started_ros else _id_of_words(said),
         f"{node.name} ends soon after it is started, {code_text(code)}"
         + (f", with the words: {said}" if said else "."),
-        node.places.of(node.name, "init", "handle"),
+        node.places.of(node.name, Kind.INIT, Kind.HANDLE),
         expected=_EXPECTED,
         seen=code_text(code),
     )
 
 
-def _not_registered(node):
+def _not_registered(node: Traces) -> Finding:
     return node.finding(
         "node-start",
         f"{node.name} runs, but the master has not heard of it.",
-        node.places.of(node.name, "init", "loop"),
+        node.places.of(node.name, Kind.INIT, Kind.LOOP),
         expected=f"a node {node.path}",
         seen="no node of that name",
     )
 
 
-def id_of_error(kind, text, otherwise):
+def id_of_error(kind: str, text: str, otherwise: str) -> str:
     """Return the requirement that an error's class belongs to."""
     # That a number has no such attribute says nothing of the name, but of what it is used on.
     built_in = re.match(
@@ -129,7 +134,7 @@ def id_of_error(kind, text, otherwise):
     return otherwise
 
 
-def _id_of_words(said):
+def _id_of_words(said: str) -> str:
     words = ("ros::init", "must call", "Couldn't find an AF_INET", "init_node")
     if any(word in said for word in words):
         return "node-start"

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import re
+from typing import Iterable, Sequence
 
 # What a node logs is shown on the console behind this.
 PREFIX = re.compile(r"\[ ?(?P<level>DEBUG|INFO|WARN|ERROR|FATAL)\] \[[\d., ]+\]: ?")
@@ -18,18 +19,18 @@ _SIGNALS = {
 }
 
 
-def few(values):
+def few(values: Sequence[object]) -> str:
     """Return the first values as a text."""
     return ", ".join(map(str, values[:4])) + (", ..." if len(values) > 4 else "")
 
 
-def last_words(lines):
+def last_words(lines: Iterable[str]) -> str:
     """Return the last line that says something, or an empty text."""
     lines = [line.strip() for line in lines if PREFIX.sub("", line).strip()]
     return lines[-1][:300] if lines else ""
 
 
-def code_text(code):
+def code_text(code: int | None) -> str:
     """Return an exit code in words; a negative one is a signal."""
     if code is not None and code < 0:
         return f"killed by signal {-code} ({_SIGNALS.get(-code, 'see man 7 signal')})"

@@ -8,33 +8,9 @@ from __future__ import annotations
 
 import dataclasses
 
-
-@dataclasses.dataclass
-class Place:
-    """Something in a source.
-
-    file: relative to the package
-    line: from 1
-    kind: init, publisher, subscriber, publish, timer, counter (a first value), step (its change),
-          data (a message's field is set), log, print, spin, loop, sleep, exit, signal, catch (of
-          KeyboardInterrupt), thread, function; in C++ also handle, global (at file scope),
-          discarded and local (what is made and ends too soon)
-    text: the constant text, such as a topic's or a node's name, or a line that is logged with {}
-          for each value in it; None if the source does not say it plainly
-    values: more that the source says plainly: type, queue, queue_line, latch, period (seconds),
-            oneshot, level, name, value, step, modulus, code, bits, function, unused
-    """
-
-    file: str
-    line: int
-    kind: str
-    text: str | None = None
-    values: dict = dataclasses.field(default_factory=dict)
-
-    def is_around(self, place):
-        """Return whether this is a function in which another place is."""
-        within = self.line <= place.line <= self.values.get("end", 0)
-        return self.kind == "function" and self.file == place.file and within
+from mrp_check.confined.places import Kind, Place
+from mrp_check.contract.finding import Finding
+from mrp_check.sources.python_source import Source
 
 
 @dataclasses.dataclass
@@ -54,27 +30,27 @@ class Facts:
     sources: dict[str, list[str]] = dataclasses.field(default_factory=dict)
     launch: dict[str, tuple[str, int]] = dataclasses.field(default_factory=dict)
     unread: set[str] = dataclasses.field(default_factory=set)
-    problems: list = dataclasses.field(default_factory=list)
-    python: dict = dataclasses.field(default_factory=dict)
+    problems: list[Finding] = dataclasses.field(default_factory=list)
+    python: dict[str, Source] = dataclasses.field(default_factory=dict)
     relevant: list[str] = dataclasses.field(default_factory=list)
 
-    def of(self, node, *kinds):
+    def of(self, node: str, *kinds: Kind) -> list[Place]:
         """Return the places of these kinds in the sources of a node of the spec, in order."""
         files = self.sources.get(node, [])
         found = [p for p in self.places if p.file in files and (not kinds or p.kind in kinds)]
         return sorted(found, key=lambda place: (files.index(place.file), place.line))
 
-    def end_of_main(self, node):
+    def end_of_main(self, node: str) -> tuple[str, int] | None:
         """Return where the function ends that starts the node: there a call belongs that is
         missing. None if it is no function."""
-        inits, functions = self.of(node, "init"), self.of(node, "function")
+        inits, functions = self.of(node, Kind.INIT), self.of(node, Kind.FUNCTION)
         mains = [f for f in functions if (f.is_around(inits[0]) if inits else f.text == "main")]
-        ends = [p for p in self.of(node, "exit") if p.text == "return"]
+        ends = [p for p in self.of(node, Kind.EXIT) if p.text == "return"]
         if ends or not mains:
             return (ends[-1].file, ends[-1].line) if ends else None
-        return mains[-1].file, mains[-1].values["end"]
+        return mains[-1].file, mains[-1].end
 
-    def absent(self, node=None):
+    def absent(self, node: str | None = None) -> dict[str, str]:
         """Return module -> sentence, of what a node's sources import and this machine has not.
 
         node: all nodes of the spec if None

@@ -4,21 +4,20 @@
 from __future__ import annotations
 
 import ast
+import re
+from typing import Any, Callable, Iterable, Iterator, Sequence, Union
 
-from mrp_check.sources.facts import Place
-from mrp_check.sources.python_source import GAP, UNKNOWN, percent
+from mrp_check.confined.places import Kind, Place
+from mrp_check.sources.python_source import Source
+from mrp_check.sources.python_text import GAP, UNKNOWN, percent
 
-LEVELS = {
-    "logdebug": "debug",
-    "loginfo": "info",
-    "logwarn": "warn",
-    "logerr": "error",
-    "logerror": "error",
-    "logfatal": "fatal",
-}
+Definition = Union[ast.FunctionDef, ast.ClassDef]
+
+LEVELS = {"logdebug", "loginfo", "logwarn", "logerr", "logerror", "logfatal"}
+_WAITS = ("join", "wait", "pause")  # methods that do
 
 
-def argument(call, position, name):
+def argument(call: ast.Call, position: int, name: str) -> ast.expr | None:
     """Return the expression of a call's argument, or None."""
     for keyword in call.keywords:
         if keyword.arg == name:
@@ -30,78 +29,22 @@ def argument(call, position, name):
     return None
 
 
-def message_type(source, node):
-    """Return the type of a message class, as in std_msgs/UInt32, or None."""
-    name = source.dotted(node) if node is not None else None
-    if name:
-        parts = name.split(".")
-        if "msg" in parts[1:-1]:
-            return f"{parts[0]}/{parts[-1]}"
-    return None
-
-
-def places(source):
-    """Return the facts.Place of each thing in a python_source.Source, in order."""
-    found = []
-    for node in ast.walk(source.tree):
-        found += _places_of(source, node)
+def places(source: Source) -> list[Place]:
+    """Return the Place of each thing in a python_source.Source, in order."""
+    found = [place for node in ast.walk(source.tree) for place in _places_of(source, node)]
     return sorted(found, key=lambda place: place.line)
 
 
-def _places_of(source, node):
-    def place(kind, text=UNKNOWN, line=None, **values):
-        values = {key: value for key, value in values.items() if value is not UNKNOWN}
-        plain = text if isinstance(text, str) and text.replace(GAP, "") else None
-        return Place(source.file, line or node.lineno, kind, plain, values)
-
-    if isinstance(node, ast.Call):
-        yield from _of_call(source, node, place)
-    elif isinstance(node, ast.AugAssign):
-        step = source.value(node.value)
-        sign = {ast.Add: 1, ast.Sub: -1}.get(type(node.op))
-        if sign and isinstance(step, (int, float)):
-            yield place(
-                "step",
-                ast.unparse(node.target) if hasattr(ast, "unparse") else UNKNOWN,
-                step=sign * step,
-            )
-        yield from _starts(source, node.target, place)
-    elif isinstance(node, ast.Assign) and len(node.targets) == 1:
-        target = node.targets[0]
-        if (
-            isinstance(target, ast.Attribute)
-            and source.key(target)
-            and not (isinstance(target.value, ast.Name) and target.value.id == "self")
-            or isinstance(target, ast.Attribute)
-            and isinstance(target.value, ast.Attribute)
-        ):
-            yield place("data", value=source.value(node.value))
-        own = source.key(target)
-        inside = [one for one in ast.walk(node.value) if isinstance(one, (ast.Name, ast.Attribute))]
-        if own and any(source.key(one) == own for one in inside):
-            yield place("step", **_step(source, node.value, own))
-            yield from _starts(source, target, place)
-    elif isinstance(node, (ast.While, ast.For)):
-        yield place("loop")
-    elif isinstance(node, (ast.FunctionDef, ast.ClassDef)):
-        yield place(
-            "function",
-            node.name,
-            end=last_line(node),
-            unused=True if _is_unused(source, node) else UNKNOWN,
-        )
-    elif isinstance(node, ast.ExceptHandler):
-        names = [n for n in ast.walk(node.type or node) if isinstance(n, (ast.Name, ast.Attribute))]
-        text = {getattr(n, "id", None) or getattr(n, "attr", None) for n in names}
-        if node.type is None or text & {"KeyboardInterrupt", "BaseException"}:
-            yield place("catch")
+def _places_of(source: Source, node: ast.AST) -> Iterable[Place]:
+    look = next((look for kinds, look in _LOOKS if isinstance(node, kinds)), None)
+    return look(_Node(source, node), node) if look else ()
 
 
-def last_line(node):
+def last_line(node: ast.stmt) -> int:
     return max((getattr(one, "lineno", 0) for one in ast.walk(node)), default=node.lineno)
 
 
-def _is_unused(source, definition):
+def _is_unused(source: Source, definition: Definition) -> bool:
     """Return whether a function, method or class is named nowhere but in itself."""
     name = definition.name
     if name.startswith("__") or definition.decorator_list:
@@ -121,139 +64,149 @@ def _is_unused(source, definition):
     return True
 
 
-def _step(source, node, key):
-    """Return what is added to a variable at each step, in an expression such as (x + 2) % 8."""
-    values = {}
-    for one in ast.walk(node):
-        if isinstance(one, ast.BinOp):
-            number = source.value(one.right)
-            if not isinstance(number, (int, float)):
-                continue
-            if isinstance(one.op, ast.Mod):
-                values["modulus"] = number
-            elif isinstance(one.op, ast.BitAnd):
-                values["modulus"] = number + 1
-            elif isinstance(one.op, ast.Add):
-                values["step"] = number
-            elif isinstance(one.op, ast.Sub):
-                values["step"] = -number
-    return values
+class _Node:
+    """A node of a source's tree, at which something may stand."""
 
+    def __init__(self, source: Source, node: Any) -> None:
+        self.source, self.node = source, node
 
-def _starts(source, target, place):
-    """Yield a place for each plain first value of a variable that is counted up."""
-    for value in source.stored(source.key(target)):
-        if isinstance(value, ast.expr) and isinstance(source.value(value), (int, float)):
-            yield place("counter", line=value.lineno, value=source.value(value))
+    def place(
+        self, kind: Kind, text: object = UNKNOWN, line: int | None = None, **values: Any
+    ) -> Place:
+        plain = text if isinstance(text, str) and text.replace(GAP, "") else None
+        known = {name: value for name, value in values.items() if value is not UNKNOWN}
+        return Place(self.source.file, line or self.node.lineno, kind, plain, **known)
 
+    def call(self, node: ast.Call) -> Iterator[Place]:
+        name, method = self.called(node), getattr(node.func, "attr", "")
+        look = next((look for names, look in _CALLS if name in names), None)
+        if look:
+            yield from look(self, node)
+        elif name.startswith("rospy.log"):
+            yield from self.log(node, name.split(".")[1])
+        elif method == "publish":
+            yield self.place(Kind.PUBLISH)
+        elif name == "input" or method in _WAITS:
+            yield self.place(Kind.SLEEP)
 
-def _of_call(source, node, place):
-    name = source.dotted(node.func) or ""
-    if isinstance(node.func, ast.Name) and not name:
-        name = node.func.id
-    call = _Call(source, node, name, place)
-    look = next((look for names, look in _CALLS if name in names), None)
-    if look:
-        yield from look(call)
-    elif name.startswith("rospy.log"):
-        yield from _log(source, node, name.split(".")[1], place)
-    elif name.startswith("threading.") and name.endswith(("Thread", "Timer")):
-        yield place("thread", name, daemon=call.value(99, "daemon"))
-    elif getattr(node.func, "attr", "") == "publish":
-        yield place("publish")
-    elif name == "input" or getattr(node.func, "attr", "") in ("join", "wait", "pause"):
-        yield place("sleep")
+    def called(self, node: ast.Call) -> str:
+        """Return the name of what is called; empty if it has none."""
+        return self.source.dotted(node.func) or str(getattr(node.func, "id", ""))
 
+    def changed(self, node: ast.AugAssign) -> Iterator[Place]:
+        """Look at counter += 2."""
+        step = self.source.value(node.value)
+        if isinstance(node.op, (ast.Add, ast.Sub)) and isinstance(step, (int, float)):
+            yield self.place(Kind.STEP)
+        yield from self.first_values(node.target)
 
-class _Call:
-    def __init__(self, source, node, name, place):
-        self.source, self.node, self.name, self.place = source, node, name, place
+    def assigned(self, node: ast.Assign) -> Iterator[Place]:
+        """Look at counter = counter + 2 and the like."""
+        target = node.targets[0]
+        own = self.source.key(target) if len(node.targets) == 1 else None
+        inside = [one for one in ast.walk(node.value) if isinstance(one, (ast.Name, ast.Attribute))]
+        if own and any(self.source.key(one) == own for one in inside):
+            yield self.place(Kind.STEP)
+            yield from self.first_values(target)
 
-    def value(self, position, keyword):
+    def first_values(self, target: ast.expr) -> Iterator[Place]:
+        """Yield a place for each plain first value of a variable that is counted up."""
+        for value in self.source.stored(self.source.key(target)):
+            if isinstance(value, ast.expr) and isinstance(self.source.value(value), (int, float)):
+                yield self.place(Kind.COUNTER, line=value.lineno)
+
+    def loop(self, node: ast.stmt) -> Iterator[Place]:
+        yield self.place(Kind.LOOP)
+
+    def definition(self, node: Definition) -> Iterator[Place]:
+        unused = True if _is_unused(self.source, node) else None
+        yield self.place(Kind.FUNCTION, node.name, end=last_line(node), unused=unused)
+
+    # Calls
+
+    def value(self, position: int, keyword: str) -> object:
         return self.source.value(argument(self.node, position, keyword))
 
-    def init(self):
-        yield self.place("init", self.value(0, "name"), anonymous=self.value(1, "anonymous"))
+    def init(self, node: ast.Call) -> Iterator[Place]:
+        anonymous = self.value(1, "anonymous")
+        yield self.place(Kind.INIT, self.value(0, "name"), anonymous=anonymous)
 
-    def topic(self, kind, queue, **values):
-        yield self.place(
-            kind,
-            self.value(0, "name"),
-            type=message_type(self.source, argument(self.node, 1, "data_class")) or UNKNOWN,
-            queue=self.value(queue, "queue_size"),
-            queue_line=getattr(argument(self.node, queue, "queue_size"), "lineno", UNKNOWN),
-            **values,
-        )
+    def topic(self, kind: Kind, position: int) -> Iterator[Place]:
+        queue = argument(self.node, position, "queue_size")
+        line = queue.lineno if queue is not None else None
+        name, length = self.value(0, "name"), self.source.value(queue)
+        yield self.place(kind, name, queue=length, queue_line=line)
 
-    def publisher(self):
-        return self.topic("publisher", 6, latch=self.value(4, "latch"))
+    def publisher(self, node: ast.Call) -> Iterator[Place]:
+        return self.topic(Kind.PUBLISHER, 6)
 
-    def subscriber(self):
-        return self.topic("subscriber", 4)
+    def subscriber(self, node: ast.Call) -> Iterator[Place]:
+        return self.topic(Kind.SUBSCRIBER, 4)
 
-    def timer(self):
-        yield self.place("timer", period=self.value(0, "period"), oneshot=self.value(2, "oneshot"))
+    def timer(self, node: ast.Call) -> Iterator[Place]:
+        period, oneshot = self.value(0, "period"), self.value(2, "oneshot")
+        yield self.place(Kind.TIMER, period=period, oneshot=oneshot)
 
-    def rate(self):
+    def rate(self, node: ast.Call) -> Iterator[Place]:
         hertz = self.value(0, "hz")
-        plain = isinstance(hertz, (int, float)) and hertz
-        yield self.place("timer", period=1 / hertz if plain else UNKNOWN)
+        period = 1 / hertz if isinstance(hertz, (int, float)) and hertz else UNKNOWN
+        yield self.place(Kind.TIMER, period=period)
 
-    def sleep(self):
-        yield self.place("timer", period=self.value(0, "duration"))
-        yield self.place("sleep")
+    def sleep(self, node: ast.Call) -> Iterator[Place]:
+        yield self.place(Kind.TIMER, period=self.value(0, "duration"))
+        yield self.place(Kind.SLEEP)
 
-    def spin(self):
-        yield self.place("spin")
+    def spin(self, node: ast.Call) -> Iterator[Place]:
+        yield self.place(Kind.SPIN)
 
-    def print(self):
-        texts = [self.source.value(argument) for argument in self.node.args]
-        yield self.place("print", " ".join(t if isinstance(t, str) else GAP for t in texts))
+    def print(self, node: ast.Call) -> Iterator[Place]:
+        texts = [self.source.value(argument) for argument in node.args]
+        yield self.place(Kind.PRINT, " ".join(t if isinstance(t, str) else GAP for t in texts))
 
-    def write(self):
-        yield self.place("print", self.value(0, "s"))
+    def write(self, node: ast.Call) -> Iterator[Place]:
+        yield self.place(Kind.PRINT, self.value(0, "s"))
 
-    def exit(self):
-        yield self.place("exit", self.name, code=self.value(0, "code"))
+    def exit(self, node: ast.Call) -> Iterator[Place]:
+        yield self.place(Kind.EXIT, self.called(node))
 
-    def signal(self):
-        name = self.source.dotted(argument(self.node, 0, "signalnum"))
-        yield self.place("signal", name or UNKNOWN)
+    def signal(self, node: ast.Call) -> Iterator[Place]:
+        name = self.source.dotted(argument(node, 0, "signalnum"))
+        yield self.place(Kind.SIGNAL, name or UNKNOWN)
 
-    def count(self):
-        node, step = self.node, self.value(1, "step")
-        start = self.value(0, "start") if node.args or node.keywords else 0
-        yield self.place("counter", value=start)
-        yield self.place("step", step=1 if step is UNKNOWN and len(node.args) < 2 else step)
+    def count(self, node: ast.Call) -> Iterator[Place]:
+        yield self.place(Kind.COUNTER)
+        yield self.place(Kind.STEP)
+
+    def log(self, node: ast.Call, function: str) -> Iterator[Place]:
+        plain = re.sub("(_throttle_identical|_throttle|_once)$", "", function)
+        if plain not in LEVELS:
+            return
+        first = 1 if "throttle" in function else 0
+        text = self.source.value(argument(node, first, "msg"))
+        values = [self.source.value(one) for one in node.args[first + 1 :]]
+        if isinstance(text, str) and values:
+            text = percent(text, values)
+        yield self.place(Kind.LOG, text)
 
 
-_CALLS = (
-    (("rospy.init_node",), _Call.init),
-    (("rospy.Publisher", "rospy.topics.Publisher"), _Call.publisher),
-    (("rospy.Subscriber", "rospy.topics.Subscriber"), _Call.subscriber),
-    (("rospy.Timer", "rospy.timer.Timer"), _Call.timer),
-    (("rospy.Rate", "rospy.timer.Rate"), _Call.rate),
-    (("rospy.sleep", "time.sleep"), _Call.sleep),
-    (("rospy.spin",), _Call.spin),
-    (("print",), _Call.print),
-    (("sys.stdout.write",), _Call.write),
-    (("sys.exit", "os._exit", "exit", "quit", "rospy.signal_shutdown"), _Call.exit),
-    (("signal.signal",), _Call.signal),
-    (("itertools.count",), _Call.count),
+_LOOKS: Sequence[tuple[Any, Callable[[_Node, Any], Iterable[Place]]]] = (
+    (ast.Call, _Node.call),
+    (ast.AugAssign, _Node.changed),
+    (ast.Assign, _Node.assigned),
+    ((ast.While, ast.For), _Node.loop),
+    ((ast.FunctionDef, ast.ClassDef), _Node.definition),
 )
-
-
-def _log(source, node, function, place):
-    rest = function
-    for ending in ("_throttle_identical", "_throttle", "_once"):
-        if function.endswith(ending):
-            rest = function[: -len(ending)]
-    level = LEVELS.get(rest)
-    if level is None:
-        return
-    first = 1 if "throttle" in function else 0
-    text = source.value(argument(node, first, "msg"))
-    values = [source.value(one) for one in node.args[first + 1 :]]
-    if isinstance(text, str) and values:
-        text = percent(text, values)
-    yield place("log", text, level=level)
+_CALLS = (
+    (("rospy.init_node",), _Node.init),
+    (("rospy.Publisher", "rospy.topics.Publisher"), _Node.publisher),
+    (("rospy.Subscriber", "rospy.topics.Subscriber"), _Node.subscriber),
+    (("rospy.Timer", "rospy.timer.Timer"), _Node.timer),
+    (("rospy.Rate", "rospy.timer.Rate"), _Node.rate),
+    (("rospy.sleep", "time.sleep"), _Node.sleep),
+    (("rospy.spin",), _Node.spin),
+    (("print",), _Node.print),
+    (("sys.stdout.write",), _Node.write),
+    (("sys.exit", "os._exit", "exit", "quit", "rospy.signal_shutdown"), _Node.exit),
+    (("signal.signal",), _Node.signal),
+    (("itertools.count",), _Node.count),
+)

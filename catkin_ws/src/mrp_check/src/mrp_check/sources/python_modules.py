@@ -10,22 +10,23 @@ import inspect
 import pathlib
 import sys
 import types
+from typing import Any, Callable
 
 from mrp_check.contract.resources import SHARES
 from mrp_check.sources import uses
 
 
-def is_ros(name):
+def is_ros(name: str) -> bool:
     return uses.is_ros_package(name.split(".")[0])
 
 
-def ros_modules():
+def ros_modules() -> set[str]:
     return {
         path.parent.name for share in SHARES for path in pathlib.Path(share).glob("*/package.xml")
     }
 
 
-def is_module(name):
+def is_module(name: str) -> bool:
     """Return whether Python can find a module; its parents are imported if they are ROS's own."""
     if "." in name and not is_ros(name):
         return True
@@ -35,14 +36,14 @@ def is_module(name):
         return False
 
 
-def load(name):
+def load(name: str) -> types.ModuleType | None:
     try:
         return importlib.import_module(name)
     except Exception:  # a module of this machine that is broken is not the student's fault
         return None
 
 
-def resolve(name):
+def resolve(name: str) -> tuple[Any, str | None]:
     """Return (object, None) of a dotted name in ROS's own modules, or (owner, what it lacks)."""
     parts = name.split(".")
     found = load(parts[0])
@@ -60,7 +61,7 @@ def resolve(name):
     return found, None
 
 
-def cannot_bind(function, call):
+def cannot_bind(function: Callable[..., object], call: ast.Call) -> str | None:
     """Return why a function cannot be called with a call's arguments, or None."""
     if any(isinstance(a, ast.Starred) for a in call.args) or any(
         k.arg is None for k in call.keywords
@@ -71,13 +72,13 @@ def cannot_bind(function, call):
     except (TypeError, ValueError):
         return None
     try:
-        signature.bind(*call.args, **{keyword.arg: keyword.value for keyword in call.keywords})
+        signature.bind(*call.args, **{one.arg: one.value for one in call.keywords if one.arg})
     except TypeError as error:
         return str(error)
     return None
 
 
-def signature(function):
+def signature(function: Callable[..., object]) -> str:
     try:
         return str(inspect.signature(function))
     except (TypeError, ValueError):

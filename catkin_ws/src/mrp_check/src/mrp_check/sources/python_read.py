@@ -7,6 +7,7 @@ import re
 
 from mrp_check.contract.finding import Finding
 from mrp_check.sources.python_source import Source
+from mrp_check.student.package import Package
 
 _SYNTAX = (
     (r"was never closed|unexpected EOF", "A bracket is opened there and never closed."),
@@ -27,7 +28,7 @@ _SYNTAX = (
 )
 
 
-def read(package, file):
+def read(package: Package, file: str) -> tuple[Source | None, Finding | None]:
     """Return (the Source or None, the Finding that says why there is none, or None)."""
     data = package.bytes(file)
     try:
@@ -52,7 +53,7 @@ def read(package, file):
         )
 
 
-def _syntax(package, file, error):
+def _syntax(package: Package, file: str, error: SyntaxError) -> Finding:
     text, line = error.msg or "invalid syntax", error.lineno or 1
     lines = package.lines(file)
     line = min(line, len(lines))
@@ -74,10 +75,10 @@ def _syntax(package, file, error):
         line,
         expected="valid Python 3",
         seen=lines[line - 1].strip(),
-        fix=f"Mend the line; `python3 -m py_compile {file}` says whether Python can read the file.",
+        fix=f"Correct the line; `python3 -m py_compile {file}` says whether Python can read it.",
     )
 
 
-def _opens_bracket(text):
+def _opens_bracket(text: str) -> bool:
     text = re.sub(r"\"[^\"]*\"|'[^']*'|#.*", "", text)
     return sum(map(text.count, "([{")) > sum(map(text.count, ")]}"))

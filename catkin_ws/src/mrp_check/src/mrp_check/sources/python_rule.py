@@ -4,20 +4,41 @@
 from __future__ import annotations
 
 import ast
+from typing import Any, Callable, Iterator, Protocol
 
 from mrp_check.contract.finding import NOTE, Finding
+from mrp_check.sources.facts import Facts
 from mrp_check.sources.python_modules import is_ros, resolve
+from mrp_check.sources.python_source import Source
+from mrp_check.student.package import Package
+
+MessageClass = Any  # genpy makes them, without types
+
+
+class HasFacts(Protocol):
+    """A case.Case, as far as of_sources() needs one."""
+
+    @property
+    def package(self) -> Package: ...
+
+    @property
+    def facts(self) -> Facts: ...
 
 
 class PythonRule:
     """A rule about one source; `findings` yields what it finds."""
 
-    def __init__(self, package, source):
+    def __init__(self, package: Package, source: Source) -> None:
         self.package = package
         self.source = source
         self.file = source.file
 
-    def finding(self, id_, message, node, **more):
+    def findings(self) -> Iterator[Finding]:
+        raise NotImplementedError
+
+    def finding(
+        self, id_: str, message: str, node: ast.stmt | ast.expr | int, **more: Any
+    ) -> Finding:
         line = node if isinstance(node, int) else node.lineno
         more.setdefault("seen", self.package.lines(self.file)[line - 1].strip())
         finding = Finding(id_, message, self.file, line, **more)
@@ -27,7 +48,7 @@ class PythonRule:
             finding.consequence_of = cause.id
         return finding
 
-    def is_own(self, name):
+    def is_own(self, name: str) -> bool:
         """Return whether a module is the package's own (made, or generated of its messages)."""
         top = name.split(".")[0]
         return top == self.package.name or any(
@@ -37,7 +58,7 @@ class PythonRule:
             for path in self.package.of_kind("python")
         )
 
-    def message_class(self, node):
+    def message_class(self, node: ast.AST | None) -> MessageClass | None:
         """Return the class of a message that an expression names, or None."""
         name = self.source.dotted(node) if isinstance(node, (ast.Name, ast.Attribute)) else None
         if not name or ".msg." not in name or not is_ros(name) or self.is_own(name):
@@ -45,22 +66,22 @@ class PythonRule:
         found, missing = resolve(name)
         return found if missing is None and hasattr(found, "__slots__") else None
 
-    def written(self, node):
+    def written(self, node: ast.expr) -> str:
         """Return an expression as it is written."""
-        return ast.get_source_segment(self.package.text(self.file), node)
+        return ast.get_source_segment(self.package.text(self.file), node) or ""
 
 
-def ast_text(node):
+def ast_text(node: ast.AST) -> str:
     """Return the source of a short expression."""
     if isinstance(node, ast.Attribute):
         return f"{ast_text(node.value)}.{node.attr}"
     return node.id if isinstance(node, ast.Name) else "..."
 
 
-def of_sources(rule):
+def of_sources(rule: type[PythonRule]) -> Callable[[HasFacts], Iterator[Finding]]:
     """Return the function of a case.Case that asks a PythonRule of each source that matters."""
 
-    def findings(case):
+    def findings(case: HasFacts) -> Iterator[Finding]:
         for file in case.facts.relevant:
             if file in case.facts.python:
                 yield from rule(case.package, case.facts.python[file]).findings()

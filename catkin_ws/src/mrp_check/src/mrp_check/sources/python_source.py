@@ -5,13 +5,33 @@ from __future__ import annotations
 
 import ast
 import importlib
+import operator
 import warnings
+from typing import Any, Callable, Iterator, Optional, Tuple, Union
 
+from mrp_check.contract.finding import Finding
 from mrp_check.sources import uses
+from mrp_check.sources.python_text import GAP, UNKNOWN, braces, percent
 
-UNKNOWN = object()  # a value that the source does not say plainly
-GAP = "{}"  # what stands in a text for a part that the source does not say plainly
-_MAX_TEXT = 10_000
+_MAX_TEXT = 10_000  # characters
+_NANOSECONDS = 1e9  # of a second
+# What is counted with: numbers below the first; of powers, no larger base, and no more bits.
+_LARGEST, _LARGEST_BASE, _MOST_BITS = 2**70, 16, 70
+_OPERATORS: dict[type[ast.operator], Callable[[Any, Any], object]] = {
+    ast.Add: operator.add,
+    ast.Sub: operator.sub,
+    ast.Mult: operator.mul,
+    ast.Div: operator.truediv,
+    ast.Pow: operator.pow,
+    ast.LShift: operator.lshift,
+}
+
+
+Function = Union[ast.FunctionDef, ast.Lambda]
+Defined = Union[Function, ast.ClassDef]
+Stored = Optional[ast.AST]  # what is given to a variable; None if that is not plain
+# What tells one variable from others: its scope, and its name in that.
+Variable = Tuple[Optional[ast.AST], str]
 
 
 class Source:
@@ -28,21 +48,25 @@ class Source:
     Raises SyntaxError (or ValueError) as Python itself does.
     """
 
-    def __init__(self, file, text):
+    def __init__(self, file: str, text: str | bytes) -> None:
         self.file = file
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
             self.tree = ast.parse(text, file)
-        self.parents, self.absent, self.told = {}, {}, {}
+        self.parents: dict[ast.AST, ast.AST] = {}
+        self.absent: dict[str, str] = {}
+        self.told: dict[tuple[int, str], Finding] = {}
         for node in ast.walk(self.tree):
             for child in ast.iter_child_nodes(node):
                 self.parents[child] = node
-        self.imports, self.import_nodes, self.has_star = {}, [], False
-        self._stored = {}
+        self.imports: dict[str, str] = {}
+        self.import_nodes: list[ast.Import | ast.ImportFrom] = []
+        self.has_star = False
+        self._stored: dict[Variable, list[Stored]] = {}
         for node in ast.walk(self.tree):
             self._see(node)
 
-    def _see(self, node):
+    def _see(self, node: ast.AST) -> None:
         if isinstance(node, ast.Import):
             self.import_nodes.append(node)
             for alias in node.names:
@@ -78,7 +102,7 @@ class Source:
             for name in node.names:
                 self._stored.setdefault((self.function(node), name), []).append(node)
 
-    def _see_star(self, module):
+    def _see_star(self, module: str) -> None:
         """Take the names of `from MODULE import *`, if MODULE is one of ROS's own."""
         self.has_star = True
         if not uses.is_ros_package(module.split(".")[0]):
@@ -90,12 +114,12 @@ class Source:
         for name in getattr(found, "__all__", [n for n in dir(found) if not n.startswith("_")]):
             self.imports.setdefault(name, f"{module}.{name}")
 
-    def _store(self, target, value):
+    def _store(self, target: ast.AST, value: Stored) -> None:
         key = self.key(target)
         if key:
             self._stored.setdefault(key, []).append(value)
 
-    def names(self):
+    def names(self) -> set[str]:
         """Return all names that the source mentions: of variables, attributes and imports."""
         found = set()
         for node in ast.walk(self.tree):
@@ -111,13 +135,13 @@ class Source:
 
     # Where something stands.
 
-    def above(self, node):
+    def above(self, node: ast.AST) -> Iterator[ast.AST]:
         """Yield the node's parents, the nearest first."""
         while node in self.parents:
             node = self.parents[node]
             yield node
 
-    def scope(self, node):
+    def scope(self, node: ast.AST) -> ast.AST:
         """Return the function, lambda, class or module in which the node stands."""
         for parent in self.above(node):
             if isinstance(
@@ -127,21 +151,21 @@ class Source:
                 return parent
         return self.tree
 
-    def function(self, node):
+    def function(self, node: ast.AST) -> ast.AST:
         """Return the function in which the node stands, or the module."""
         for parent in self.above(node):
             if isinstance(parent, (ast.FunctionDef, ast.AsyncFunctionDef, ast.Lambda, ast.Module)):
                 return parent
         return self.tree
 
-    def class_(self, node):
+    def class_(self, node: ast.AST) -> ast.ClassDef | None:
         """Return the class of the method in which the node stands, or None."""
         for parent in self.above(node):
             if isinstance(parent, ast.ClassDef):
                 return parent
         return None
 
-    def is_guarded(self, node, *errors):
+    def is_guarded(self, node: ast.AST, *errors: str) -> bool:
         """Return whether the node stands in the body of a `try` that catches one of the errors."""
         child = node
         for parent in self.above(node):
@@ -161,7 +185,7 @@ class Source:
 
     # What names mean.
 
-    def key(self, target):
+    def key(self, target: ast.AST) -> Variable | None:
         """Return what tells one variable from others: (its scope, its name)."""
         if isinstance(target, ast.Name):
             return self._owner(target, target.id), target.id
@@ -173,7 +197,7 @@ class Source:
             return (self._owner(target, target.value.id), f"{target.value.id}.{target.attr}")
         return None
 
-    def _owner(self, node, name):
+    def _owner(self, node: ast.AST, name: str) -> ast.AST:
         """Return the scope in which a name is bound, as seen from the node."""
         function = self.function(node)
         while not isinstance(function, ast.Module):
@@ -183,9 +207,9 @@ class Source:
         return self.tree
 
     @property
-    def _bindings(self):
+    def _bindings(self) -> set[Variable]:
         if not hasattr(self, "_bound"):
-            self._bound = set()
+            self._bound: set[Variable] = set()
             for node in ast.walk(self.tree):
                 if isinstance(node, ast.Name) and isinstance(node.ctx, (ast.Store, ast.Del)):
                     self._bound.add((self.function(node), node.id))
@@ -199,11 +223,11 @@ class Source:
                         self._bound.discard((self.function(node), name))
         return self._bound
 
-    def stored(self, key):
+    def stored(self, key: Variable | None) -> list[Stored]:
         """Return all values that are given to a variable; None stands for one that is not plain."""
-        return self._stored.get(key, [])
+        return self._stored.get(key, []) if key else []
 
-    def dotted(self, node, depth=0):
+    def dotted(self, node: ast.AST | None, depth: int = 0) -> str | None:
         """Return the full dotted name of an expression such as rospy.Publisher, or None."""
         parts = []
         while isinstance(node, ast.Attribute):
@@ -212,9 +236,8 @@ class Source:
         if not isinstance(node, ast.Name) or depth > 5:
             return None
         owner = self._owner(node, node.id)
-        if node.id in self.imports:
-            base = self.imports[node.id]
-        else:
+        base = self.imports.get(node.id)
+        if base is None:
             # As in: Publisher = rospy.Publisher
             values = self.stored((owner, node.id))
             if len(values) != 1 or not isinstance(values[0], (ast.Name, ast.Attribute)):
@@ -222,7 +245,7 @@ class Source:
             base = self.dotted(values[0], depth + 1)
         return ".".join([base, *reversed(parts)]) if base else None
 
-    def definition(self, node):
+    def definition(self, node: ast.AST | None) -> Defined | None:
         """Return the function, class or lambda that an expression stands for, or None.
 
         Of a bound method (self.callback) it is the method.
@@ -243,7 +266,7 @@ class Source:
 
     # Which values are plain.
 
-    def value(self, node, depth=0):
+    def value(self, node: ast.AST | None, depth: int = 0) -> object:
         """Return the plain value of an expression: a number, a truth value, None, or a text.
 
         In a text, GAP stands for each part that is not plain. UNKNOWN if nothing is.
@@ -254,7 +277,7 @@ class Source:
         if isinstance(node, ast.Constant):
             return node.value if not isinstance(node.value, bytes) else UNKNOWN
         if isinstance(node, (ast.Name, ast.Attribute)):
-            stored = self.stored(self.key(node)) if self.key(node) else []
+            stored = self.stored(self.key(node))
             if len(stored) == 1 and isinstance(stored[0], ast.expr):
                 return self.value(stored[0], below)
             return UNKNOWN
@@ -270,57 +293,51 @@ class Source:
             return self._call(node, below)
         return UNKNOWN
 
-    def _part(self, part, depth):
+    def _part(self, part: ast.expr, depth: int) -> str:
         if isinstance(part, ast.Constant):
             return str(part.value)
+        if not isinstance(part, ast.FormattedValue):
+            return GAP
         if part.format_spec is None and part.conversion == -1:
             value = self.value(part.value, depth)
             if isinstance(value, (str, int)):
                 return str(value)
         return GAP
 
-    def _binary(self, node, depth):
+    def _binary(self, node: ast.BinOp, depth: int) -> object:
         left, right = self.value(node.left, depth), self.value(node.right, depth)
         if isinstance(node.op, ast.Mod) and isinstance(left, str):
             return percent(left, self._items(node.right, depth))
         if isinstance(node.op, ast.Add) and (isinstance(left, str) or isinstance(right, str)):
             text = "".join(part if isinstance(part, str) else GAP for part in (left, right))
             return text if len(text) < _MAX_TEXT else UNKNOWN
-        numbers = all(
-            isinstance(side, (int, float)) and abs(side) < 2**70 for side in (left, right)
-        )
-        if not numbers:
+        if not isinstance(left, (int, float)) or not isinstance(right, (int, float)):
+            return UNKNOWN
+        compute = _OPERATORS.get(type(node.op))
+        is_power = isinstance(node.op, (ast.Pow, ast.LShift))
+        if compute is None or max(abs(left), abs(right)) >= _LARGEST:
+            return UNKNOWN
+        if is_power and (not 0 <= right <= _MOST_BITS or abs(left) > _LARGEST_BASE):
             return UNKNOWN
         try:
-            if isinstance(node.op, ast.Add):
-                return left + right
-            if isinstance(node.op, ast.Sub):
-                return left - right
-            if isinstance(node.op, ast.Mult):
-                return left * right
-            if isinstance(node.op, ast.Div):
-                return left / right
-            if isinstance(node.op, ast.Pow) and 0 <= right <= 70 and abs(left) <= 16:
-                return left**right
-            if isinstance(node.op, ast.LShift) and 0 <= right <= 70:
-                return left << right
+            return compute(left, right)
         except (ArithmeticError, TypeError):
-            pass
-        return UNKNOWN
+            return UNKNOWN
 
-    def _items(self, node, depth):
+    def _items(self, node: ast.expr, depth: int) -> list[object]:
         nodes = node.elts if isinstance(node, ast.Tuple) else [node]
         return [self.value(one, depth) for one in nodes]
 
-    def _call(self, node, depth):
+    def _call(self, node: ast.Call, depth: int) -> object:
         name = self.dotted(node.func)
         if name in ("rospy.resolve_name", "rospy.names.resolve_name") and node.args:
             return self.value(node.args[0], depth)
         if name in ("rospy.Duration", "rospy.Duration.from_sec", "rospy.rostime.Duration"):
             parts = [self.value(argument, depth) for argument in node.args]
-            if not node.keywords and parts and all(isinstance(p, (int, float)) for p in parts):
-                return parts[0] + (parts[1] / 1e9 if len(parts) > 1 else 0)
-            return UNKNOWN
+            numbers = [part for part in parts if isinstance(part, (int, float))]
+            if node.keywords or not parts or len(numbers) < len(parts):
+                return UNKNOWN
+            return numbers[0] + (numbers[1] / _NANOSECONDS if len(numbers) > 1 else 0)
         if isinstance(node.func, ast.Attribute) and node.func.attr == "format":
             text = self.value(node.func.value, depth)
             if isinstance(text, str) and not node.keywords:
@@ -334,52 +351,3 @@ class Source:
                 parts = [self.value(one, depth) for one in node.args[0].elts]
                 return between.join(p if isinstance(p, str) else GAP for p in parts)
         return UNKNOWN
-
-
-def percent(text, values):
-    """Return a text with its %d, %s and so on filled in: GAP for what is not plain."""
-    result, index, position = [], 0, 0
-    while True:
-        start = text.find("%", position)
-        if start < 0:
-            return "".join([*result, text[position:]])
-        result.append(text[position:start])
-        end = start + 1
-        while end < len(text) and text[end] in "-+ #0123456789.*lh":
-            end += 1
-        letter = text[end : end + 1]
-        position = end + 1
-        if letter == "%":
-            result.append("%")
-        elif letter == "(":
-            close = text.find(")", end)
-            position = (close if close > 0 else len(text)) + 2
-            result.append(GAP)
-        else:
-            value = values[index] if index < len(values) else UNKNOWN
-            plain = end == start + 1 and isinstance(value, (str, int))
-            result.append(str(value) if plain else GAP)
-            index += 1
-
-
-def braces(text, values):
-    """Return a text with its {} filled in as str.format does: GAP for what is not plain."""
-    result, index, position = [], 0, 0
-    while position < len(text):
-        letter = text[position]
-        if text[position : position + 2] in ("{{", "}}"):
-            result.append(letter)
-            position += 2
-        elif letter == "{":
-            close = text.find("}", position)
-            if close < 0:
-                return UNKNOWN
-            inside = text[position + 1 : close]
-            number = index if not inside else int(inside) if inside.isdigit() else -1
-            value = values[number] if 0 <= number < len(values) else UNKNOWN
-            result.append(str(value) if isinstance(value, (str, int)) else GAP)
-            index, position = index + 1, close + 1
-        else:
-            result.append(letter)
-            position += 1
-    return "".join(result)

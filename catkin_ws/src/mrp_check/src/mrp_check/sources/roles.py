@@ -5,11 +5,20 @@ from __future__ import annotations
 
 import ast
 import os
+from typing import Iterable, Iterator, Mapping
 
+from mrp_check.contract import spec as specs
+from mrp_check.contract.spec import Spec
 from mrp_check.sources import uses
+from mrp_check.sources.python_source import Source
+from mrp_check.student.cmake import Model
+from mrp_check.student.launch import Launch
+from mrp_check.student.package import Package
 
 
-def sources(package, spec, model, launch, python):
+def sources(
+    package: Package, spec: Spec, model: Model, launch: Launch | None, python: Mapping[str, Source]
+) -> dict[str, list[str]]:
     """Return name of a spec's node -> its files, the main one first.
 
     python: file -> python_source.Source
@@ -24,7 +33,7 @@ def sources(package, spec, model, launch, python):
     return {name: with_own(package, files, python) for name, files in result.items()}
 
 
-def of_executable(package, model, executable):
+def of_executable(package: Package, model: Model, executable: str) -> list[str]:
     """Return the sources of what roslaunch calls `executable`: of a target, or a script."""
     target = model.executables().get(executable)
     if target is not None:
@@ -34,7 +43,7 @@ def of_executable(package, model, executable):
     return [path for path in scripts if path in package.files][:1]
 
 
-def _by_name(package, model, node):
+def _by_name(package: Package, model: Model, node: specs.Node) -> list[str]:
     if node.language != "python":
         for name, target in model.executables().items():
             if name == node.name:
@@ -47,7 +56,7 @@ def _by_name(package, model, node):
     ][:1]
 
 
-def with_own(package, files, python):
+def with_own(package: Package, files: Iterable[str], python: Mapping[str, Source]) -> list[str]:
     """Return the files and, after them, what of the package they include or import."""
     found, queue = [], list(files)
     while queue:
@@ -62,14 +71,14 @@ def with_own(package, files, python):
     return found
 
 
-def _included(package, file):
+def _included(package: Package, file: str) -> Iterator[str]:
     for header, _ in uses.includes(package, file):
         for path in package.of_kind("header", "cpp"):
             if f"/{path}".endswith(f"/{header}") and path != file:
                 yield path
 
 
-def _imported(package, source):
+def _imported(package: Package, source: Source) -> Iterator[str]:
     names = set()
     for node in source.import_nodes:
         if isinstance(node, ast.Import):

@@ -8,8 +8,11 @@ import functools
 import pathlib
 import re
 import typing
+from typing import Iterator
 
 from mrp_check.contract.resources import SHARES
+from mrp_check.student.cmake import Model
+from mrp_check.student.package import Package
 
 # Headers whose folder is not called like the package that has them.
 _HEADERS = {"ros/package.h": "roslib", "ros/package.hpp": "roslib"}
@@ -37,7 +40,7 @@ class Use(typing.NamedTuple):
 _DEBIAN = {"cv2": "python3-opencv", "PIL": "python3-pil", "OpenGL": "python3-opengl"}
 
 
-def absent(name, language):
+def absent(name: str, language: str) -> str:
     """Return the sentence about a package or a module that this machine has not."""
     plain = name.lower().replace("_", "-")
     guess = _DEBIAN.get(name, f"python3-{plain}") if language == "python" else f"lib{plain}-dev"
@@ -48,33 +51,33 @@ def absent(name, language):
 
 
 @functools.lru_cache(maxsize=None)
-def is_ros_package(name):
+def is_ros_package(name: str) -> bool:
     """Return whether this machine has a ROS package of that name."""
     return any((pathlib.Path(share) / name / "package.xml").is_file() for share in SHARES)
 
 
-def includes(package, file):
+def includes(package: Package, file: str) -> Iterator[tuple[str, int]]:
     """Yield (header, line) of each #include that is no comment."""
     text = _COMMENT.sub(lambda m: re.sub(r"[^\n]", " ", m.group()), package.text(file))
     for match in _INCLUDE.finditer(text):
         yield match.group(1), text.count("\n", 0, match.start(1)) + 1
 
 
-def package_of_header(header):
+def package_of_header(header: str) -> str:
     if header in _HEADERS:
         return _HEADERS[header]
     folder = header.split("/")[0] if "/" in header else ""
     return "roscpp" if folder == "ros" else folder
 
 
-def is_test(path):
+def is_test(path: str) -> bool:
     return path.split("/")[0] in ("test", "tests")
 
 
-def of(package, model):
+def of(package: Package, model: Model) -> dict[str, Use]:
     """Return name -> Use of the ROS packages that the sources use; tests are left out."""
     built = {s for target in model.targets.values() for s in target.sources}
-    found = {}
+    found: dict[str, Use] = {}
     for file in package.of_kind("cpp", "header"):
         # What is compiled into nothing needs nothing.
         if is_test(file) or package.kind(file) == "cpp" and model.complete and file not in built:
@@ -88,18 +91,21 @@ def of(package, model):
             tree = ast.parse(package.text(file))
         except (SyntaxError, ValueError, RecursionError, MemoryError):
             continue
-        for node in ast.walk(tree):
-            names = []
-            if isinstance(node, ast.Import):
-                names = [alias.name for alias in node.names]
-            elif isinstance(node, ast.ImportFrom) and not node.level and node.module:
-                names = [node.module]
-            for name in names:
-                _add(found, package, name.split(".")[0], Use(file, node.lineno, "python", True))
+        for name, line in _imports(tree):
+            _add(found, package, name.split(".")[0], Use(file, line, "python", True))
     return found
 
 
-def _add(found, package, name, use):
+def _imports(tree: ast.AST) -> Iterator[tuple[str, int]]:
+    """Yield (module, line) of each import that names it in full."""
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Import):
+            yield from ((alias.name, node.lineno) for alias in node.names)
+        elif isinstance(node, ast.ImportFrom) and not node.level and node.module:
+            yield node.module, node.lineno
+
+
+def _add(found: dict[str, Use], package: Package, name: str, use: Use) -> None:
     if name == package.name or not name or not is_ros_package(name):
         return
     use = use._replace(firm=name not in _LOOSE or use.language == "cpp" and name == "roslib")

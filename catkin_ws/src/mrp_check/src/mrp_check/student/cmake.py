@@ -13,13 +13,14 @@ import os
 import pathlib
 import re
 import typing
+from typing import Collection, Iterable, Mapping, Sequence, Tuple
 
 from mrp_check.confined import written
 
 
 class Call(typing.NamedTuple):
     command: str  # in lower case
-    arguments: list
+    arguments: list[str]
     file: str  # relative to the package
     line: int
 
@@ -33,11 +34,13 @@ class Target:
     line: int
     is_library: bool = False
     output: str = ""
-    sources: list = dataclasses.field(default_factory=list)
-    missing: list = dataclasses.field(default_factory=list)  # sources that do not exist
-    links: list = dataclasses.field(default_factory=list)
+    sources: list[str] = dataclasses.field(default_factory=list)
+    missing: list[tuple[str, str, int]] = dataclasses.field(
+        default_factory=list
+    )  # sources that do not exist
+    links: list[str] = dataclasses.field(default_factory=list)
     link_line: int | None = None
-    dependencies: list = dataclasses.field(default_factory=list)
+    dependencies: list[str] = dataclasses.field(default_factory=list)
 
 
 class Script(typing.NamedTuple):
@@ -47,9 +50,9 @@ class Script(typing.NamedTuple):
     by: str  # catkin_install_python or install
 
 
-def traced(trace, package_folder):
+def traced(trace: pathlib.Path, package_folder: pathlib.Path) -> list[Call]:
     """Return the Calls in a file that CMake's --trace-format=json-v1 made, of the package alone."""
-    calls = []
+    calls: list[Call] = []
     try:
         text = written.read(trace).decode("utf-8", "replace")
     except OSError:
@@ -66,7 +69,7 @@ def traced(trace, package_folder):
     return calls
 
 
-def relative(path, folder):
+def relative(path: str | pathlib.Path, folder: pathlib.Path) -> str | None:
     """Return the path relative to the folder, or None if it is not inside it."""
     try:
         return pathlib.Path(os.path.normpath(path)).relative_to(folder).as_posix()
@@ -74,6 +77,7 @@ def relative(path, folder):
         return None
 
 
+_Token = Tuple[str, int, bool]  # its text, its line, whether it is a parenthesis
 _TOKEN = re.compile(
     r"#\[(?P<eq>=*)\[.*?\](?P=eq)\]|#[^\n]*|\[(?P<eq2>=*)\[(?P<bracket>.*?)\](?P=eq2)\]"
     r'|"(?P<quoted>(?:[^"\\]|\\.)*)"|(?P<paren>[()])|(?P<word>[^\s()"#]+)',
@@ -81,9 +85,10 @@ _TOKEN = re.compile(
 )
 
 
-def parsed(text, file):
+def parsed(text: str, file: str) -> list[Call]:
     """Return the Calls in a CMake file's text, as far as it can be read, with set() alone."""
-    calls, variables, tokens = [], {}, []
+    calls, tokens = [], []
+    variables: dict[str, str] = {}
     for match in _TOKEN.finditer(text):
         line = text.count("\n", 0, match.start()) + 1
         if match.group("paren"):
@@ -117,6 +122,7 @@ def parsed(text, file):
     return calls
 
 
+START = ""
 _KNOWN = {
     "add_executable",
     "target_link_libraries",
@@ -132,19 +138,21 @@ _KNOWN = {
 }
 
 
-def _begins_call(tokens, index, line):
+def _begins_call(tokens: Sequence[_Token], index: int, line: int) -> bool:
     word, number, _ = tokens[index]
     after = tokens[index + 1] if index + 1 < len(tokens) else ("", 0, False)
     return number > line and after[2] and after[0] == "(" and word.lower() in _KNOWN
 
 
-def _expanded(text, variables):
+def _expanded(text: str, variables: Mapping[str, str]) -> str:
     return re.sub(r"\$\{(\w+)\}", lambda m: variables.get(m.group(1), m.group(0)), text)
 
 
-def sections(arguments, names, start=None):
-    """Return keyword -> its arguments, for a call such as find_package(x REQUIRED COMPONENTS y)."""
-    result, current = {start: []}, start
+def sections(arguments: Iterable[str], names: Collection[str]) -> dict[str, list[str]]:
+    """Return keyword -> its arguments, for a call such as find_package(x REQUIRED COMPONENTS y);
+    those before the first keyword are of START."""
+    result: dict[str, list[str]] = {START: []}
+    current = START
     for argument in arguments:
         if argument in names:
             current = argument
@@ -166,21 +174,29 @@ class Model:
     targets: name -> Target; scripts: list of Script; message_files: name -> Call
     """
 
-    def __init__(self, folder, calls, complete):
+    def __init__(self, folder: pathlib.Path, calls: Iterable[Call], complete: bool) -> None:
         self.folder = pathlib.Path(folder)
         self.complete = complete
         self.calls = list(calls)
         if not complete:
             self.calls += self._rest()
-        self.project = self.catkin = self.catkin_package = self.late = self.generate = None
-        self.components, self.depends, self.targets = {}, [], {}
-        self.scripts, self.message_files, self.installs = [], {}, []
-        self.add_message_files = None
+        self.project: tuple[str, Call] | None = None
+        self.catkin: Call | None = None
+        self.catkin_package: Call | None = None
+        self.late: Target | None = None
+        self.add_message_files: Call | None = None
+        self.generate: Call | None = None
+        self.components: dict[str, Call] = {}
+        self.depends: list[str] = []
+        self.targets: dict[str, Target] = {}
+        self.scripts: list[Script] = []
+        self.message_files: dict[str, Call] = {}
+        self.installs: list[Call] = []
         for call in self.calls:
             if call.arguments or call.command in _MAY_BE_EMPTY:
                 _UNDERSTOOD.get(call.command, lambda model, call: None)(self, call)
 
-    def _rest(self):
+    def _rest(self) -> list[Call]:
         """Return the calls that CMake did not come to."""
         path = self.folder / "CMakeLists.txt"
         try:
@@ -190,7 +206,7 @@ class Model:
         reached = max((c.line for c in self.calls if c.file == "CMakeLists.txt"), default=0)
         return [call for call in parsed(text, "CMakeLists.txt") if call.line > reached]
 
-    def path(self, text, call):
+    def path(self, text: str, call: Call) -> str | None:
         """Return a path in a call, relative to the package; None if it is not inside it."""
         base = self.folder / pathlib.PurePosixPath(call.file).parent
         for folder in (base, self.folder):
@@ -199,10 +215,10 @@ class Model:
                 return relative(path, self.folder)
         return relative(base / text, self.folder)
 
-    def executables(self):
+    def executables(self) -> dict[str, Target]:
         return {t.output or t.name: t for t in self.targets.values() if not t.is_library}
 
-    def all_sources(self, target, seen=()):
+    def all_sources(self, target: Target, seen: tuple[str, ...] = ()) -> list[str]:
         """Return the sources of a target and of the package's libraries that it is linked with."""
         sources = list(target.sources)
         for name in target.links:
@@ -211,10 +227,10 @@ class Model:
                 sources += self.all_sources(other, (*seen, target.name))
         return list(dict.fromkeys(sources))
 
-    def _project(self, call):
+    def _project(self, call: Call) -> None:
         self.project = self.project or (call.arguments[0], call)
 
-    def _find_package(self, call):
+    def _find_package(self, call: Call) -> None:
         parts = sections(
             call.arguments, {"REQUIRED", "COMPONENTS", "QUIET", "OPTIONAL_COMPONENTS", "CONFIG"}
         )
@@ -222,13 +238,13 @@ class Model:
         if name == "catkin":
             self.catkin = self.catkin or call
             # find_package(catkin REQUIRED roscpp) means the same as with COMPONENTS.
-            rest = parts[None][1:] + parts.get("REQUIRED", []) + parts.get("COMPONENTS", [])
+            rest = parts[START][1:] + parts.get("REQUIRED", []) + parts.get("COMPONENTS", [])
             for component in rest:
                 self.components.setdefault(component, call)
         else:
             self.components.setdefault(name, call)
 
-    def _catkin_package(self, call):
+    def _catkin_package(self, call: Call) -> None:
         self.catkin_package = self.catkin_package or call
         if self.targets:
             self.late = next(iter(self.targets.values()))
@@ -238,7 +254,7 @@ class Model:
         }
         self.depends = sections(call.arguments, names).get("CATKIN_DEPENDS", [])
 
-    def _add_executable(self, call, is_library=False):
+    def _add_executable(self, call: Call, is_library: bool = False) -> None:
         name, *sources = call.arguments
         if "ALIAS" in sources or "IMPORTED" in sources:
             return
@@ -258,7 +274,7 @@ class Model:
         }
         self._sources(target, [source for source in sources if source not in words], call)
 
-    def _sources(self, target, sources, call):
+    def _sources(self, target: Target, sources: Iterable[str], call: Call) -> None:
         for source in sources:
             if "$" in source:
                 continue
@@ -268,41 +284,41 @@ class Model:
             else:
                 target.sources.append(path)
 
-    def _add_library(self, call):
+    def _add_library(self, call: Call) -> None:
         self._add_executable(call, is_library=True)
 
-    def _target_sources(self, call):
+    def _target_sources(self, call: Call) -> None:
         target = self.targets.get(call.arguments[0])
         if target:
             rest = [a for a in call.arguments[1:] if a not in ("PUBLIC", "PRIVATE", "INTERFACE")]
             self._sources(target, rest, call)
 
-    def _target_link_libraries(self, call):
+    def _target_link_libraries(self, call: Call) -> None:
         target = self.targets.get(call.arguments[0])
         if target:
             target.links += call.arguments[1:]
             target.link_line = call.line
 
-    def _add_dependencies(self, call):
+    def _add_dependencies(self, call: Call) -> None:
         target = self.targets.get(call.arguments[0])
         if target:
             target.dependencies += call.arguments[1:]
 
-    def _set_target_properties(self, call):
+    def _set_target_properties(self, call: Call) -> None:
         if "OUTPUT_NAME" in call.arguments[:-1] and "PROPERTIES" in call.arguments:
             output = call.arguments[call.arguments.index("OUTPUT_NAME") + 1]
             for name in call.arguments[: call.arguments.index("PROPERTIES")]:
                 if name in self.targets:
                     self.targets[name].output = output
 
-    def _catkin_install_python(self, call):
+    def _catkin_install_python(self, call: Call) -> None:
         programs = sections(call.arguments, {"PROGRAMS", "DESTINATION", "OPTIONAL"})
         for path in programs.get("PROGRAMS", []):
             self.scripts.append(
                 Script(self.path(path, call) or path, call.file, call.line, "catkin_install_python")
             )
 
-    def _install(self, call):
+    def _install(self, call: Call) -> None:
         self.installs.append(call)
         if call.arguments[0] == "PROGRAMS":
             names = {"PROGRAMS", "DESTINATION", "OPTIONAL", "PERMISSIONS", "RENAME", "COMPONENT"}
@@ -311,7 +327,7 @@ class Model:
                     Script(self.path(path, call) or path, call.file, call.line, "install")
                 )
 
-    def _add_message_files(self, call):
+    def _add_message_files(self, call: Call) -> None:
         self.add_message_files = self.add_message_files or call
         parts = sections(call.arguments, {"FILES", "DIRECTORY", "NOINSTALL", "PACKAGE"})
         folder = (parts.get("DIRECTORY") or ["msg"])[0]
@@ -321,7 +337,7 @@ class Model:
         for file in files:
             self.message_files[f"{folder}/{file}"] = call
 
-    def _generate_messages(self, call):
+    def _generate_messages(self, call: Call) -> None:
         self.generate = self.generate or call
 
 

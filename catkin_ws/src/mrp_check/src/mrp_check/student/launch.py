@@ -4,57 +4,40 @@
 from __future__ import annotations
 
 import dataclasses
-import json
 import pathlib
 import xml.parsers.expat
+from typing import Iterable
 
-from mrp_check import confine
+from mrp_check import confine, sandbox
+from mrp_check.confined import crossing, variables
+from mrp_check.confined.launch_dump import Dump, Started
 from mrp_check.contract.errors import CannotCheck
 from mrp_check.contract.finding import Finding
+from mrp_check.contract.spec import Spec
 from mrp_check.contract.words import nearest
-from mrp_check.student.xml_file import elements, xml_finding
+from mrp_check.student.package import Package
+from mrp_check.student.workspace import Workspace
+from mrp_check.student.xml_file import Element, elements, xml_finding
 
 SECONDS = 180  # that loading a launch file may take
+_SAID = 500  # characters of what roslaunch's reader says when it fails
 
 
 @dataclasses.dataclass
-class Started:
-    """A node that the launch file starts; file is relative to the package, or None."""
+class Launch(Dump):
+    """What roslaunch makes of a file; files are relative to the package, those of others left out.
 
-    package: str
-    type: str
-    name: str
-    namespace: str
-    output: str
-    remaps: list
-    env: list
-    arguments: str
-    prefix: str
-    file: str | None
-    line: int | None = None
+    file: the one that it was asked about
+    """
 
-    @property
-    def path(self):
-        return self.namespace.rstrip("/") + "/" + self.name
+    file: str = ""
 
-
-@dataclasses.dataclass
-class Launch:
-    """What roslaunch makes of a file. error: what it said instead, or an empty text."""
-
-    file: str
-    error: str
-    nodes: list
-    warnings: list
-    files: list
-    params: dict = dataclasses.field(default_factory=dict)
-
-    def of_spec(self, spec):
+    def of_spec(self, spec: Spec) -> list[Started]:
         """Return the first node of each name of the spec; none if roslaunch cannot read it."""
         nodes = {} if self.error else {node.name: node for node in reversed(self.nodes)}
         return [nodes[name] for name in spec.nodes if name in nodes]
 
-    def elements(self, package):
+    def elements(self, package: Package) -> list[tuple[str, Element]]:
         """Return the (file, Element)s of the file and of what of the package it includes."""
         found = []
         for file in self.files or [self.file]:
@@ -65,13 +48,13 @@ class Launch:
         return found
 
 
-def find(package, spec):
+def find(package: Package, spec: Spec) -> str | None:
     """Return the path of the spec's launch file in the package, or None."""
     found = [path for path in package.files if path.rsplit("/", 1)[-1] == spec.launch.file]
     return min(found, key=lambda path: (not path.startswith("launch/"), path), default=None)
 
 
-def readable(package, spec):
+def readable(package: Package, spec: Spec) -> tuple[str | None, list[Finding]]:
     """Return (path of the launch file or None, the Findings that say why it cannot be loaded)."""
     path = find(package, spec)
     if path is None:
@@ -99,52 +82,43 @@ def readable(package, spec):
     return path, []
 
 
-def load(package, workspace, file, *arguments):
-    """Return the Launch of a file of the package. Runs roslaunch's own reader, confined."""
-    copy = workspace.package_folder
-    done = workspace.catkin.run(
+def load(workspace: Workspace, file: str) -> Launch:
+    """Return the Launch of a file of the package, or of an absolute path; runs roslaunch's reader.
+
+    Raises CannotCheck.
+    """
+    copy, reader = workspace.package_folder, sandbox.code() / "launch_dump.py"
+    done = workspace.run(
         "/usr/bin/python3",
-        str(confine.code() / "launch_dump.py"),
+        str(reader),
         str(copy / file),
-        *arguments,
-        time=SECONDS,
-        ROS_PACKAGE_PATH=package_path(workspace),
+        seconds=SECONDS,
+        env={variables.PACKAGES: workspace.ros_packages},
     )
     try:
-        data = json.loads(done.output)
-    except ValueError:
+        launch = crossing.from_json(Launch, done.output)
+    except crossing.CrossingError as error:
         if done.ended_by is None:
-            raise CannotCheck(f"roslaunch's reader failed: {done.errors.strip()[-500:]}") from None
+            said = done.errors.strip()[-_SAID:] or error
+            raise CannotCheck(f"roslaunch's reader failed: {said}") from None
         why = done.limit_text(confine.Limits(time=SECONDS))
-        return Launch(file, f"reading it was ended: {why}", [], [], [])
-    nodes = []
-    for entry in data["nodes"]:
-        path = _relative(entry["file"], copy)
-        node = Started(
-            **{**entry, "remaps": [tuple(pair) for pair in entry["remaps"]], "file": path}
-        )
-        nodes.append(node)
-    _find_lines(package, nodes)
-    files = [name for name in (_relative(f, copy) for f in data["files"]) if name]
-    return Launch(
-        file, data["error"].replace(f"{copy}/", ""), nodes, data["warnings"], files, data["params"]
-    )
+        return Launch(f"reading it was ended: {why}", file=file)
+    launch.file, launch.error = file, launch.error.replace(f"{copy}/", "")
+    for node in launch.nodes:
+        node.file = _relative(node.file, copy)
+    _find_lines(workspace.package, launch.nodes)
+    launch.files = [name for name in (_relative(one, copy) for one in launch.files) if name]
+    return launch
 
 
-def package_path(workspace):
-    """Return ROS_PACKAGE_PATH for the copy and this machine's own packages."""
-    folders = [workspace.folder / "src", "/opt/ros/noetic/share", "/usr/share"]
-    return ":".join(str(folder) for folder in folders if pathlib.Path(folder).is_dir())
-
-
-def _relative(path, folder):
+def _relative(path: str | None, folder: pathlib.Path) -> str | None:
     try:
         return pathlib.Path(path).relative_to(folder.resolve()).as_posix() if path else None
     except ValueError:
         return None
 
 
-def _find_lines(package, nodes):
+def _find_lines(package: Package, nodes: Iterable[Started]) -> None:
     """Fill in the line of each node: its element, by what stands in it, else by its order."""
     taken = set()
     for node in nodes:
@@ -155,7 +129,7 @@ def _find_lines(package, nodes):
         except xml.parsers.expat.ExpatError:
             continue
 
-        def rank(element, node=node):
+        def rank(element: Element, node: Started = node) -> tuple[bool, bool, bool]:
             attributes = element.attributes
             return (
                 (node.file, element.line, id(element.tag)) in taken,

@@ -8,14 +8,17 @@ import xml.parsers.expat
 import xml.sax.saxutils
 
 from catkin_pkg.package import InvalidPackage, parse_package_string
+from catkin_pkg.package import Package as Manifest
 
 from mrp_check.contract.finding import Finding
+from mrp_check.student.package import Package
+from mrp_check.student.workspace import Workspace
 from mrp_check.student.xml_file import elements, xml_finding
 
 FILE = "package.xml"
 
 
-def parse(package):
+def parse(package: Package) -> tuple[Manifest | None, Finding | None]:
     """Return (catkin_pkg's Package or None, the Finding that says why not, or None)."""
     data = package.bytes(FILE)
     try:
@@ -37,7 +40,7 @@ def parse(package):
         )
 
 
-def _line_of(package, text):
+def _line_of(package: Package, text: str) -> int | None:
     """Return the line of the first tag, attribute or value that a message names."""
     words = re.findall(r"following tags: ([\w, ]+)", text) or re.findall(r"\"([^\"]+)\"", text)
     for word in ",".join(words).replace(" ", "").split(","):
@@ -47,8 +50,9 @@ def _line_of(package, text):
     return package.find_line(FILE, "<package", 1)
 
 
-def replace(workspace, name):
+def replace(workspace: Workspace) -> None:
     """Put a valid package.xml into the copy, so that what comes after can be checked."""
+    name = workspace.package.name
     (workspace.package_folder / FILE).write_text(
         f'<package format="3"><name>{xml.sax.saxutils.escape(name)}</name><version>0.0.0</version>'
         '<description>x</description><maintainer email="x@x.example">x</maintainer>'
@@ -58,7 +62,7 @@ def replace(workspace, name):
     )
 
 
-def declared(manifest):
+def declared(manifest: Manifest) -> dict[str, set[str]]:
     """Return kind -> names of the packages that a manifest declares."""
     return {
         "build": {d.name for d in manifest.build_depends},
@@ -71,7 +75,7 @@ def declared(manifest):
 _DEPEND = re.compile(r"<\w*depend\b")
 
 
-def last_dependency(package):
+def last_dependency(package: Package) -> int:
     """Return the line of the last dependency in package.xml: where a missing one would stand."""
     lines = [n for n, text in enumerate(package.lines(FILE), 1) if _DEPEND.search(text)]
-    return max(lines, default=package.find_line(FILE, "<package", 1))
+    return max(lines) if lines else package.find_line(FILE, "<package", 1)

@@ -10,6 +10,7 @@ import pathlib
 import re
 import stat
 import xml.etree.ElementTree as ElementTree
+from typing import Iterable, overload
 
 from mrp_check.contract.errors import PackageError
 
@@ -48,19 +49,19 @@ class Package:
     Raises PackageError if there is no such folder, no package.xml, or too much of it.
     """
 
-    def __init__(self, root):
+    def __init__(self, root: str | pathlib.Path) -> None:
         self.root = pathlib.Path(root).absolute()
         if not self.root.exists():
             raise PackageError(f"There is no folder {root}.")
         if not self.root.is_dir():
             raise PackageError(f"{root} is no folder; expected the folder of a package.")
-        self._bytes = {}
+        self._bytes: dict[str, bytes] = {}
         self.files = self._list()
         self._known = {*self.files}
         if "package.xml" not in self.files:
             raise PackageError(self._no_manifest())
 
-    def _list(self):
+    def _list(self) -> list[str]:
         paths, size = [], 0
         for folder, folders, names in os.walk(self.root):
             folders[:] = sorted(set(folders) - NOT_SOURCES)
@@ -78,21 +79,21 @@ class Package:
                     )
         return paths
 
-    def _is_inside(self, path):
+    def _is_inside(self, path: pathlib.Path) -> bool:
         try:
             real = path.resolve(strict=True)
             return self.root.resolve() in real.parents and stat.S_ISREG(real.stat().st_mode)
         except (OSError, RuntimeError):
             return False
 
-    def _no_manifest(self):
+    def _no_manifest(self) -> str:
         below = sorted(path for path in self.files if path.endswith("/package.xml"))
         text = f"{self.root} has no package.xml: expected the folder of a catkin package."
         if below:
             text += f" Did you mean {self.root / below[0][: -len('/package.xml')]}?"
         return text
 
-    def bytes(self, path):
+    def bytes(self, path: str) -> bytes:
         """Return a file's bytes, cut at MAX_TEXT; none of a file that is not the package's."""
         if path not in self._bytes and path not in self._known:
             return b""
@@ -101,18 +102,18 @@ class Package:
                 self._bytes[path] = file.read(MAX_TEXT)
         return self._bytes[path]
 
-    def text(self, path):
+    def text(self, path: str) -> str:
         """Return a file's text. What is no UTF-8 is replaced; line ends become newlines."""
         data = self.bytes(path)
         if data.startswith(codecs.BOM_UTF8):
             data = data[len(codecs.BOM_UTF8) :]
         return data.decode("utf-8", "replace").replace("\r\n", "\n").replace("\r", "\n")
 
-    def lines(self, path):
+    def lines(self, path: str) -> list[str]:
         """Return a file's lines, without their ends."""
         return self.text(path).split("\n")
 
-    def kind(self, path):
+    def kind(self, path: str) -> str:
         """Return python, cpp, header, launch, message, cmake, or other."""
         name = path.rsplit("/", 1)[-1]
         if name == "CMakeLists.txt":
@@ -120,38 +121,39 @@ class Package:
         if _BACKUP.search(name):
             return "other"
         kind = KINDS.get(pathlib.PurePosixPath(path).suffix)
-        if (
-            kind == "python"
-            or kind is None
-            and self.shebang(path)
-            and "python" in self.shebang(path)
-        ):
+        if kind is None and "python" in (self.shebang(path) or ""):
             return "python"
         if kind is None and path.endswith((".launch.xml", "_launch.xml")):
             return "launch"
         return kind or "other"
 
-    def of_kind(self, *kinds):
+    def of_kind(self, *kinds: str) -> list[str]:
         """Return the paths of these kinds."""
         return [path for path in self.files if self.kind(path) in kinds]
 
-    def shebang(self, path):
+    def shebang(self, path: str) -> str | None:
         """Return the first line if it begins with #! (whatever its end), or None."""
         first = self.bytes(path)[:200].split(b"\n")[0]
         return first.decode("utf-8", "replace") if first.startswith(b"#!") else None
 
-    def is_executable(self, path):
+    def is_executable(self, path: str) -> bool:
         """Return whether the file's owner may execute it."""
         return bool((self.root / path).stat().st_mode & stat.S_IXUSR)
 
-    def find_line(self, path, text, default=None):
+    @overload
+    def find_line(self, path: str, text: str, default: int) -> int: ...
+
+    @overload
+    def find_line(self, path: str, text: str, default: int | None = None) -> int | None: ...
+
+    def find_line(self, path: str, text: str, default: int | None = None) -> int | None:
         """Return the number of the first line that has `text`, or `default`."""
         for number, line in enumerate(self.lines(path), 1):
             if text in line:
                 return number
         return default
 
-    def first_match(self, files, pattern):
+    def first_match(self, files: Iterable[str], pattern: str) -> tuple[str, int] | None:
         """Return the place of the first line in which a pattern is found, or None."""
         for file in files:
             for number, text in enumerate(self.lines(file), 1):
@@ -160,7 +162,7 @@ class Package:
         return None
 
     @functools.cached_property
-    def manifest(self):
+    def manifest(self) -> ElementTree.Element | None:
         """The root element of package.xml, or None if it is no XML."""
         try:
             return ElementTree.fromstring(self.bytes("package.xml"))
@@ -168,7 +170,7 @@ class Package:
             return None
 
     @functools.cached_property
-    def name(self):
+    def name(self) -> str:
         element = self.manifest.find("name") if self.manifest is not None else None
         text = (element.text or "").strip() if element is not None else ""
         if self.manifest is None:

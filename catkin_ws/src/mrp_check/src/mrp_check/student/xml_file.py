@@ -8,6 +8,7 @@ import re
 import xml.parsers.expat
 
 from mrp_check.contract.finding import Finding
+from mrp_check.student.package import Package
 
 
 @dataclasses.dataclass
@@ -20,12 +21,13 @@ class Element:
     parents: list
 
 
-def elements(data):
+def elements(data: bytes) -> list[Element]:
     """Return the Elements of an XML file's bytes. Raises xml.parsers.expat.ExpatError."""
-    found, stack = [], []
+    found: list[Element] = []
+    stack: list[Element] = []
     parser = xml.parsers.expat.ParserCreate()
 
-    def start(tag, attributes):
+    def start(tag: str, attributes: dict[str, str]) -> None:
         element = Element(tag, attributes, parser.CurrentLineNumber, list(stack))
         found.append(element)
         stack.append(element)
@@ -36,7 +38,9 @@ def elements(data):
     return found
 
 
-def xml_finding(id_, package, path, error):
+def xml_finding(
+    id_: str, package: Package, path: str, error: xml.parsers.expat.ExpatError
+) -> Finding:
     """Return the Finding about a file that is no XML."""
     what = xml.parsers.expat.ErrorString(error.code)
     line = error.lineno
@@ -55,11 +59,11 @@ def xml_finding(id_, package, path, error):
         cause,
         expected="XML in which each tag that is opened is closed, and each value is in quotes",
         seen=package.lines(path)[min(cause, len(package.lines(path))) - 1].strip(),
-        fix="Mend this line; `xmllint --noout` says whether the file is well-formed.",
+        fix="Correct this line; `xmllint --noout` says whether the file is well-formed.",
     )
 
 
-def _bad_token(package, path, line):
+def _bad_token(package: Package, path: str, line: int) -> tuple[int, str]:
     """Return the line that is to blame for a character that cannot stand where it does."""
     lines = package.lines(path)
     for number in range(line, 0, -1):
@@ -81,7 +85,7 @@ _TAG = re.compile(
 )
 
 
-def _unclosed(package, path, noticed):
+def _unclosed(package: Package, path: str, noticed: int | None) -> tuple[int, str]:
     """Return (line of the tag that is opened and not closed, what to say of it)."""
     text, stack = package.text(path), []
     for match in _TAG.finditer(text):

@@ -1,17 +1,17 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Python starts with this file, in a confined run of a Python node, and tells what the node does.
 
-It writes one JSON object a line to the file MRP_CHECK_HOOK. Places are those of the package's own
-code, which lies under MRP_CHECK_SOURCES:
+The variable MRP_CHECK_HOOK has a plans.Hook as JSON. Each line that is written to its file `events`
+is a seen.Event as JSON, with places in the package's own code:
 
-    {"event": "init" | "publisher" | "subscriber" | "publish" | "timer", "file", "line", ...}
-    {"event": "exit", "code", "file", "line"}   sys.exit() with another code than 0
+    event: init, publisher, subscriber, publish or timer, with file, line and perhaps a topic
+    event: exit, with file and line: sys.exit() with another code than 0
 
-With MRP_CHECK_WRAP, a JSON object with "field", "start", "step" and "modulus", it looks for the
-counter of what is published, after three messages sets it near its end, and tells what follows:
+If the hook has a `wrap`, it looks for the counter of what is published, after three messages sets
+it near its end, and tells what follows:
 
-    {"event": "set", "names", "next"}    or   {"event": "not_found"}
-    {"event": "after", "value"}          or   {"event": "error", "text", "value", "file", "line"}
+    event: set, with the names of what holds the counter; or not_found
+    event: after, with a value; or error, with its text, file and line
 
 On SIGUSR1 it prints where each thread stands.
 """
@@ -27,31 +27,36 @@ import os
 import signal
 import sys
 import types
+from typing import Any, Callable, Dict, Iterator, List, Optional, Set, Tuple
 
-_SOURCES = os.path.realpath(os.environ.get("MRP_CHECK_SOURCES", "/nowhere")) + "/"
-_WRAP = json.loads(os.environ.get("MRP_CHECK_WRAP", "null"))
+_HOOK = json.loads(os.environ.get("MRP_CHECK_HOOK", "{}"))
+_SOURCES = os.path.realpath(_HOOK.get("sources", "/nowhere")) + "/"
+_WRAP = _HOOK.get("wrap")
 
 _LOOK = 3  # messages after which the counter should be known
 _GIVE_UP = 8
 _AFTER = 4  # messages that are told after the counter was set
 _FRAMES = 8
+# In these, no counter is looked for.
+_SKIP = (str, bytes, types.ModuleType, types.FunctionType, types.BuiltinFunctionType)
 
 
-def _tell(event, **what):
+def _tell(event: str, **what: object) -> None:
     try:
-        with open(os.environ["MRP_CHECK_HOOK"], "a") as file:
-            file.write(json.dumps({"event": event, **what}, default=str) + "\n")
-    except (OSError, KeyError, ValueError):
+        with open(_HOOK["events"], "a") as file:
+            file.write(json.dumps({"event": event, **what}) + "\n")
+    except (OSError, TypeError, ValueError):
         pass  # the node goes on in any case
 
 
-def _is_own(frame):
+def _is_own(frame: types.FrameType) -> bool:
     return os.path.realpath(frame.f_code.co_filename).startswith(_SOURCES)
 
 
-def _own_frames():
+def _own_frames() -> List[types.FrameType]:
     """Return the frames of the package's own code that led here, the innermost first."""
-    frame, frames = sys._getframe(2), []
+    frame: Optional[types.FrameType] = sys._getframe(2)
+    frames: List[types.FrameType] = []
     while frame and len(frames) < _FRAMES:
         if _is_own(frame):
             frames.append(frame)
@@ -59,7 +64,7 @@ def _own_frames():
     return frames
 
 
-def _place(frames):
+def _place(frames: List[types.FrameType]) -> Dict[str, object]:
     """Return the file, relative to the sources, and the line of the innermost frame."""
     if not frames:
         return {"file": None, "line": None}
@@ -70,20 +75,22 @@ def _place(frames):
 # --- What the node calls
 
 
-def _tell_calls(rospy):
+def _tell_calls(rospy: Any) -> None:
     told = set()
 
-    def tell_once(event, **what):
+    def tell_once(event: str, **what: object) -> None:
         key = (event, what.get("file"), what.get("line"))
         # What rospy does by itself is no news.
         if key not in told and what["file"] and what.get("topic") != "/rosout":
             told.add(key)
             _tell(event, **what)
 
-    def before(owner, name, event, describe):
+    def before(
+        owner: Any, name: str, event: str, describe: Callable[..., Dict[str, object]]
+    ) -> None:
         original = getattr(owner, name)
 
-        def called(*arguments, **keywords):
+        def called(*arguments: Any, **keywords: Any) -> Any:
             frames = _own_frames()
             try:
                 tell_once(event, **_place(frames), **describe(arguments, keywords))
@@ -94,13 +101,10 @@ def _tell_calls(rospy):
         called.__name__, called.__doc__ = name, original.__doc__
         setattr(owner, name, called)
 
-    def first(arguments, keywords, name, index):
-        return arguments[index] if len(arguments) > index else keywords.get(name)
+    def topic(arguments: Any, keywords: Any) -> Dict[str, object]:
+        return {"topic": arguments[1] if len(arguments) > 1 else keywords.get("name")}
 
-    def topic(arguments, keywords):
-        return {"topic": first(arguments, keywords, "name", 1)}
-
-    before(rospy, "init_node", "init", lambda a, k: {"name": first(a, k, "name", 0)})
+    before(rospy, "init_node", "init", lambda a, k: {})
     before(rospy.Publisher, "__init__", "publisher", topic)
     before(rospy.Subscriber, "__init__", "subscriber", topic)
     before(rospy.Timer, "__init__", "timer", lambda a, k: {})
@@ -108,11 +112,11 @@ def _tell_calls(rospy):
     _watch_publish(rospy, tell_once)
 
 
-def _watch_publish(rospy, tell_once):
+def _watch_publish(rospy: Any, tell_once: Callable[..., None]) -> None:
     original = rospy.Publisher.publish
     wrap = _Wrap(_WRAP) if _WRAP else None
 
-    def publish(self, *arguments, **keywords):
+    def publish(self: Any, *arguments: Any, **keywords: Any) -> Any:
         frames = _own_frames()
         place = _place(frames)
         tell_once("publish", topic=self.resolved_name, **place)
@@ -120,14 +124,14 @@ def _watch_publish(rospy, tell_once):
         if wrap:
             try:
                 message = rospy.msg.args_kwds_to_message(self.data_class, arguments, keywords)
-                value = _field(message, _WRAP["field"])
+                value = _number(_field(message, _WRAP["field"]))
             except Exception:
                 pass  # original() fails on it, too
         try:
             result = original(self, *arguments, **keywords)
         except BaseException as error:
             if wrap:
-                wrap.failed(error, value, place)
+                wrap.failed(error, place)
             raise
         if wrap and value is not None:
             wrap.published(value, frames)
@@ -137,19 +141,19 @@ def _watch_publish(rospy, tell_once):
     rospy.Publisher.publish = publish
 
 
-def _field(message, path):
+def _field(message: Any, path: str) -> Any:
     for name in path.split("."):
         message = getattr(message, name)
     return message
 
 
-def _tell_exits():
+def _tell_exits() -> None:
     for module, name in ((sys, "exit"), (os, "_exit")):
         original = getattr(module, name)
 
-        def leave(code=0, _original=original):
+        def leave(code: object = 0, _original: Callable[[Any], object] = original) -> None:
             if code not in (0, None):
-                _tell("exit", code=code, **_place(_own_frames()))
+                _tell("exit", **_place(_own_frames()))
             _original(code)
 
         setattr(module, name, leave)
@@ -158,7 +162,9 @@ def _tell_exits():
 class _AfterRospy(importlib.abc.MetaPathFinder):
     """Has _tell_calls done as soon as the node has imported rospy, not before."""
 
-    def find_spec(self, name, path, target=None):
+    def find_spec(
+        self, name: str, path: Any, target: object = None
+    ) -> Optional[importlib.machinery.ModuleSpec]:
         if name != "rospy":
             return None
         sys.meta_path.remove(self)
@@ -166,15 +172,18 @@ class _AfterRospy(importlib.abc.MetaPathFinder):
         if spec and spec.loader:
             load = spec.loader.exec_module
 
-            def exec_module(module):
+            def exec_module(module: types.ModuleType) -> None:
                 load(module)
                 _tell_calls(module)
 
-            spec.loader.exec_module = exec_module
+            setattr(spec.loader, "exec_module", exec_module)  # noqa: B010 (no method's place)
         return spec
 
 
 # --- The counter
+
+
+Key = Tuple[object, ...]  # of a slot
 
 
 class _Wrap:
@@ -185,13 +194,15 @@ class _Wrap:
     follows them. All that follows is set; so it does not matter which of it is only a copy.
     """
 
-    def __init__(self, rule):
+    def __init__(self, rule: Dict[str, int]) -> None:
         start, step, modulus = rule["start"], rule["step"], rule["modulus"]
         self.step = step
         self.last = start + (modulus - 1 - start) // step * step  # before it wraps round
-        self.seen, self.after, self.done = [], None, False
+        self.seen: List[Tuple[int, Dict[Key, Optional[int]]]] = []
+        self.after: Optional[int] = None
+        self.done = False
 
-    def published(self, value, frames):
+    def published(self, value: int, frames: List[types.FrameType]) -> None:
         if self.done:
             return
         if self.after is not None:
@@ -207,7 +218,7 @@ class _Wrap:
             self.done = True
             _tell("not_found")
 
-    def _set(self, slots):
+    def _set(self, slots: Dict[Key, "_Slot"]) -> None:
         recent = self.seen[-_LOOK:]
         names = []
         for key, slot in slots.items():
@@ -220,29 +231,27 @@ class _Wrap:
                 names.append(slot.name)
         if names:
             self.after = 0
-            _tell("set", names=sorted(set(names)), next=self.last)
+            _tell("set", names=sorted(set(names)))
 
-    def failed(self, error, value, place):
+    def failed(self, error: BaseException, place: Dict[str, object]) -> None:
         if self.after is not None and not self.done:
             self.done = True
-            _tell("error", text=f"{type(error).__name__}: {error}", value=value, **place)
+            _tell("error", text=f"{type(error).__name__}: {error}", **place)
 
 
-def _relation(pairs):
+def _relation(pairs: List[Tuple[int, Optional[int]]]) -> Optional[Callable[[int], Optional[int]]]:
     """Return the function that gives a slot's number for a published value, or None.
 
     pairs: (published value, number in the slot) of some messages
     """
-    if any(number is None for _, number in pairs):
-        return None
     (v0, n0), (v1, n1) = pairs[:2]
-    if v0 == v1 or n0 == n1:
+    if n0 is None or n1 is None or v0 == v1 or n0 == n1:
         return None
     slope = fractions.Fraction(n1 - n0, v1 - v0)
     if any(n0 + slope * (v - v0) != n for v, n in pairs):
         return None
 
-    def number_for(value):
+    def number_for(value: int) -> Optional[int]:
         number = n0 + slope * (value - v0)
         return int(number) if number.denominator == 1 else None
 
@@ -255,12 +264,12 @@ class _Slot:
     key: the same at each message
     """
 
-    def __init__(self, key, name, held, put):
+    def __init__(self, key: Key, name: str, held: Any, put: Callable[[Any], object]) -> None:
         self.key, self.name = key, name
         self._held, self._put = held, put
         self.value = _number(held)
 
-    def set(self, number):
+    def set(self, number: int) -> bool:
         try:
             self._put(_like(self._held, number))
             return True
@@ -268,7 +277,7 @@ class _Slot:
             return False
 
 
-def _number(held):
+def _number(held: Any) -> Optional[int]:
     """Return the whole number that something is, or None if it is none."""
     if isinstance(held, bool):
         return None
@@ -277,7 +286,7 @@ def _number(held):
     if isinstance(held, float) and held.is_integer():
         return int(held)
     if isinstance(held, itertools.count):
-        return held.__reduce__()[1][0]
+        return _number(held.__reduce__()[1][0])
     if type(held).__module__ == "numpy" and hasattr(held, "__index__"):
         return int(held)
     if isinstance(held, ctypes._SimpleCData) and isinstance(held.value, int):
@@ -285,18 +294,14 @@ def _number(held):
     return None
 
 
-def _put_inside(held):
-    return lambda one: setattr(held, "value", one.value)
-
-
-def _like(held, number):
+def _like(held: Any, number: int) -> Any:
     if isinstance(held, itertools.count):
         return itertools.count(number, *held.__reduce__()[1][1:])
     return type(held)(number)
 
 
-def _slots(frames):
-    seen = set()
+def _slots(frames: List[types.FrameType]) -> Iterator["_Slot"]:
+    seen: Set[int] = set()
     for depth, frame in enumerate(frames):
         variables = frame.f_locals
         if variables is frame.f_globals:
@@ -315,14 +320,16 @@ def _slots(frames):
                 yield from _slots_of(held, ("global", name), name, put, seen, 0)
 
 
-def _slots_of(held, key, name, put, seen, depth):
+def _slots_of(
+    held: Any, key: Key, name: str, put: Callable[[Any], object], seen: Set[int], depth: int
+) -> Iterator["_Slot"]:
     if _number(held) is not None:
         # A C number is changed in its place: others may hold the same one.
-        inside = isinstance(held, ctypes._SimpleCData)
-        yield _Slot(key, name, held, _put_inside(held) if inside else put)
+        is_c = isinstance(held, ctypes._SimpleCData)
+        put_in = (lambda one: setattr(held, "value", one.value)) if is_c else put
+        yield _Slot(key, name, held, put_in)
         return
-    skip = (str, bytes, types.ModuleType, types.FunctionType, types.BuiltinFunctionType)
-    if depth > 3 or id(held) in seen or held is None or isinstance(held, skip):
+    if depth > 3 or id(held) in seen or held is None or isinstance(held, _SKIP):
         return
     is_array = type(held).__module__ == "numpy" and getattr(held, "ndim", 0) == 1
     if isinstance(held, (list, dict)) or is_array:
@@ -355,11 +362,11 @@ def _slots_of(held, key, name, put, seen, depth):
         yield from _slots_of(one, (*key, attribute), attribute, setter, seen, depth + 1)
 
 
-def _own_names(held):
+def _own_names(held: Any) -> Set[str]:
     return set(getattr(held, "__dict__", ())) | set(getattr(held, "__slots__", ()))
 
 
-def _is_of_package(held):
+def _is_of_package(held: Any) -> bool:
     """Return whether something is a class of the package's own code, or an object of one."""
     kind = held if isinstance(held, type) else type(held)
     module = sys.modules.get(kind.__module__)
@@ -368,16 +375,16 @@ def _is_of_package(held):
     return path.startswith(_SOURCES) or kind.__module__ in ("__main__", "builtins.__main__")
 
 
-def _item_setter(container, index):
+def _item_setter(container: Any, index: object) -> Callable[[Any], None]:
     return lambda value: container.__setitem__(index, value)
 
 
-def _attribute_setter(owner, name):
+def _attribute_setter(owner: Any, name: str) -> Callable[[Any], None]:
     return lambda value: setattr(owner, name, value)
 
 
-def _local_setter(frame, name):
-    def put(value):
+def _local_setter(frame: types.FrameType, name: str) -> Callable[[Any], None]:
+    def put(value: Any) -> None:
         frame.f_locals[name] = value
         if sys.version_info < (3, 13):
             to_fast = ctypes.pythonapi.PyFrame_LocalsToFast
@@ -387,7 +394,7 @@ def _local_setter(frame, name):
     return put
 
 
-if "MRP_CHECK_HOOK" in os.environ:
+if _HOOK:
     faulthandler.register(signal.SIGUSR1, all_threads=True)
     sys.meta_path.insert(0, _AfterRospy())
     _tell_exits()

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What `make lint` asks of the JavaScript; tools/lint.sh installs eslint into build/lint.
+
+import { createRequire } from "node:module";
+
+const require = createRequire(new URL("build/lint/", import.meta.url));
+const js = require("@eslint/js");
+const { browser } = require("globals");
+
+export default [
+  js.configs.recommended,
+  { languageOptions: { globals: browser } },
+  {
+    // Sphinx makes this object; its pages load the file as a script.
+    files: ["**/doc/static/page.js"],
+    languageOptions: { sourceType: "script", globals: { DOCUMENTATION_OPTIONS: "readonly" } },
+  },
+  {
+    // Selenium runs the file as the body of a function.
+    files: ["**/browser_tests/*.js"],
+    languageOptions: { sourceType: "script", parserOptions: { ecmaFeatures: { globalReturn: true } } },
+  },
+];

@@ -1,0 +1,78 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Directives that show what `make bench` measured: recorded/results.json.
+
+.. bench-machine::       where it was measured
+.. bench-tables:: NAME   tables; NAME: a key of mrp_bench.tables.TABLES
+.. bench-plot:: NAME     a plot; NAME: a key of mrp_bench.plots.PLOTS. Its option `alt` says what
+                         the plot shows, in words
+"""
+
+import json
+import pathlib
+import sys
+
+from docutils import nodes
+from evidence import WORKSPACE
+from picture import Picture
+from sphinx.util.docutils import SphinxDirective
+
+sys.path.insert(0, str(WORKSPACE / "src" / "mrp_bench" / "src"))
+
+from mrp_bench import plots, tables
+
+
+def results(env):
+    """Return what results.json says; the page is built anew if that or the drawing changes."""
+    path = pathlib.Path(env.srcdir) / "recorded" / "results.json"
+    for file in (str(path), tables.__file__, plots.__file__, plots.svg.__file__):
+        env.note_dependency(file)
+    return json.loads(path.read_text())
+
+
+def paragraph(text, **more):
+    return nodes.paragraph(text, text, **more)
+
+
+class Machine(SphinxDirective):
+    def run(self):
+        return [paragraph(text, generated=True) for text in tables.machine(results(self.env))]
+
+
+class Tables(SphinxDirective):
+    required_arguments = 1
+
+    def run(self):
+        name = self.arguments[0]
+        if name not in tables.TABLES:
+            raise self.error(f"expected one of {', '.join(tables.TABLES)}, found {name}")
+        parts = [part for one in tables.TABLES[name](results(self.env)) for part in self.parts(one)]
+        return [nodes.container("", *parts, is_div=True, generated=True)]
+
+    def parts(self, one):
+        """Return the nodes of a tables.Table."""
+        yield from map(paragraph, one.before)
+        group = nodes.tgroup("", cols=len(one.header))
+        group += [nodes.colspec(colwidth=1) for _ in one.header]
+        group += nodes.thead("", self.row(one.header))
+        group += nodes.tbody("", *map(self.row, one.rows))
+        yield nodes.table("", nodes.title(one.title, one.title), group, classes=["figures"])
+        yield from map(paragraph, one.after)
+
+    def row(self, cells):
+        return nodes.row("", *(nodes.entry("", paragraph(cell)) for cell in cells))
+
+
+class Plot(Picture):
+    def run(self):
+        name = self.arguments[0]
+        if "alt" not in self.options or name not in plots.PLOTS:
+            raise self.error(f"expected the option 'alt', and one of {', '.join(plots.PLOTS)}")
+        plot = plots.PLOTS[name](results(self.env))
+        return [self.svg(plot.width, plot.height, plot.parts)] if plot else []
+
+
+def setup(app):
+    app.add_directive("bench-machine", Machine)
+    app.add_directive("bench-tables", Tables)
+    app.add_directive("bench-plot", Plot)
+    return {"parallel_read_safe": False}

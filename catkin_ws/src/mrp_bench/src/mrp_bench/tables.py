@@ -1,0 +1,314 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The tables of what results.json says, for table.md and for the tutorial's pages.
+
+It imports no library, because the pages are built without numpy and without ROS.
+"""
+
+import signal
+from typing import NamedTuple
+
+from mrp_bench.ways import LIMITS, WAYS, size_text
+
+NOISY = "too noisy"
+
+# A ratio is no figure if the bounds of its confidence interval lie further apart than this factor.
+_WIDEST_INTERVAL = 2
+
+
+class Table(NamedTuple):
+    """rows, header: lists of texts. before, after: the paragraphs around it."""
+
+    title: str
+    header: list
+    rows: list
+    before: tuple = ()
+    after: tuple = ()
+
+
+def machine(content):
+    """Return the paragraphs that say where and how the figures were measured."""
+    facts, noise = content["machine"], content["noise"]
+    verdict = content["verdict"]
+    return [
+        f"Measured on {facts['cores']} cores of {facts['processor']}, {facts['gigabytes']} GB, "
+        f"{facts['system']}, Linux {facts['kernel']}, roscpp {facts['roscpp']}, "
+        f"Python {facts['python']}.",
+        f"Noise: other programs took {_percent(noise['least'])} to {_percent(noise['most'])} of "
+        f"the processors' time, in {noise['probes']} probes.",
+        *([f"**{verdict[0].upper()}{verdict[1:]}.** The samples are kept."] if verdict else []),
+    ]
+
+
+def summary(content):
+    """Return the table of the plain nodes beside the limit: messages of 8 bytes."""
+    by_way = {
+        rate: {
+            row["way"]: row for row in content["rows"] if (row["size"], row["rate"]) == (8, rate)
+        }
+        for rate in (1000, 0)
+    }
+    rows = []
+    for way in ("raw_cpp", "cpp_cpp", "cpp_py", "py_cpp", "py_py"):
+        slow, fast = by_way[1000][way], by_way[0][way]
+        ratio = slow["latency_ratio"].get("raw_cpp")
+        rows.append(
+            [
+                WAYS[way].text,
+                f"{slow['latency']['p50']:.0f}",
+                f"{slow['latency']['p99']:.0f}",
+                f"{ratio[0]:.1f}" if ratio else "1",
+                _thousands(fast["throughput"]),
+            ]
+        )
+    header = ["way", "p50, µs", "p99, µs", "x raw TCP", "messages per second"]
+    return [Table("Messages of 8 bytes", header, rows)]
+
+
+def latency(content):
+    """Return a table for each size and rate."""
+    header = ["way", "p50, µs", "p90, µs", "p99, µs", "max, µs", "x C++", "x Python"]
+    header += ["lost", "order", "CPU: sender", "receiver"]
+    noisy = content["verdict"]
+    return [
+        Table(
+            f"{size_text(size)} at {rate} Hz",
+            header,
+            [
+                [
+                    WAYS[row["way"]].text,
+                    *(NOISY if noisy else f"{value:.1f}" for value in row["latency"].values()),
+                    *(_ratio(row["latency_ratio"].get(limit), noisy) for limit in LIMITS),
+                    *_delivered(row, noisy),
+                ]
+                for row in rows
+            ],
+        )
+        for size, rate, rows in _slices(content)
+        if rate
+    ]
+
+
+def throughput(content):
+    """Return a table for each size."""
+    header = ["way", "per second", "x C++", "x Python", "lost", "order"]
+    header += ["CPU: sender", "receiver", "waits"]
+    noisy = content["verdict"]
+    return [
+        Table(
+            f"{size_text(size)} as fast as it goes",
+            header,
+            [
+                [
+                    WAYS[row["way"]].text,
+                    NOISY if noisy else _thousands(row["throughput"]),
+                    *(_ratio(row["throughput_ratio"].get(limit), noisy) for limit in LIMITS),
+                    *_delivered(row, noisy),
+                    NOISY if noisy else f"{row['sender_switches']:.2f}",
+                ]
+                for row in rows
+            ],
+        )
+        for size, rate, rows in _slices(content)
+        if not rate
+    ]
+
+
+def _slices(content):
+    for size, rate in sorted({(row["size"], row["rate"]) for row in content["rows"]}):
+        rows = [row for row in content["rows"] if (row["size"], row["rate"]) == (size, rate)]
+        yield size, rate, rows
+
+
+def _delivered(row, noisy):
+    """Return the last cells: what was lost does not depend on noise, but processor time does."""
+    lost = f"{row['lost']} of {row['sent']}" if row["lost"] else "0"
+    order = f"{row['disordered']} wrong" if row["disordered"] else "kept"
+    sender, receiver = row["sender_cpu"], row["receiver_cpu"]
+    cpu = [f"{sender:.2f}", "the same" if receiver is None else f"{receiver:.2f}"]
+    return [lost, order, *([NOISY, NOISY] if noisy else cpu)]
+
+
+def _ratio(estimate, noisy):
+    if estimate is None:
+        return ""
+    return NOISY if noisy or is_noisy(estimate) else _interval(estimate)
+
+
+def is_noisy(estimate):
+    """Return whether a value with its bounds is too uncertain to be a figure."""
+    _, low, high = estimate
+    return high > _WIDEST_INTERVAL * low
+
+
+# The rows of the table of starts, and what they say.
+_STARTS = {
+    "first_line": "roslaunch's first line",
+    "master": "the master answers",
+    "first_started": "the first node is started",
+    "all_started": "all four are started",
+    "all_ready": "all four are ready",
+    "received_cpp": "first message at the C++ subscriber",
+    "received_py": "first message at the Python subscriber",
+    "nodes_ended": "Ctrl-C to the end of all four",
+    "ended": "Ctrl-C to the prompt",
+    "megabytes_read": "read from the disk, MB",
+}
+
+
+def starts(content):
+    """Return the table of the starts and stops of the four nodes, if there were any."""
+    columns, missing = content["starts"]["columns"], content["starts"]["missing"]
+    if not columns:
+        return []
+    titles = [f"{one['variant']}, {'cold' if one['cold'] else 'warm'}" for one in columns]
+    rows = [
+        [text, *(_start_cell(one, name, content["verdict"]) for one in columns)]
+        for name, text in _STARTS.items()
+    ]
+    why_not = {title: one["why_not"] for title, one in zip(titles, columns) if one["why_not"]}
+    return [
+        Table(
+            "Start and stop of the four nodes",
+            ["until", *titles],
+            [*rows, ["exit codes", *map(_exits, columns)]],
+            ["Seconds from the call, and from Ctrl-C: medians, and intervals of 95 %."],
+            [f"{name}: {text}." for name, text in {**why_not, **missing}.items()],
+        )
+    ]
+
+
+def _start_cell(column, name, noisy):
+    if column["why_not"]:
+        return "not measured"
+    if noisy:
+        return NOISY
+    estimate = column["figures"][name]
+    return "not seen" if estimate is None else _interval(estimate)
+
+
+def _exits(column):
+    if column["exits"] is None:
+        return "not seen"
+    of = column["starts"]
+    exits = [
+        f"{name}: {signal.Signals(-code).name if code < 0 else code} ({count} of {of})"
+        for name, code, count in column["exits"]
+    ]
+    return ", ".join(exits) or "all 0"
+
+
+# What is tabled of many robots, and of fans.
+ROBOTS = {
+    "up": "all nodes ready, s",
+    "down": "Ctrl-C to the end, s",
+    "cores": "cores in use",
+    "cpp": "MB per C++ node",
+    "py": "MB per Python node",
+    "p50": "p50 beside them, µs",
+    "p99": "p99, µs",
+}
+_FANS = {
+    "up": "all connected, s",
+    "cores": "cores in use",
+    "publisher_megabytes": "MB per publisher",
+    "subscriber_megabytes": "MB per subscriber",
+    "p50": "p50, µs",
+    "p99": "p99, µs",
+    "per_second": "messages per second",
+}
+FAN_SIDES = {
+    "publishers": "publishers to one subscriber",
+    "subscribers": "subscribers of one publisher",
+}
+_ABOUT_FANS = (
+    "Each publisher sends {size} bytes at {rate} Hz, and all begin at once. Cores in use are those "
+    "of all nodes together. A cost grows with the number of nodes to the power of its exponent."
+)
+_WHOLE = ("p50", "p99", "per_second")  # without decimals
+
+
+def robots(content):
+    """Return the table of many robots, if there were any."""
+    of, noisy = content["robots"], content["verdict"]
+    if not of["figures"]:
+        return []
+    rows = [
+        [str(one["robots"]), *_costs(one, ROBOTS, noisy), str(one["lost"])] for one in of["figures"]
+    ]
+    after = []
+    if of["most"] and not noisy:
+        by_cores, by_memory = of["most"]
+        after = [
+            f"If that goes on, {by_cores} robots fill the {content['machine']['cores']} cores, "
+            f"and {by_memory} fill the memory."
+        ]
+    return [
+        Table(
+            "Many robots of four nodes each",
+            ["robots", *ROBOTS.values(), "lost"],
+            rows + _exponents(of["exponents"], ROBOTS, noisy),
+            ["The latencies are those of 8 bytes at 100 Hz, from C++ to C++, beside the robots."],
+            after,
+        )
+    ]
+
+
+def fans(content):
+    """Return a table for each language, and for many publishers and many subscribers."""
+    noisy, cores = content["verdict"], content["machine"]["cores"]
+    tables = []
+    for series in content["fans"]["series"]:
+        side, figures, full = series["side"], series["figures"], series["full_at"]
+        rows = []
+        for one in figures:
+            lost = f"{one['lost']} of {one['sent']}" if one["lost"] else "0"
+            rows.append([str(one["nodes"]), *_costs(one, _FANS, noisy), lost])
+        says = f"{full} {side} fill" if full else f"{figures[-1]['nodes']} {side} do not fill"
+        tables.append(
+            Table(
+                f"{series['language']}: {FAN_SIDES[side]}",
+                [side, *_FANS.values(), "lost"],
+                rows + _exponents(series["exponents"], _FANS, noisy),
+                before=[] if tables else [_ABOUT_FANS.format(**content["fans"])],
+                after=[] if noisy else [f"{says} the {cores} cores."],
+            )
+        )
+    return tables
+
+
+def _costs(one, names, noisy):
+    return [
+        NOISY if noisy else f"{one[name]:.0f}" if name in _WHOLE else f"{one[name]:.2f}"
+        for name in names
+    ]
+
+
+def _exponents(found, names, noisy):
+    """Return the row of the exponents, if there are any."""
+    cells = [NOISY if noisy else _interval(found[name]) for name in names if name in found]
+    return [["exponent", *cells, ""]] if cells else []
+
+
+def _interval(estimate):
+    """Return a value and its bounds; of a single measurement there are no bounds."""
+    value, *bounds = (f"{one:.2f}" for one in estimate)
+    return f"{value} [{', '.join(bounds)}]" if bounds else value
+
+
+def _thousands(value):
+    return f"{value:,.0f}".replace(",", " ")
+
+
+def _percent(share):
+    return f"{share:.1%}".replace("%", " %")
+
+
+# Their names, as the pages call them.
+TABLES = {
+    "summary": summary,
+    "latency": latency,
+    "throughput": throughput,
+    "starts": starts,
+    "robots": robots,
+    "fans": fans,
+}

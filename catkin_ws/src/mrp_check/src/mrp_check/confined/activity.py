@@ -1,0 +1,97 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""How long nodes are waited for: as long as they do something, whatever the machine's load."""
+
+import time
+from typing import Callable, Dict, Iterable, List, Optional, Tuple, TypeVar, Union
+
+import psutil
+
+from mrp_check.confined.observe import Observer
+from mrp_check.confined.plans import Common
+from mrp_check.confined.seen import Log, Message, Registration
+
+TICK = 0.02  # seconds between two looks
+_IDLE = 3.0  # seconds in which an idle process uses hardly any processor time, ...
+_HARDLY = 0.05  # ... which is less than this many seconds
+BUSY = 20.0  # seconds of processor time: a process is no longer starting up, or ending
+_RECENT = 400  # messages, and lines, in which a node's last one is looked for
+
+Node = TypeVar("Node")
+
+
+class Activity:
+    """When something last came from each node, or was done by its process."""
+
+    def __init__(self, observer: Observer) -> None:
+        self.observer = observer
+        self._used: Dict[int, List[Tuple[float, float]]] = {}
+
+    def is_up_or_stuck(self, node: Optional[str], pid: Optional[int]) -> bool:
+        """Return whether a node has registered, or is not going to: its process is gone, does
+        nothing, or has worked for too long."""
+        if node is not None and self.last(node) is not None:
+            return True
+        if pid is None:
+            return False
+        used = processor_seconds(pid)
+        return used is None or used > BUSY or self.is_idle(pid)
+
+    def is_idle(self, pid: Optional[int]) -> bool:
+        """Return whether a process has used hardly any processor time for a while, or is no more.
+
+        On a busy machine, one that wants to work gets little, but more than that."""
+        used, now = processor_seconds(pid), time.monotonic()
+        if used is None or pid is None:
+            return True
+        history = self._used.setdefault(pid, [])
+        history.append((now, used))
+        # The latest that is old enough to be compared with, and all that came after it.
+        while len(history) > 1 and history[1][0] <= now - _IDLE:
+            del history[0]
+        then, before = history[0]
+        return now - then >= _IDLE and used - before < _HARDLY
+
+    def last(self, node: str) -> Optional[float]:
+        """Return when something last came from a node, or None if nothing has."""
+        seen = self.observer.seen
+        records: List[Union[Message, Log, Registration]] = [*seen.publications, *seen.subscriptions]
+        records += [*seen.messages[-_RECENT:], *seen.logs[-_RECENT:]]
+        return max((one.time for one in records if one.node == node), default=None)
+
+
+def processor_seconds(pid: Optional[int]) -> Optional[float]:
+    """Return the processor time that a process has used, or None if it is no more."""
+    try:
+        times = psutil.Process(pid).cpu_times() if pid else None
+    except psutil.Error:
+        return None
+    return times and times.user + times.system
+
+
+def wait(
+    plan: Common,
+    nodes: Iterable[Node],
+    is_up: Callable[[Node], bool],
+    is_settled: Callable[[Node], bool],
+    step: Callable[[], Optional[str]],
+) -> str:
+    """Wait until all nodes are settled, for as long as the plan says; return why no more is waited
+    for: "enough", "time", "most", or what step() returns.
+
+    step: called all the time; ends the waiting by what it returns, if that is not None
+    """
+    nodes, began, all_up = list(nodes), time.monotonic(), None
+    while True:
+        now = time.monotonic()
+        if all_up is None and all(map(is_up, nodes)):
+            all_up = now
+        ending = step()
+        if ending:
+            return ending
+        if now - (all_up or now) > plan.seconds:
+            return "time"
+        if now - began > plan.most:
+            return "most"
+        if all(map(is_settled, nodes)):
+            return "enough"
+        time.sleep(TICK)

@@ -1,0 +1,240 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Each node by itself: it is sent messages, and the signal that it is to end on."""
+
+import re
+import signal
+import time
+import typing
+from typing import List, Optional
+
+import rospy
+
+from mrp_check.confined import apart, crossing, messages, variables, written
+from mrp_check.confined.activity import BUSY, TICK, Activity, processor_seconds, wait
+from mrp_check.confined.observe import Observer
+from mrp_check.confined.plans import Common, DirectNode, DirectPlan
+from mrp_check.confined.program import Program, left_behind
+from mrp_check.confined.seen import Alone, DirectResult, Event
+
+_PACE = 1.0  # seconds after which the next value is sent, though the last one was not logged
+_ENDING = 90.0  # seconds after which not even a busy node is waited for
+_STACK_SECONDS = 1.0  # that a stuck node gets to print where it stands
+_AFTER = 4  # messages that the hook tells of after the counter was set
+_RECENT = 100  # lines in which one that was just logged is looked for
+# What a node subscribes to by itself.
+_OF_ROS = ("/clock", "/tf", "/tf_static")
+
+
+def run(plan: DirectPlan, observer: Observer, starter: apart.Starter) -> DirectResult:
+    """Run the nodes until they have done enough, and end them."""
+    began, activity = time.monotonic(), Activity(observer)
+    given = observer, starter, activity
+    nodes = [_Node(key, one, plan.common, *given) for key, one in plan.nodes.items()]
+
+    def send() -> None:
+        for node in nodes:
+            node.send()
+            node.send_paced()
+
+    wait(plan.common, nodes, _Node.is_up, _Node.is_settled, send)
+    running = [node for node in nodes if node.program.poll() is None]
+    for node in running:
+        node.end(signal.SIGKILL if node.plan.is_wrap else plan.signal)
+    while any([node.is_ending(plan.common.stop_seconds) for node in running]):
+        time.sleep(TICK)
+    stuck = [node for node in running if node.program.poll() is None]
+    for node in stuck:
+        if node.plan.hook:
+            node.program.send(signal.SIGUSR1)  # the hook then prints where each thread stands
+    time.sleep(_STACK_SECONDS if stuck else 0)
+    results = {node.key: node.result() for node in nodes}
+    for node in stuck:
+        node.program.kill()
+    left = left_behind({node.key: node.program for node in nodes})
+    for node in (node for node in nodes if node.program.was_executed()):
+        result, program = results[node.key], node.program
+        result.code, result.lines = program.poll(), program.all_lines()
+        result.line_count = program.line_count
+    return DirectResult(results, left, observer.seen_since(began))
+
+
+class _Node:
+    """A node that is started by itself."""
+
+    def __init__(
+        self,
+        key: str,
+        plan: DirectNode,
+        session: Common,
+        observer: Observer,
+        starter: apart.Starter,
+        activity: Activity,
+    ) -> None:
+        self.key, self.plan, self.observer, self.activity = key, plan, observer, activity
+        self.messages, self.silence = session.messages, session.silence
+        self.sent: List[Optional[int]] = []
+        self.sent_at = 0.0
+        self.asked: Optional[float] = None
+        self.was_registered = False
+        self.publisher: Optional[rospy.Publisher] = None
+        for name, value in plan.params.items():
+            rospy.set_param(name, value)
+        env = {**session.environment, **plan.env, variables.NAMESPACE: plan.namespace}
+        env[variables.MASTER] = observer.uri
+        if plan.hook:
+            env[variables.HOOK] = crossing.to_json(plan.hook)
+            env[variables.PYTHONPATH] = f"{plan.hook.folder}:{env[variables.PYTHONPATH]}"
+        self.program = Program(starter, plan.command, env, session.writable)
+
+    def name(self) -> Optional[str]:
+        """Return the node's own name, or None as long as it has not registered."""
+        inside, seen = self.plan.namespace + "/", self.observer.seen
+        names = [one.node for one in seen.publications + seen.subscriptions]
+        return next((name for name in names if name.startswith(inside)), None)
+
+    # --- What it is sent
+
+    def send(self) -> None:
+        """Send the plan's values, once, as soon as the node has subscribed."""
+        name = self.name()
+        if self.sent or not self.plan.values or name is None:
+            return
+        own = [one for one in self.observer.seen.subscriptions if one.node == name]
+        topics = [one for one in own if one.topic not in _OF_ROS]
+        # Of several, the one of the contract's type first.
+        topics.sort(key=lambda one: one.type != self.plan.type)
+        if not topics:
+            return
+        if self.publisher is None:
+            kind = topics[0].type if topics[0].type != "*" else self.plan.type
+            self.message_class = messages.of_type(kind, self.messages)
+            if self.message_class is None:
+                self.sent = [None]
+                return
+            self.publisher = self.observer.publisher(topics[0].topic, self.message_class)
+        if self.publisher.get_num_connections() == 0:
+            return
+        for value in self.plan.values:
+            self._send_one(self.publisher, value)
+
+    def _send_one(self, publisher: rospy.Publisher, value: int) -> None:
+        try:
+            message = self.message_class()
+            _set_field(message, self.plan.field, value)
+            publisher.publish(message)
+        except Exception:  # another type than the contract's
+            pass
+        self.sent.append(value)
+        self.sent_at = time.monotonic()
+
+    def send_paced(self) -> None:
+        """Send the values that come one by one: each when the one before was logged, or did not
+        come for a while."""
+        pending = self.plan.paced[max(len(self.sent) - len(self.plan.values), 0) :]
+        if self.publisher is None or not self.sent or not pending:
+            return
+        if self._has_logged(self.sent[-1]) or time.monotonic() - self.sent_at > _PACE:
+            self._send_one(self.publisher, pending[0])
+
+    def _has_logged(self, value: Optional[int]) -> bool:
+        number = re.compile(rf"(?<!\d){value}(?!\d)")
+        name = self.name()
+        recent = [log for log in self.observer.seen.logs[-_RECENT:] if log.node == name]
+        return any(number.search(log.text) for log in recent)
+
+    # --- Whether it is waited for
+
+    def is_up(self) -> bool:
+        if self.program.poll() is not None:
+            return True
+        return self.activity.is_up_or_stuck(self.name(), self.program.pid)
+
+    def is_settled(self) -> bool:
+        """Return whether no more has to be waited for from the node."""
+        if self.program.poll() is not None:
+            return True
+        now, name = time.monotonic(), self.name()
+        if name is None:
+            return self.is_up()
+        silent = now - (self.activity.last(name) or now) > self.silence
+        if silent and self.activity.is_idle(self.program.pid):
+            return True
+        if self.plan.is_wrap:
+            told = [event.event for event in self.events()]
+            return told.count("after") >= _AFTER or "error" in told or "not_found" in told
+        if self.observer.most_of(name) < self.plan.publishes:
+            return False
+        return not self.plan.values or self._has_heard(name)
+
+    def _has_heard(self, name: str) -> bool:
+        """Return whether the node has logged all that it was sent, if it is to log it."""
+        if not self.sent or not self.plan.received:
+            return bool(self.sent)
+        pattern = re.compile(self.plan.received)
+        logs = [log for log in list(self.observer.seen.logs) if log.node == name]
+        heard = [log for log in logs if pattern.search(log.text)]
+        return len(heard) >= len(self.plan.values) + len(self.plan.paced)
+
+    # --- Its end
+
+    def end(self, number: int) -> None:
+        """Send it the signal that it is to end on."""
+        self.was_registered = self._is_registered()
+        self.asked = time.monotonic()
+        self.program.send(number)
+
+    def is_ending(self, seconds: float) -> bool:
+        """Return whether it was asked to end, and may still be about to.
+
+        seconds: that it may take; on a busy machine it may take longer, while it does something
+        """
+        if self.program.poll() is not None or self.asked is None:
+            return False
+        idle = self.activity.is_idle(self.program.pid)  # asked each time, so that it knows
+        since = time.monotonic() - self.asked
+        used = processor_seconds(self.program.pid) or 0
+        return since < seconds or not idle and used < BUSY and since < _ENDING
+
+    def result(self) -> Alone:
+        """Return what is known of its end, but for its output."""
+        result = Alone(self.name(), self.sent)
+        self.program.poll()
+        if not self.program.was_executed():
+            return result
+        began, ended = self.program.started, self.program.ended
+        if self.asked is None:
+            result.ended_after = ended and ended - began
+        else:
+            result.asked = self.asked - began
+            result.stopped_in = ended and ended - self.asked
+            result.killed = ended is None
+        result.still_registered = self.was_registered and self._is_registered()
+        result.events = self.events()
+        return result
+
+    def _is_registered(self) -> bool:
+        name = self.name()
+        return name is not None and self.observer.is_registered(name)
+
+    def events(self) -> List[Event]:
+        """Return what the hook has reported so far, without what the node itself has put there."""
+        if not self.plan.hook:
+            return []
+        try:
+            lines = written.read(self.plan.hook.events).splitlines()
+        except OSError:
+            return []  # it has not written any yet
+        events = []
+        for line in lines:
+            try:
+                events.append(crossing.from_json(Event, line))
+            except crossing.CrossingError:
+                continue  # not yet whole
+        return events
+
+
+def _set_field(message: typing.Any, path: Optional[str], value: int) -> None:
+    *above, name = (path or "").split(".")
+    for part in above:
+        message = getattr(message, part)
+    setattr(message, name, type(getattr(message, name))(value))

@@ -1,0 +1,114 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The nodes as a launch file starts them, and roslaunch ends them."""
+
+import re
+import signal
+import time
+from typing import Dict, List, Optional
+
+from mrp_check.confined import apart, variables
+from mrp_check.confined.activity import TICK, Activity, wait
+from mrp_check.confined.observe import Observer
+from mrp_check.confined.plans import LaunchNode, LaunchPlan
+from mrp_check.confined.program import Program, left_behind
+from mrp_check.confined.seen import LaunchResult
+
+_DIED = re.compile(r"\[(?P<name>\S+)-\d+\] process has (?P<how>died|finished cleanly)")
+_STARTED = re.compile(r"process\[(?P<name>\S+)-\d+\]: started with pid \[(?P<pid>\d+)\]")
+_NOT_STARTED = re.compile(r"cannot launch node of type \[(?P<type>[^\]]*)\]")
+
+
+def run(plan: LaunchPlan, observer: Observer, starter: apart.Starter) -> LaunchResult:
+    """Run roslaunch until its nodes have done enough, and end it."""
+    env = {**plan.common.environment, variables.MASTER: observer.uri}
+    roslaunch = Program(starter, plan.command, env, plan.common.writable, merge=True)
+    launch = _Launch(plan, roslaunch, observer)
+
+    def has_ended() -> Optional[str]:
+        return None if roslaunch.poll() is None else "itself"
+
+    ending = wait(plan.common, plan.nodes, launch.is_up, launch.is_settled, has_ended)
+    latched = _latched(observer)
+    asked = time.monotonic()
+    roslaunch.send(signal.SIGINT)
+    while roslaunch.poll() is None and time.monotonic() - asked < plan.common.stop_seconds:
+        time.sleep(TICK)
+    stopped_in = None if roslaunch.poll() is None else time.monotonic() - asked
+    if stopped_in is None:
+        roslaunch.kill()
+    return LaunchResult(
+        ending=ending,
+        asked=asked - roslaunch.started,
+        stopped_in=stopped_in,
+        left=left_behind({None: roslaunch}),
+        lines=roslaunch.all_lines(),
+        latched=latched,
+        seen=observer.seen_since(roslaunch.started),
+    )
+
+
+def _latched(observer: Observer) -> Dict[str, List[str]]:
+    """Return topic -> the nodes that latch it."""
+    nodes = [name for name in observer.nodes() if observer.is_registered(name)]
+    topics = {one.topic for one in observer.seen.publications} - {"/rosout"}
+    return {topic: [name for name in nodes if observer.is_latched(name, topic)] for topic in topics}
+
+
+class _Launch:
+    """What roslaunch and its nodes are doing."""
+
+    def __init__(self, plan: LaunchPlan, roslaunch: Program, observer: Observer) -> None:
+        self.plan, self.roslaunch, self.observer = plan, roslaunch, observer
+        self.activity = Activity(observer)
+
+    def is_up(self, node: LaunchNode) -> bool:
+        return self._has_died(node) or self.activity.is_up_or_stuck(node.path, self._pid(node))
+
+    def is_settled(self, node: LaunchNode) -> bool:
+        """Return whether no more has to be waited for from a node."""
+        if self._has_died(node):
+            return True
+        last = self.activity.last(node.path)
+        if last is None:
+            return self.is_up(node)
+        pid = self._pid(node)
+        silent = time.monotonic() - last > self.plan.common.silence
+        if silent and (pid is None or self.activity.is_idle(pid)):
+            return True
+        if node.publishes and self.observer.most_of(node.path) < self.plan.enough:
+            return False
+        return self._has_heard(node)
+
+    def _has_heard(self, node: LaunchNode) -> bool:
+        """Return whether a node has heard as much as it should, if it should hear anything."""
+        subscriptions, logs = self.observer.seen.subscriptions, self.observer.seen.logs
+        # It may be that nobody sends it anything.
+        if node.hears and not any(one.node == node.path for one in list(subscriptions)):
+            return False
+        if not node.received:
+            return True
+        pattern = re.compile(node.received)
+        lines = [log for log in list(logs) if log.node == node.path and pattern.search(log.text)]
+        enough = self.plan.enough * node.senders
+        # One that logs other lines is waited for until there was twice as much to be heard.
+        counts = list(self.observer.counts.items())
+        sent = sum(count for (_, topic), count in counts if topic == node.hears)
+        return len(lines) >= enough or sent >= 2 * enough
+
+    def _pid(self, node: LaunchNode) -> Optional[int]:
+        """Return the process id that roslaunch has printed for a node, or None."""
+        for _, _, text in list(self.roslaunch.lines):
+            found = _STARTED.search(text)
+            if found and "/" + found["name"] == node.path:
+                init = self.roslaunch.init
+                return apart.id_outside(init, found["pid"]) if init else int(found["pid"])
+        return None
+
+    def _has_died(self, node: LaunchNode) -> bool:
+        for _, _, text in list(self.roslaunch.lines):
+            died, not_started = _DIED.search(text), _NOT_STARTED.search(text)
+            if died and "/" + died["name"] == node.path:
+                return True
+            if not_started and not_started["type"] == node.type:
+                return True
+        return False

@@ -1,0 +1,109 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What a source says: its Places; and what cpp_facts.py is asked and answers."""
+
+import dataclasses
+import enum
+from typing import Dict, List, Optional, Union
+
+Plain = Union[bool, int, float, str, None]  # a value that a source says plainly
+
+
+class Kind(enum.Enum):
+    """What stands at a place."""
+
+    INIT = "init"
+    PUBLISHER = "publisher"
+    SUBSCRIBER = "subscriber"
+    PUBLISH = "publish"
+    TIMER = "timer"
+    COUNTER = "counter"  # the first value of what is counted
+    STEP = "step"  # its change
+    RESET = "reset"  # where it begins anew
+    DATA = "data"  # a message's field is set
+    LOG = "log"
+    PRINT = "print"
+    SPIN = "spin"
+    LOOP = "loop"
+    SLEEP = "sleep"
+    EXIT = "exit"
+    SIGNAL = "signal"
+    FUNCTION = "function"
+    # In C++ alone:
+    HANDLE = "handle"
+    GLOBAL = "global"  # a handle at file scope
+    OWNER = "owner"  # of a handle, at file scope
+    DISCARDED = "discarded"  # made, and kept nowhere
+    LOCAL = "local"  # made, and kept in what ends too soon
+
+
+@dataclasses.dataclass
+class Place:
+    """Something in a source. What the source does not say plainly is None.
+
+    file: relative to the package
+    line: from 1
+    text: the constant text, such as a topic's or a node's name, or a line that is logged with {}
+        for each value in it; of others the name of what is called, or of a variable or its type
+    end: a function's last line; unused: whether nothing names it; usr: clang's name for it
+    queue, queue_line: its length, and where that stands
+    period: seconds of a timer; oneshot: whether it fires once
+    anonymous: whether a node asks for such a name
+    offset: where it stands in its file, in characters
+    type, bits: of a counter
+    names: of the variables that a message's field is set from
+    limit, value: a counter that has come to the limit is given the value
+    name, function: of a handle's variable, and the function that it stands in
+    holds: the types of the handles in it
+    """
+
+    file: str
+    line: int
+    kind: Kind
+    text: Optional[str] = None
+    end: int = 0
+    unused: Optional[bool] = None
+    usr: Optional[str] = None
+    queue: Plain = None
+    queue_line: Optional[int] = None
+    period: Plain = None
+    oneshot: Plain = None
+    anonymous: Plain = None
+    offset: int = 0
+    type: str = ""
+    bits: int = 0
+    names: List[str] = dataclasses.field(default_factory=list)
+    limit: int = 0
+    value: int = 0
+    name: Optional[str] = None
+    function: Optional[str] = None
+    holds: List[str] = dataclasses.field(default_factory=list)
+
+    def is_around(self, place: "Place") -> bool:
+        """Return whether this is a function in which another place is."""
+        within = self.line <= place.line <= self.end
+        return self.kind is Kind.FUNCTION and self.file == place.file and within
+
+
+@dataclasses.dataclass
+class Task:
+    """What cpp_facts.py is to read.
+
+    folder: of the package; headers: the file of cpp_headers.py
+    units: each a source, and the compiler's arguments for it
+    """
+
+    folder: str
+    headers: str
+    units: List[List[str]]
+
+
+@dataclasses.dataclass
+class Said:
+    """What a C++ source says. errors: what clang says against it; named: functions that it names"""
+
+    places: List[Place] = dataclasses.field(default_factory=list)
+    errors: List[str] = dataclasses.field(default_factory=list)
+    named: List[str] = dataclasses.field(default_factory=list)
+
+
+Answer = Dict[str, Said]  # by the source's path

@@ -1,0 +1,84 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What is wrong with a YAML file, in words: by YAML itself, or by a JSON schema."""
+
+from __future__ import annotations
+
+from typing import Any, Hashable, Iterable
+
+import jsonschema
+import yaml
+
+from mrp_check.contract.words import nearest
+
+
+class Loader(yaml.SafeLoader):
+    """Says when a key stands twice: plain YAML would take the last one, in silence."""
+
+    def construct_mapping(self, node: yaml.MappingNode, deep: bool = False) -> dict[Hashable, Any]:
+        seen = set()
+        for key, _ in node.value:
+            if isinstance(key, yaml.ScalarNode) and key.value in seen:
+                raise yaml.MarkedYAMLError(
+                    problem=f"the key '{key.value}' stands twice", problem_mark=key.start_mark
+                )
+            seen.add(getattr(key, "value", None) if isinstance(key, yaml.ScalarNode) else None)
+        return super().construct_mapping(node, deep)
+
+
+def no_such(kind: str, name: str, names: Iterable[str]) -> str:
+    return f"there is no {kind} '{name}'; there are: {', '.join(names)}." + near(name, names)
+
+
+def near(name: str, names: Iterable[str]) -> str:
+    near = nearest(name, names)
+    return f" Did you mean '{near}'?" if near else ""
+
+
+def sentence(error: jsonschema.ValidationError) -> str:
+    """Return what is wrong, in words, for an error of jsonschema."""
+    if error.validator == "additionalProperties":
+        known = list(error.schema.get("properties", {}))
+        unknown = sorted(str(key) for key in error.instance if key not in known)
+        if known:
+            return no_such("key", unknown[0], known)
+    if error.validator == "required":
+        missing = [key for key in error.validator_value if key not in error.instance]
+        return f"expected the key '{missing[0]}'; it is missing."
+    kinds = {
+        "object": "keys with values",
+        "array": "a list",
+        "string": "a text",
+        "integer": "a whole number",
+        "number": "a number",
+        "boolean": "true or false",
+    }
+    if error.validator == "type":
+        return f"expected {kinds[error.validator_value]}; found {_shown(error.instance)}."
+    if error.validator == "enum":
+        allowed = ", ".join(map(str, error.validator_value))
+        return f"expected one of: {allowed}; found {_shown(error.instance)}."
+    if error.validator == "pattern":
+        return f"'{error.instance}' does not match {error.validator_value}."
+    limits = {
+        "minimum": "at least",
+        "maximum": "at most",
+        "exclusiveMinimum": "more than",
+        "minLength": "a length of at least",
+        "minProperties": "entries: at least",
+    }
+    if error.validator in limits:
+        limit = f"{limits[error.validator]} {error.validator_value}"
+        return f"expected {limit}; found {_shown(error.instance)}."
+    return f"{error.message}."
+
+
+def _shown(value: object) -> str:
+    if value is None:
+        return "nothing"
+    if isinstance(value, (dict, list)) and not value:
+        return "nothing"
+    if isinstance(value, dict):
+        return "keys with values"
+    if isinstance(value, list):
+        return "a list"
+    return str(value).lower() if isinstance(value, bool) else repr(value)

@@ -1,0 +1,115 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The reports of a whole class as one table: for the console, as CSV and as a page."""
+
+from __future__ import annotations
+
+import csv
+import dataclasses
+import io
+import pathlib
+
+from mrp_check.contract.finding import ERROR
+from mrp_check.contract.verdict import BROKEN, MET, UNCHECKED
+from mrp_check.report import console, html
+from mrp_check.rules import REQUIREMENTS
+
+_MOST_CAUSES = 5  # in one line of the CSV
+_SIGNS = {MET: "✓", BROKEN: "✗", UNCHECKED: "?"}
+
+
+@dataclasses.dataclass
+class Submission:
+    """The result of one student's folder.
+
+    name: of the folder
+    report: as in schema/report.json
+    kept: whether it is the report of an earlier call
+    """
+
+    name: str
+    report: dict
+    kept: bool = False
+
+    def verdict_on(self, id_):
+        """Return the verdict on one requirement: MET, BROKEN or UNCHECKED."""
+        return self.report["requirements"].get(id_, UNCHECKED)
+
+    def points(self, spec):
+        """Return the points of all requirements that are met."""
+        return sum(_points_of(spec, id_) for id_ in REQUIREMENTS if self.verdict_on(id_) == MET)
+
+    def errors(self):
+        return [f for f in self.report["findings"] if f["severity"] == ERROR]
+
+    def causes(self):
+        """Return the reason why it could not be checked; or each error, on one line."""
+        if self.report.get("reason"):
+            return [self.report["reason"]]
+        return [_one_line(f) for f in self.errors() if not f["consequence_of"]]
+
+
+def _points_of(spec, id_):
+    return spec.points.get(id_, 1)
+
+
+def most(spec):
+    """Return the points of a package that meets all requirements."""
+    return sum(_points_of(spec, id_) for id_ in REQUIREMENTS)
+
+
+def _one_line(finding):
+    place = console.place(finding["file"], finding["line"])
+    return ": ".join(part for part in (place, finding["message"]) if part).replace("\n", " ")
+
+
+def csv_text(submissions, spec):
+    """Return one line for each submission: name, verdict, points, each requirement, and why."""
+    file = io.StringIO()
+    writer = csv.writer(file)
+    writer.writerow(["submission", "package", "verdict", "points", "of", *REQUIREMENTS, "why"])
+    for one in submissions:
+        writer.writerow(
+            [
+                _cell(one.name),
+                _cell(one.report["package"]),
+                one.report["verdict"],
+                f"{one.points(spec):g}",
+                f"{most(spec):g}",
+                *map(one.verdict_on, REQUIREMENTS),
+                _cell(" | ".join(one.causes()[:_MOST_CAUSES])),
+            ]
+        )
+    return file.getvalue()
+
+
+def _cell(text):
+    """Return a text that steers no terminal, and that a spreadsheet does not take for a formula."""
+    return "'" * text.startswith(("=", "+", "-", "@", "\t")) + console.plain(text)
+
+
+def html_text(submissions, spec, pages):
+    """Return one page with a table of all submissions.
+
+    pages: the folder of the submissions' own pages; the table links to them
+    """
+
+    def page_of(one):
+        page = pathlib.Path(pages) / f"{one.name}.html"
+        return page.resolve().as_uri() if one.report["requirements"] and page.is_file() else ""
+
+    values = {"submissions": submissions, "spec": spec, "most": most(spec), "page_of": page_of}
+    return html.render("class.html", signs=_SIGNS, **values)
+
+
+def text(submissions, spec):
+    """Return the table for the console."""
+    width = max(len(one.name) for one in submissions)
+    lines = []
+    for one in submissions:
+        broken = [id_ for id_ in REQUIREMENTS if one.verdict_on(id_) == BROKEN]
+        reason = one.report.get("reason") or ", ".join(broken)
+        points = f"{one.points(spec):g}/{most(spec):g}"
+        lines.append(
+            f"{one.name:{width}}  {one.report['verdict']:9}  {points:>7}  {reason}".rstrip()
+        )
+    return console.plain("\n".join(lines))

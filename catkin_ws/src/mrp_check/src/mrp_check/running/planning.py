@@ -1,0 +1,185 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What is to be observed: a plan for all nodes under a launch file, and one for each by itself."""
+
+from __future__ import annotations
+
+import dataclasses
+import pathlib
+import shlex
+import signal
+import tempfile
+import xml.sax.saxutils
+
+from mrp_check import sandbox
+from mrp_check.confined import plans, variables
+from mrp_check.confined.launch_dump import Started
+from mrp_check.contract import spec as specs
+from mrp_check.student.workspace import Workspace
+
+ENOUGH = 8  # messages of each publisher
+ENOUGH_ALONE = 3  # messages of a publisher that runs by itself
+BURST = tuple(range(21, 29))  # what each subscriber is sent at once: fewer than its queue holds
+PACED = (2, 3, 33, 34)  # and then one by one, small ones too
+WRAP = "wrap:"  # before the name of a Python publisher that runs near the end of its numbers
+
+_PERIOD = 0.5  # seconds, where the contract names none
+# In seconds, at the least: in which all must be seen; without a message; and for all of it.
+_SECONDS, _SILENCE, _TIMEOUT = 20, 6, 60
+_SILENT_PERIODS = 12  # after which no more is waited for
+_ROSLAUNCH_SECONDS = 8  # that roslaunch takes to end, after its nodes
+_FIRST_LINE = 200  # bytes
+
+
+@dataclasses.dataclass
+class Planner:
+    """Makes the plans.
+
+    executables: node of the spec -> path of its executable
+    started: node of the spec -> what of the package's launch file starts it; empty without one
+    params: those of that file
+    environment: of the nodes
+    messages: what messages.definitions() says of the package's own
+    """
+
+    workspace: Workspace
+    spec: specs.Spec
+    executables: dict[str, pathlib.Path]
+    started: dict[str, Started]
+    params: dict[str, object]
+    environment: dict[str, str]
+    messages: dict[str, list[str]]
+
+    @property
+    def period(self) -> float:
+        """The longest period of the spec, in seconds."""
+        periods = [n.publishes.period for n in self.spec.nodes.values() if n.publishes]
+        return max([period for period in periods if period] or [_PERIOD])
+
+    def _common(self, stop_seconds: float) -> plans.Common:
+        folder = tempfile.mkdtemp(prefix="nodes_", dir=self.workspace.folder)
+        return plans.Common(
+            environment={**self.environment, **variables.folders(folder)},
+            writable=[folder],
+            messages=self.messages,
+            silence=max(_SILENT_PERIODS * self.period, _SILENCE),
+            seconds=max(_SECONDS, 3 * ENOUGH * self.period),
+            most=max(self.workspace.timeout, _TIMEOUT),
+            stop_seconds=stop_seconds,
+        )
+
+    # --- Under a launch file
+
+    def launch(self, file: pathlib.Path | None) -> plans.LaunchPlan:
+        """Return the plan for a launch file; without one, for one that is made from the spec."""
+        roles = (self.spec.nodes[name].publishing for name in self.executables)
+        senders = [topic.name for topic in roles if topic]
+        nodes = [
+            self._launch_node(node, senders)
+            for name, node in self.spec.nodes.items()
+            if name in self.executables and (name in self.started or not self.started)
+        ]
+        return plans.LaunchPlan(
+            common=self._common(self.spec.shutdown.seconds + _ROSLAUNCH_SECONDS),
+            command=["roslaunch", str(file or self._make_launch_file())],
+            nodes=nodes,
+            enough=ENOUGH,
+        )
+
+    def _launch_node(self, node: specs.Node, senders: list[str]) -> plans.LaunchNode:
+        started, topic = self.started.get(node.name), node.subscribing
+        path = started.path if started else self.spec.node_path(node.name)
+        return plans.LaunchNode(
+            path=path,
+            type=f"{started.package}/{started.type}" if started else None,
+            publishes=node.publishing is not None,
+            received=_received(node),
+            hears=resolved(topic, path) if topic else None,
+            senders=senders.count(topic.name) if topic else 0,
+        )
+
+    def _make_launch_file(self) -> pathlib.Path:
+        lines = []
+        for name, path in self.executables.items():
+            package = self.workspace.package.name
+            attributes = {"pkg": package, "type": path.name, "name": name}
+            text = " ".join(f"{k}={xml.sax.saxutils.quoteattr(v)}" for k, v in attributes.items())
+            lines.append(f'    <node {text} output="screen"/>')
+        group = self.spec.launch.group
+        if group:
+            lines = [f'  <group ns="{group}">', *lines, "  </group>"]
+        path = self.workspace.given / "of_spec.launch"
+        path.write_text("\n".join(["<launch>", *lines, "</launch>", ""]))
+        return path
+
+    # --- Each by itself
+
+    def direct(self) -> plans.DirectPlan:
+        """Return the plan that starts each node by itself."""
+        common, nodes = self._common(self.spec.shutdown.seconds), {}
+        for index, (name, path) in enumerate(self.executables.items()):
+            node, hook = self.spec.nodes[name], None
+            if is_python(path):
+                events = f"{common.writable[0]}/events_check_{index}"
+                sources = str(self.workspace.package_folder)
+                hook = plans.Hook(str(sandbox.code() / "hook"), events, sources)
+            nodes[name] = self._direct_node(node, path, f"/check_{index}", hook)
+            role = node.publishes
+            if hook and role and role.values and role.values.modulus:
+                wrap = plans.Wrap(role.topic.field, **dataclasses.asdict(role.values))
+                hook = dataclasses.replace(hook, events=f"{hook.events}_wrap", wrap=wrap)
+                one = self._direct_node(node, path, f"/check_wrap_{index}", hook)
+                nodes[WRAP + name] = dataclasses.replace(one, publishes=0, values=[], paced=[])
+        number = getattr(signal, self.spec.shutdown.signal)
+        return plans.DirectPlan(common, nodes, number)
+
+    def _direct_node(
+        self, node: specs.Node, path: pathlib.Path, namespace: str, hook: plans.Hook | None
+    ) -> plans.DirectNode:
+        started, topic = self.started.get(node.name), node.subscribing
+        arguments, params = [], {}
+        if started:
+            # The node's own namespace and that of its group move; what is elsewhere stays.
+            params = {
+                _moved(param, started.namespace, namespace): value
+                for param, value in self.params.items()
+            }
+            arguments = shlex.split(started.arguments)
+            arguments += [f"{source}:={target}" for source, target in started.remaps]
+        relayed = len(BURST + PACED) if node.relays else 0
+        return plans.DirectNode(
+            command=[str(path), *arguments],
+            namespace=namespace,
+            env=dict(started.env) if started else {},
+            params=params,
+            publishes=ENOUGH_ALONE if node.publishes else relayed,
+            values=list(BURST) if topic else [],
+            paced=list(PACED) if topic else [],
+            field=topic.field if topic else None,
+            type=topic.type_in(self.workspace.package.name) if topic else None,
+            received=_received(node),
+            hook=hook,
+        )
+
+
+def _moved(name: str, old: str, new: str) -> str:
+    old = old.rstrip("/") + "/"
+    return f"{new}/{name[len(old) :]}" if name.startswith(old) else name
+
+
+def is_python(path: pathlib.Path) -> bool:
+    """Return whether an executable is a Python script, by its first line."""
+    with open(path, "rb") as file:
+        first = file.readline(_FIRST_LINE)
+    return first.startswith(b"#!") and b"python" in first
+
+
+def resolved(topic: specs.Topic, path: str) -> str:
+    """Return the full name of a spec's topic, for a node of that full name."""
+    group = path.rsplit("/", 1)[0]
+    start = {"global": "/", "private": path + "/", "group": group + "/"}[topic.namespace]
+    return start + topic.name
+
+
+def _received(node: specs.Node) -> str | None:
+    """Return the regular expression of the line that a node logs on receiving, or None."""
+    return specs.pattern(node.received_line).pattern if node.received_line else None

@@ -1,0 +1,144 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""How far this system keeps a command apart, and by which means: bubblewrap, or another user."""
+
+from __future__ import annotations
+
+import atexit
+import contextlib
+import enum
+import functools
+import os
+import pathlib
+import shutil
+import subprocess
+import tempfile
+import threading
+from typing import Iterable
+
+import psutil
+
+from mrp_check.confined import warden
+
+PACKAGE = pathlib.Path(__file__).resolve().parent
+
+# What a command needs of /etc: to find libraries, programs, users, and this machine's own name.
+_ETC = (
+    "alternatives group hosts ld.so.cache ld.so.conf ld.so.conf.d localtime nsswitch.conf"
+    " os-release passwd ros"
+).split()
+_SHARED_MEMORY = 64 * warden.MEGABYTE
+# User ids that systemd, too, gives to what runs for a while; no user of a machine has one.
+_IDS = range(61184, 65520)
+_HANDING_OVER = threading.Lock()
+
+
+class ConfineError(Exception):
+    """The command could not be confined, or its watcher was killed: says what happened."""
+
+
+class Isolation(enum.Enum):
+    """How far what runs is kept apart. The text says what does not hold, as a sentence's end."""
+
+    NAMESPACES = ""
+    USER = (
+        "this system makes no namespaces. The package's programs run as another user, who can use"
+        " the network and read what all users can read"
+    )
+    NONE = (
+        "this system makes no namespaces. The package's programs run as you: they can read and"
+        " change your files, and this verdict. Check only what you trust, or use the container"
+    )
+
+
+@functools.lru_cache(maxsize=None)
+def isolation() -> Isolation:
+    """Return the Isolation that this user has on this system."""
+    command = [*bubblewrap([]), "/bin/true"]
+    with contextlib.suppress(FileNotFoundError):  # bubblewrap may not be installed
+        done = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True)
+        if done.returncode == 0:
+            return Isolation.NAMESPACES
+    return Isolation.NONE if os.getuid() else Isolation.USER
+
+
+def bubblewrap(binds: Iterable[tuple[str, str, str]]) -> list[str]:
+    """Return bwrap and its options; binds: of more files, (option, path outside, path within)."""
+    options = ["--unshare-pid", "--unshare-net", "--unshare-ipc", "--unshare-uts", "--as-pid-1"]
+    options += ["--die-with-parent", "--cap-drop", "ALL"]
+    for path in ("/bin", "/sbin", "/lib", "/lib32", "/lib64", "/libx32"):
+        if os.path.islink(path):
+            options += ["--symlink", os.readlink(path), path]
+        else:
+            options += ["--ro-bind-try", path, path]
+    pythons = [path.name for path in pathlib.Path("/etc").glob("python3*")]
+    for path in ("/etc", "/opt", "/run", "/home", "/root", "/var"):
+        options += ["--perms", "0755", "--dir", path]
+    for path in ("/usr", "/opt/ros", *(f"/etc/{name}" for name in (*_ETC, *pythons))):
+        options += ["--ro-bind-try", path, path]
+    options += ["--proc", "/proc", "--dev", "/dev"]
+    if os.getuid():
+        options += ["--unshare-user"]
+    else:
+        # To others the kernel's settings are read-only anyway; and they make a /proc within this.
+        options += ["--ro-bind", "/proc/sys", "/proc/sys"]
+        options += [word for name in warden.KEPT for word in ("--cap-add", name)]
+    options += ["--perms", "1777", "--size", str(_SHARED_MEMORY), "--tmpfs", "/dev/shm"]
+    for option, outside, within in binds:
+        for parent in reversed(pathlib.Path(within).parents):
+            options += ["--perms", "0755", "--dir", str(parent)]
+        options += [option, outside, within]
+    return ["bwrap", *options, "--remount-ro", "/", "--"]
+
+
+def hand_over(scratch: str) -> int | None:
+    """Give to the owner of the scratch folder what root has put there; return the owner's id.
+
+    The first time, the owner is a new one, whom no process belongs to. Another user than root has
+    nothing to give away: None. Raises ConfineError.
+    """
+    if os.getuid():
+        return None
+    with _HANDING_OVER:
+        owner = os.stat(scratch).st_uid
+        if owner == 0:
+            owner = _new_owner(scratch)
+    # By file descriptors: what runs at the same time may put links in the way.
+    for _, folders, files, fd in os.fwalk(scratch):
+        for name in (*folders, *files):
+            entry = os.stat(name, dir_fd=fd, follow_symlinks=False)
+            # A file with two names may be one of root's own, elsewhere.
+            if entry.st_uid == 0 and (entry.st_nlink == 1 or name in folders):
+                os.chown(name, owner, owner, dir_fd=fd, follow_symlinks=False)
+    return owner
+
+
+def _new_owner(folder: str) -> int:
+    """Give a folder to a user whom no process belongs to; return the id. Raises ConfineError."""
+    # What is asked of each at once: by now it may have ended.
+    known = [process.info["uids"] for process in psutil.process_iter(["uids"])]
+    used = {uids.real for uids in known if uids}
+    free = [id_ for id_ in _IDS if id_ not in used]
+    owner = free[os.getpid() % len(free)]
+    try:
+        os.chown(folder, owner, owner)
+    except PermissionError:
+        raise ConfineError(
+            "root runs the package's programs as another user. For this it needs the"
+            " capabilities CHOWN, DAC_OVERRIDE, KILL, SETGID and SETUID, and it lacks some"
+            " of them here. Add them, or run the checker as a user who is not root"
+        ) from None
+    return owner
+
+
+@functools.lru_cache(maxsize=None)
+def code() -> pathlib.Path:
+    """Return the folder `confined`, as a command can read it: a home of root's may be closed."""
+    if isolation() is not Isolation.USER:
+        return PACKAGE / "confined"
+    folder = tempfile.mkdtemp(prefix="mrp_check_code_")
+    atexit.register(shutil.rmtree, folder, ignore_errors=True)
+    os.chmod(folder, 0o755)
+    package = pathlib.Path(folder, PACKAGE.name)
+    shutil.copytree(PACKAGE / "confined", package / "confined")
+    shutil.copy(PACKAGE / "__init__.py", package)  # some of these programs import others of them
+    return package / "confined"

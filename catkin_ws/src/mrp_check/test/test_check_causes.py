@@ -1,0 +1,130 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""One cause is reported once: what follows from it is its consequence, and nothing else is."""
+
+import pytest
+from mrp_check import causes
+from mrp_check.contract.finding import Finding
+from mrp_check.sources.facts import Facts
+
+pytestmark = pytest.mark.quick
+
+
+def facts():
+    found = Facts()
+    found.sources = {"a": ["src/a.py"], "b": ["src/b.py"]}
+    return found
+
+
+def findings(*entries):
+    return [
+        Finding(id_, "It is so.", file, line, stage=stage, node=node)
+        for id_, file, line, stage, node in entries
+    ]
+
+
+@pytest.mark.parametrize(
+    ("entries", "expected"),
+    [
+        # What one node does wrong, it does wrong when it runs; another is sent values all the same.
+        ([("spin", "src/a.py", 1, "static", "a"), ("starts", "src/a.py", 1, "run", "a")], ["spin"]),
+        (
+            [
+                ("python-syntax", "src/a.py", 1, "static", None),
+                ("values", "src/a.py", 5, "run", "a"),
+            ],
+            ["python-syntax"],
+        ),
+        (
+            [
+                ("python-syntax", "src/a.py", 1, "static", None),
+                ("received", "src/b.py", 5, "run", "b"),
+            ],
+            [None],
+        ),
+        (
+            [
+                ("python-names", "src/a.py", 5, "static", None),
+                ("spin", "src/a.py", 5, "static", "a"),
+            ],
+            ["python-names"],
+        ),
+        # Another node's own fault is its own.
+        ([("spin", "src/a.py", 1, "static", "a"), ("exit", "src/b.py", 5, "stop", "b")], [None]),
+        ([("queue", "src/a.py", 1, "static", "a"), ("values", "src/a.py", 5, "run", "a")], [None]),
+        # What keeps all from being built.
+        (
+            [("configure", "CMakeLists.txt", 1, "build", None), ("starts", None, None, "run", "b")],
+            ["configure"],
+        ),
+        (
+            [
+                ("targets", "CMakeLists.txt", 4, "files", None),
+                ("configure", "CMakeLists.txt", 4, "build", None),
+            ],
+            ["targets"],
+        ),
+        # Two faults of the same kind in two sources are two.
+        (
+            [
+                ("compile", "src/a.cpp", 4, "build", None),
+                ("compile", "src/b.cpp", 4, "build", None),
+            ],
+            [None],
+        ),
+        # Without the launch file, the checker starts the nodes by its own.
+        ([("launch-file", None, None, "files", None), ("rate", "src/a.py", 5, "run", "a")], [None]),
+        # A script that is no node of the exercise keeps no node from anything.
+        (
+            [
+                ("python-names", "src/c.py", 5, "static", None),
+                ("rate", "src/a.py", 5, "run", "a"),
+            ],
+            [None],
+        ),
+        # A second instance of a defect is another defect.
+        ([("wrap", "src/a.py", 5, "static", "a"), ("wrap", "src/a.py", 9, "static", "a")], [None]),
+        (
+            [
+                ("targets", "CMakeLists.txt", 4, "static", "a"),
+                ("launch-nodes", "a.launch", 9, "static", "b"),
+            ],
+            [None],
+        ),
+    ],
+    ids=range(13),
+)
+def test_consequences(entries, expected):
+    told = causes.told_once(findings(*entries), facts())
+    assert [finding.consequence_of for finding in told] == [None, *expected]
+
+
+class Ran:
+    """What was seen of a node that runs."""
+
+    is_up = True
+
+    def has_rate(self):
+        return True
+
+
+@pytest.mark.parametrize(
+    ("cause", "result"),
+    [
+        (("configure", "CMakeLists.txt", 1, "build", None), ("rate", "src/a.py", 5, "run", "a")),
+        (("python-names", "src/a.py", 5, "static", None), ("rate", "src/a.py", 5, "run", "a")),
+    ],
+    ids=range(2),
+)
+def test_what_was_seen_all_the_same_is_no_consequence(cause, result):
+    assert causes.told_once(findings(cause, result), facts())[1].consequence_of == cause[0]
+    seen = causes.told_once(findings(cause, result), facts(), {"a": Ran()})
+    assert seen[1].consequence_of is None
+
+
+def test_the_same_is_told_once():
+    entry = ("spin", "src/a.py", 1, "static", "a")
+    assert len(causes.told_once(findings(entry, entry), facts())) == 1
+    of_no_node = ("spin", "src/a.py", 1, "static", None)
+    assert len(causes.told_once(findings(of_no_node, entry), facts())) == 1
+    of_another = ("spin", "src/a.py", 1, "static", "b")
+    assert len(causes.told_once(findings(entry, of_another), facts())) == 2

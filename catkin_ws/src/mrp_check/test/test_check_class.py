@@ -1,0 +1,410 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A class at once: one table, and a broken submission never stops the rest."""
+
+import contextlib
+import csv
+import dataclasses
+import html.parser
+import os
+import pathlib
+import signal
+import subprocess
+import sys
+import uuid
+
+import pytest
+from mrp_check import check
+from mrp_check.cli import classroom
+from mrp_check.contract import errors, spec
+from mrp_check.contract.verdict import unchecked
+from mrp_check.report import class_table, json_
+from mrp_check.rules import REQUIREMENTS
+from mrp_check.student import package, submissions
+from mrp_testing.process import processes_with
+from mrp_testing.proves import proves
+from mrp_testing.waiting import wait_until
+
+pytestmark = pytest.mark.quick
+
+MANIFEST = """<package format="3"><name>{name}</name><version>0.1.0</version>
+<description>d</description><maintainer email="a@mrp.example">A</maintainer><license>BSD</license>
+<buildtool_depend>catkin</buildtool_depend></package>
+"""
+SPEC_FILE = spec.find("pub_sub")
+
+
+def hand_in(folder, name, cmake="cmake_minimum_required(VERSION 3.10)\n"):
+    """Make a submission that has little more than a manifest; return its folder."""
+    made = folder / name
+    made.mkdir(parents=True)
+    (made / "package.xml").write_text(MANIFEST.format(name="student_pkg"))
+    (made / "CMakeLists.txt").write_text(cmake)
+    return made
+
+
+class Room(classroom.Classroom):
+    """A classroom in which a check is no more than a report."""
+
+    def __init__(self, folder, **options):
+        self.said, self.checked = [], []
+        options = {"progress": self.said.append, **options}
+        super().__init__(folder, SPEC_FILE, **options)
+
+    def report_of(self, package_folder, name):
+        self.checked.append(name)
+        finding = {
+            "id": "values",
+            "severity": "error",
+            "file": "src/a.py",
+            "line": 3,
+            "message": "publishes <2>",
+            "consequence_of": None,
+        }
+        verdicts = {id_: check.MET for id_ in REQUIREMENTS}
+        return {
+            "verdict": check.FINDINGS,
+            "package": "student_pkg",
+            "spec": "s",
+            "requirements": {**verdicts, "values": check.BROKEN, "rate": check.UNCHECKED},
+            "findings": [finding],
+        }
+
+    def verdicts(self):
+        return {one.name: one.report["verdict"] for one in self.check()}
+
+    def reason(self, name):
+        return {one.name: one.report.get("reason") for one in self.check()}[name]
+
+
+def test_no_such_folder(tmp_path):
+    with pytest.raises(errors.PackageError, match="There is no folder"):
+        Room(tmp_path / "nowhere")
+
+
+def test_no_submission(tmp_path):
+    (tmp_path / "file").touch()
+    with pytest.raises(errors.PackageError, match="expected one for each student"):
+        Room(tmp_path)
+
+
+@proves("Each folder in ~/submissions is one student's submission.")
+def test_each_folder_is_a_submission(tmp_path):
+    hand_in(tmp_path / "class", "berta")
+    hand_in(tmp_path / "class", "anna")
+    (tmp_path / "class" / ".git").mkdir()
+    (tmp_path / "class" / "list.txt").touch()
+    room = Room(tmp_path / "class")
+    assert room.verdicts() == {"anna": check.FINDINGS, "berta": check.FINDINGS}
+    assert sorted(line.split(": ", 1)[1] for line in room.said) == [
+        "anna: findings",
+        "berta: findings",
+    ]
+    assert {line.split(":")[0] for line in room.said} == {"1 of 2", "2 of 2"}
+
+
+def test_the_package_may_be_further_down(tmp_path):
+    hand_in(tmp_path / "class" / "anna" / "my_ws" / "src", "pkg")
+    folders = submissions.folders(tmp_path / "class")
+    assert submissions.package_in(folders[0]).name == "pkg"
+
+
+def two_packages(folder):
+    hand_in(folder, "one")
+    hand_in(folder, "two")
+
+
+def many_files(folder):
+    hand_in(folder.parent, folder.name)
+    for number in range(package.MAX_FILES + 1):
+        (folder / str(number)).touch()
+
+
+def huge_file(folder):
+    hand_in(folder.parent, folder.name)
+    with open(folder / "sparse", "wb") as file:
+        file.truncate(10**12)
+
+
+def deep_folders(folder):
+    path = folder
+    for _ in range(300):
+        path = path / "d"
+        path.mkdir(parents=True)
+
+
+def link_out(folder):
+    outside = hand_in(folder.parent.parent, "outside")
+    folder.symlink_to(outside)
+
+
+def loop(folder):
+    folder.mkdir(parents=True)
+    (folder / "a").symlink_to(folder)
+
+
+BROKEN = {
+    "empty": (lambda folder: folder.mkdir(parents=True), "no package.xml"),
+    "two": (two_packages, "more than one package: one, two"),
+    "many": (many_files, "has more than"),
+    "huge": (huge_file, "has more than"),
+    "deep": (deep_folders, "no package.xml"),
+    "out": (link_out, "a link out of the class's folder"),
+    "loop": (loop, "no package.xml"),
+}
+
+
+@proves("A submission that cannot be checked does not stop the others.")
+@pytest.mark.parametrize("kind", BROKEN)
+def test_a_broken_submission_does_not_stop_the_rest(tmp_path, kind):
+    make, reason = BROKEN[kind]
+    hand_in(tmp_path / "class", "anna")
+    make(tmp_path / "class" / kind)
+    hand_in(tmp_path / "class", "zoe")
+    room = Room(tmp_path / "class")
+    assert room.verdicts() == {
+        "anna": check.FINDINGS,
+        kind: check.UNCHECKED,
+        "zoe": check.FINDINGS,
+    }
+    assert reason in room.reason(kind)
+
+
+def test_links_within_a_submission_lead_nowhere(tmp_path):
+    """What a link in a submission leads to is neither read nor copied."""
+    made = hand_in(tmp_path / "class", "anna")
+    (tmp_path / "secret").write_text("secret")
+    (made / "link").symlink_to(tmp_path / "secret")
+    os.mkfifo(made / "pipe")
+    assert package.Package(made).files == ["CMakeLists.txt", "package.xml"]
+
+
+@proves(
+    "A second call does not check a submission again that has not changed, so after Ctrl-C the "
+    "same command goes on where it stopped.",
+)
+def test_what_has_not_changed_is_not_checked_again(tmp_path):
+    made = hand_in(tmp_path / "class", "anna")
+    hand_in(tmp_path / "class", "berta")
+    before = {path: path.stat().st_mtime_ns for path in (tmp_path / "class").rglob("*")}
+    assert sorted(run_of(tmp_path)) == ["anna", "berta"]
+    assert run_of(tmp_path) == []
+    assert before == {path: path.stat().st_mtime_ns for path in (tmp_path / "class").rglob("*")}
+
+    (made / "CMakeLists.txt").write_text("# another\n")
+    assert run_of(tmp_path) == ["anna"]
+    (made / "CMakeLists.txt").chmod(0o755)
+    assert run_of(tmp_path) == ["anna"]
+    (made / "new.py").touch()
+    assert run_of(tmp_path) == ["anna"]
+    assert run_of(tmp_path) == []
+
+
+def run_of(tmp_path):
+    room = Room(tmp_path / "class")
+    assert {one.report["verdict"] for one in room.check()} == {check.FINDINGS}
+    return room.checked
+
+
+def test_another_spec_is_another_check(tmp_path):
+    hand_in(tmp_path / "class", "anna")
+    own = tmp_path / "own.yaml"
+    own.write_text(pathlib.Path(SPEC_FILE).read_text())
+    room = Room(tmp_path / "class")
+    room.spec_file = own
+    room.check()
+    own.write_text(own.read_text() + "# changed\n")
+    again = Room(tmp_path / "class")
+    again.spec_file = own
+    again.check()
+    assert (room.checked, again.checked) == (["anna"], ["anna"])
+
+
+def test_what_could_not_be_checked_is_checked_again(tmp_path, monkeypatch):
+    hand_in(tmp_path / "class", "anna")
+    report = json_.data(unchecked("no master"))
+    monkeypatch.setattr(Room, "report_of", lambda self, *_: report)
+    assert Room(tmp_path / "class").verdicts() == {"anna": check.UNCHECKED}
+    monkeypatch.undo()
+    assert Room(tmp_path / "class").verdicts() == {"anna": check.FINDINGS}
+
+
+def test_an_error_of_the_checker_is_one_submission_s(tmp_path, monkeypatch):
+    hand_in(tmp_path / "class", "anna")
+    hand_in(tmp_path / "class", "berta")
+    original = Room.report_of
+
+    def fail(self, folder, name):
+        if name == "anna":
+            raise ZeroDivisionError("in the checker")
+        return original(self, folder, name)
+
+    monkeypatch.setattr(Room, "report_of", fail)
+    room = Room(tmp_path / "class")
+    assert room.verdicts() == {"anna": check.UNCHECKED, "berta": check.FINDINGS}
+    assert room.reason("anna") == "ZeroDivisionError: in the checker"
+
+
+@pytest.fixture
+def results(tmp_path):
+    """The submissions of a class with a formula, and one with a tag, for a name."""
+    for name in ("=1+1", "<b>anna"):
+        hand_in(tmp_path / "class", name)
+    (tmp_path / "class" / "empty").mkdir()
+    return Room(tmp_path / "class").check()
+
+
+@proves(
+    "The points come from the spec.",
+    "A spec file says what a package must do, and how many points each requirement is worth.",
+)
+def test_points_come_from_the_spec(results):
+    contract = spec.read(SPEC_FILE)
+    all_ids = len(REQUIREMENTS)
+    of_spec = dataclasses.replace(contract, points={"values": 5, "topic": 2.5})
+    by_name = {one.name: one for one in results}
+    assert class_table.most(contract) == all_ids
+    assert class_table.most(of_spec) == all_ids + 4 + 1.5
+    assert by_name["<b>anna"].points(contract) == all_ids - 2
+    assert by_name["<b>anna"].points(of_spec) == all_ids - 2 + 1.5
+    assert by_name["empty"].points(contract) == 0
+
+
+@proves(
+    "The table has a line for each student and a column for each requirement.",
+    "Its line gives the reason.",
+)
+def test_csv(results):
+    rows = list(csv.DictReader(class_table.csv_text(results, spec.read(SPEC_FILE)).splitlines()))
+    assert [row["submission"] for row in rows] == ["<b>anna", "'=1+1", "empty"]
+    anna, _, empty = rows
+    assert (anna["values"], anna["rate"], anna["topic"]) == ("broken", "unchecked", "met")
+    assert anna["why"] == "src/a.py:3: publishes <2>"
+    assert int(anna["points"]) == int(anna["of"]) - 2
+    assert (empty["verdict"], empty["points"], empty["topic"]) == ("unchecked", "0", "unchecked")
+    assert "no package.xml" in empty["why"]
+
+
+class Tags(html.parser.HTMLParser):
+    def __init__(self, text):
+        super().__init__()
+        self.tags, self.texts = [], []
+        self.feed(text)
+
+    def handle_starttag(self, tag, attributes):
+        self.tags.append(tag)
+
+    def handle_data(self, data):
+        self.texts.append(data)
+
+
+@proves("The table has a line for each student and a column for each requirement.")
+def test_html(results, tmp_path):
+    page = Tags(class_table.html_text(results, spec.read(SPEC_FILE), tmp_path))
+    assert page.tags.count("tr") == 1 + len(results)
+    assert page.tags.count("td") == len(results) * (3 + len(REQUIREMENTS))
+    assert "b" not in page.tags
+    assert "<b>anna" in page.texts
+    assert "src/a.py:3: publishes <2>" in page.texts
+    assert page.texts.count("✗") == 2
+
+
+def test_a_name_that_is_no_text_is_shown(tmp_path):
+    """Bytes that are no UTF-8, and what would clear the screen."""
+    (tmp_path / "class" / os.fsdecode(b"z\xff\x1b[2J")).mkdir(parents=True)
+    tables = tmp_path / "table.csv", tmp_path / "table.html"
+    options = ("--csv", tables[0], "--html", tables[1])
+    with command("--class", tmp_path / "class", *options) as checker:
+        output, said = checker.communicate()
+    assert checker.returncode == 1, said
+    for text in (output, said, *(table.read_text() for table in tables)):
+        assert "z\ufffd\ufffd[2J" in text
+
+
+@pytest.fixture
+def seconds():
+    """For how long the submission sleeps: a number that no other test on this machine has."""
+    return f"10000.{uuid.uuid4().int}"
+
+
+def hanging(seconds):
+    return f"""cmake_minimum_required(VERSION 3.10)
+project(student_pkg)
+execute_process(COMMAND sleep {seconds})
+"""
+
+
+@contextlib.contextmanager
+def command(*arguments):
+    """The checker's command, running; whatever becomes of the test, it ends with it."""
+    program = "from mrp_check.cli.check import main; main()"
+    env = {**os.environ, "PYTHONPATH": ":".join(sys.path)}
+    with subprocess.Popen(
+        ["/usr/bin/python3", "-c", program, *map(str, arguments)],
+        env=env,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    ) as checker:
+        try:
+            yield checker
+        finally:
+            checker.kill()
+
+
+@proves("rosrun mrp_check check PATH checks one package; --class checks a folder of them.")
+@pytest.mark.slow
+def test_one_that_hangs(tmp_path, seconds):
+    """The real command: one submission's CMake never ends, another is an empty folder."""
+    hand_in(tmp_path / "class", "anna", hanging(seconds))
+    (tmp_path / "class" / "berta").mkdir()
+    table = tmp_path / "table.csv"
+    page = tmp_path / "table.html"
+    arguments = ("--class", tmp_path / "class", "--timeout", 5, "--csv", table, "--html", page)
+    with command(*arguments) as checker:
+        output, errors = checker.communicate()
+    assert checker.returncode == 1, errors
+    rows = list(csv.DictReader(table.read_text().splitlines()))
+    assert [row["submission"] for row in rows] == ["anna", "berta"]
+    assert rows[0]["verdict"] in (check.FINDINGS, check.UNCHECKED)
+    assert rows[1]["verdict"] == check.UNCHECKED
+    assert "berta" in output
+    assert "2 of 2: " in errors
+    assert "berta" in page.read_text()
+    assert not processes_with(seconds)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("what", [["--class"], []], ids=["class", "package"])
+def test_a_signal_ends_all(tmp_path, monkeypatch, seconds, what, number):
+    """What runs at that moment is ended, and nothing is left of it, in no folder either."""
+    scratch = tmp_path / "scratch"
+    scratch.mkdir()
+    monkeypatch.setenv("TMPDIR", str(scratch))
+    hand_in(tmp_path / "class", "anna", hanging(seconds))
+    folder = tmp_path / "class" if what else tmp_path / "class" / "anna"
+    with command(*what, folder) as checker:
+        wait_until(lambda: processes_with(seconds), "the submission's CMake runs")
+        checker.send_signal(number)
+        _, errors = checker.communicate()
+    assert checker.returncode == 1
+    assert "stopped before its end" in errors
+    assert "Traceback" not in errors
+    assert list(scratch.iterdir()) == []
+    assert not processes_with(seconds)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (("--class", "/no/such/folder"), "There is no folder /no/such/folder"),
+        (("--class", "/", "--json", "x"), "--json goes without --class"),
+        (("/", "--csv", "x"), "--csv goes with --class"),
+    ],
+)
+def test_what_cannot_be_done_is_said(arguments, said):
+    with command(*arguments) as checker:
+        _, errors = checker.communicate()
+    assert checker.returncode == 2
+    assert said in errors
+    assert "Traceback" not in errors

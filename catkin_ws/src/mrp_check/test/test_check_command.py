@@ -1,0 +1,61 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The command `check`: its exit codes and messages."""
+
+import json
+import os
+import subprocess
+
+import pytest
+from mrp_testing import scratch
+from mrp_testing.proves import proves
+from mrp_testing.workspace import WORKSPACE
+
+pytestmark = pytest.mark.quick
+
+CHECK = WORKSPACE / "src" / "mrp_check" / "scripts" / "check"
+
+
+def run(*arguments, **variables):
+    env = {**scratch.environment(), "PYTHONPATH": str(CHECK.parents[1] / "src"), **variables}
+    return subprocess.run(
+        ["/usr/bin/python3", str(CHECK), *map(str, arguments)],
+        env={**env, "PYTHONDONTWRITEBYTECODE": "1"},
+        capture_output=True,
+        text=True,
+    )
+
+
+@proves(
+    "The exit code is 0 if all requirements are met, 1 if one is not, and 2 if the package could "
+    "not be checked.",
+)
+@pytest.mark.parametrize(
+    ("arguments", "says"),
+    [
+        (["no_such_folder"], "check: There is no folder no_such_folder.\n"),
+        ([os.devnull], "check: /dev/null is no folder; expected the folder of a package.\n"),
+        ([".", "--spec", "none.yaml"], "check: none.yaml: the spec cannot be read: No such file"),
+    ],
+    ids=range(3),
+)
+def test_what_cannot_be_checked_is_exit_code_2(arguments, says):
+    done = run(*arguments)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr.startswith(says)
+    assert done.stderr.count("\n") == 1
+
+
+def test_folder_without_manifest_names_the_package_in_it(tmp_path):
+    (tmp_path / "src" / "a").mkdir(parents=True)
+    (tmp_path / "src" / "a" / "package.xml").write_text("<package/>")
+    done = run(tmp_path, "--json", tmp_path / "report.json")
+    assert done.returncode == 2
+    assert f"Did you mean {tmp_path}/src/a?" in done.stderr
+    data = json.loads((tmp_path / "report.json").read_text())
+    assert (data["verdict"], data["findings"]) == ("unchecked", [])
+
+
+def test_wrong_option_is_exit_code_2():
+    done = run(".", "--only", "valuse")
+    assert done.returncode == 2
+    assert "valuse" in done.stderr

@@ -1,0 +1,335 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What the checker runs stays within limits and leaves nothing behind: each attack is really made.
+
+Each is made in both ways: the stronger one with namespaces, where this machine has it, and the
+plain one.
+"""
+
+import json
+import os
+import pathlib
+import signal
+import subprocess
+import sys
+import types
+import uuid
+
+import psutil
+import pytest
+from mrp_check import confine, sandbox
+from mrp_testing.process import processes_with
+from mrp_testing.proves import proves
+from mrp_testing.waiting import wait_until
+
+pytestmark = [pytest.mark.slow, pytest.mark.usefixtures("open_folders")]
+
+FEW_SECONDS = 3  # a limit of wall time, for what never ends by itself
+
+# What an attack sleeps for: longer than any test.
+FOR_EVER = 10_000
+
+
+def test_exit_code_and_output(confined):
+    result = confined("import sys; print('out'); print('err', file=sys.stderr); sys.exit(3)")
+    assert (result.code, result.ended_by, result.left, result.cut) == (3, None, [], False)
+    assert (result.output, result.errors) == ("out\n", "err\n")
+
+
+def test_killed_by_a_signal(confined):
+    assert confined("import os; os.abort()").code == -signal.SIGABRT
+
+
+def test_command_that_does_not_exist(tmp_path):
+    result = confine.run(["/no/such/program"], tmp_path)
+    assert result.code == 127
+    assert "/no/such/program could not be started" in result.errors
+
+
+@proves("Their time is limited.")
+def test_sleeps_for_ever(confined):
+    result = confined(f"import time; time.sleep({FOR_EVER})", time=FEW_SECONDS)
+    assert (result.code, result.ended_by) == (None, "time")
+    assert result.limit_text(confine.Limits(time=3)) == "it did not end within 3 s"
+
+
+@proves("A program that ignores signals is ended all the same.")
+def test_ignores_signals(confined):
+    result = confined(
+        f"""
+        import signal, time
+        for number in set(signal.Signals) - {{signal.SIGKILL, signal.SIGSTOP}}:
+            signal.signal(number, signal.SIG_IGN)
+        time.sleep({FOR_EVER})
+        """,
+        time=FEW_SECONDS,
+    )
+    assert result.ended_by == "time"
+
+
+DAEMON = f"""
+    import os, signal, subprocess, sys, time
+    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+        signal.signal(number, signal.SIG_IGN)
+    read, write = os.pipe()
+    if os.fork() == 0:
+        os.setsid()
+        if os.fork() == 0:
+            os.write(write, b"1")
+            time.sleep({FOR_EVER})
+        os._exit(0)
+    os.read(read, 1)
+"""
+
+
+@proves("A program that it leaves in the background is found and ended.")
+def test_leaves_a_daemon_behind(confined):
+    result = confined(DAEMON)
+    assert (result.code, result.ended_by) == (0, None)
+    assert len(result.left) == 1
+    assert confined.token in result.left[0]
+
+
+def test_a_daemon_that_closes_all_and_clears_its_environment(confined):
+    result = confined(
+        DAEMON.replace(
+            'os.write(write, b"1")',
+            'os.write(write, b"1"); os.closerange(0, 100); '
+            f"os.execve('/bin/sleep', ['{confined.token}', '{FOR_EVER}'], {{}})",
+        )
+    )
+    assert (result.code, len(result.left)) == (0, 1)
+
+
+def test_stopped_processes_are_killed(confined):
+    result = confined("import os, signal; os.kill(os.getpid(), signal.SIGSTOP)", time=FEW_SECONDS)
+    assert result.ended_by == "time"
+
+
+@proves("The number of their processes is limited.")
+def test_forks_without_end(confined):
+    result = confined(
+        """
+        import os
+        while True:
+            try:
+                os.fork()
+            except OSError:
+                pass
+        """,
+        processes=50,
+        time=30,
+    )
+    assert result.ended_by in ("processes", "time")
+
+
+def test_each_process_makes_the_next_and_ends(confined):
+    result = confined(
+        """
+        import os
+        for _ in range(10**9):
+            if os.fork():
+                os._exit(0)
+        """,
+        time=FEW_SECONDS,
+    )
+    # It may look as if it had ended: what matters is that none is left.
+    assert result.ended_by in (None, "time")
+
+
+def test_threads_without_end(confined):
+    result = confined(
+        f"""
+        import threading, time
+        while True:
+            try:
+                threading.Thread(target=time.sleep, args=({FOR_EVER},)).start()
+            except RuntimeError:
+                pass
+        """,
+        processes=50,
+        time=30,
+    )
+    assert result.ended_by in ("processes", "time")
+
+
+@proves("Their output is limited.")
+@pytest.mark.parametrize("stream", ["stdout", "stderr"])
+def test_floods_its_output(confined, stream):
+    result = confined(
+        f"import sys\nwhile True: print('x' * 1000, file=sys.{stream})", output=10_000, time=60
+    )
+    assert (result.ended_by, result.cut) == ("output", True)
+    assert len(result.output + result.errors) == 10_000
+    assert set(result.output + result.errors) == {"x", "\n"}
+
+
+def test_prints_more_than_is_kept(confined):
+    result = confined("print('x' * 30_000)", output=10_000)
+    assert (result.code, result.cut, len(result.output)) == (0, True, 10_000)
+
+
+def test_prints_one_endless_line(confined):
+    result = confined(
+        "import sys\nwhile True: sys.stdout.write('x' * 1000)", output=10_000, time=60
+    )
+    assert result.ended_by == "output"
+
+
+def test_output_that_is_not_text(confined):
+    result = confined("import os; os.write(1, bytes(range(256)))")
+    assert "ABC" in result.output
+
+
+def test_one_process_takes_much_memory(confined):
+    result = confined("x = bytearray(500 * 2**20)", memory=200 * 2**20)
+    assert result.code == 1
+    assert "MemoryError" in result.errors
+
+
+@proves("Their memory is limited.")
+def test_many_processes_take_much_memory(confined):
+    result = confined(
+        f"""
+        import os, time
+        for _ in range(10):
+            if os.fork() == 0:
+                x = b"x" * (60 * 2**20)
+                time.sleep({FOR_EVER})
+        time.sleep({FOR_EVER})
+        """,
+        memory=300 * 2**20,
+        time=60,
+    )
+    assert result.ended_by == "memory"
+
+
+def test_processor_time(confined):
+    result = confined("while True: pass", cpu=1, time=60)
+    assert (result.code, result.ended_by) == (-signal.SIGXCPU, None)
+
+
+def test_writes_a_large_file(confined):
+    result = confined(
+        "import os; f = open('f', 'wb')\nwhile True: f.write(b'x' * 2**20)", file_size=5 * 2**20
+    )
+    assert (result.code, result.ended_by) == (1, None)
+    assert "File too large" in result.errors
+    assert (confined.scratch / "f").stat().st_size <= 5 * 2**20
+
+
+@proves("Their files are limited.")
+def test_writes_many_files(confined):
+    result = confined(
+        """
+        for n in range(10**6):
+            open(str(n), "wb").write(b"x" * 2**20)
+        """,
+        disk=50 * 2**20,
+        file_size=2 * 2**20,
+        time=60,
+    )
+    assert result.ended_by == "disk"
+
+
+def test_opens_many_files(confined):
+    result = confined("f = [open('/dev/null') for n in range(10**4)]", open_files=100)
+    assert result.code == 1
+    assert "Too many open files" in result.errors
+
+
+def test_deletes_its_own_files(confined):
+    confined.scratch.mkdir()
+    program = confined.scratch / "program.py"
+    program.write_text(
+        f"import os, shutil, time; shutil.rmtree('.', ignore_errors=True); time.sleep({FOR_EVER})"
+    )
+    result = confined(
+        f"""
+        import shutil, time
+        shutil.rmtree(".", ignore_errors=True)
+        time.sleep({FOR_EVER})
+        """,
+        time=FEW_SECONDS,
+    )
+    assert result.ended_by == "time"
+    assert not program.exists()
+
+
+def test_takes_away_its_own_rights(confined):
+    assert confined("import os; os.makedirs('a/b'); open('a/b/c', 'w'); os.chmod('a', 0)").code == 0
+    confine.remove(confined.scratch)
+    assert not confined.scratch.exists()
+
+
+@pytest.mark.parametrize("namespaces", [True, False])
+def test_the_caller_is_killed(tmp_path, namespaces):
+    """Nothing outlives the checker itself, however that ends."""
+    token = f"attack-{uuid.uuid4().hex}"
+    program = f"import os, time; os.fork() or os.setsid(); open('up', 'w'); time.sleep({FOR_EVER})"
+    caller = f"""
+import sys
+sys.path[:0] = {sys.path!r}
+from mrp_check import confine
+confine.run(["/usr/bin/python3", "-uc", {program!r}, "{token}"], {str(tmp_path)!r},
+            namespaces={namespaces})
+"""
+    with subprocess.Popen(["/usr/bin/python3", "-c", caller]) as checker:
+        wait_until((tmp_path / "up").exists, "the program runs")
+        checker.kill()
+    wait_until(lambda: not processes_with(token), lambda: f"the end of {processes_with(token)}")
+
+
+@proves(
+    "If you are root, the package's programs run as another user, even without namespaces.",
+    "If you are not root and the system makes no namespaces, the package's programs can do what "
+    "you can do, such as end the checker's own processes.",
+)
+def test_the_watcher_is_killed(confined):
+    """Where it runs as the same user, a package can end its watcher; its mark finds what is left.
+    As root it runs as another user, and cannot."""
+    program = f"""
+    import os, signal, time
+    watcher = os.getppid()
+    read, write = os.pipe()
+    if os.fork() == 0:
+        os.setsid()
+        os.write(write, b"1")
+        time.sleep({FOR_EVER})
+    os.read(read, 1)
+    os.kill(watcher, signal.SIGKILL)
+    time.sleep({FOR_EVER})
+    """
+    if os.getuid() == 0:
+        assert "PermissionError" in confined(program, time=30).errors
+    elif confined.plain:
+        with pytest.raises(confine.ConfineError, match="was ended"):
+            confined(program, time=30)
+    else:
+        assert confined(program, time=FEW_SECONDS).ended_by == "time"
+
+
+@pytest.mark.skipif(os.getuid() != 0, reason="only root gives a folder to another user")
+def test_a_process_that_has_just_ended_is_no_error(tmp_path, monkeypatch):
+    class Ended:
+        info = {"uids": types.SimpleNamespace(real=0)}
+
+        def uids(self):
+            raise psutil.NoSuchProcess(1)
+
+    monkeypatch.setattr(psutil, "process_iter", lambda names: [Ended()])
+    assert sandbox.hand_over(str(tmp_path)) == tmp_path.stat().st_uid
+
+
+def test_the_checkers_own_programs_run_where_they_are_copied_to(monkeypatch):
+    """Without namespaces, root copies them for another user; they find one another there."""
+    monkeypatch.setattr(sandbox, "isolation", lambda: sandbox.Isolation.USER)
+    sandbox.code.cache_clear()
+    try:
+        reader = sandbox.code() / "cpp_facts.py"
+    finally:
+        sandbox.code.cache_clear()
+    assert not reader.is_relative_to(pathlib.Path(confine.__file__).parent)
+    task = json.dumps({"folder": "/", "headers": "", "units": []})
+    command = ["/usr/bin/python3", str(reader), task]
+    done = subprocess.run(command, capture_output=True, text=True, env={}, cwd="/")
+    assert (done.stdout.strip(), done.stderr) == ("{}", "")

@@ -1,0 +1,248 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The checker's rules about C++ sources, as clang reads them; nothing is built."""
+
+import pathlib
+import re
+import subprocess
+
+import check_rules
+import pytest
+from check_rules import told
+from mrp_check.confined import cpp_headers, crossing
+from mrp_check.confined.places import Answer, Kind, Task
+from mrp_check.sources import facts as facts_
+from mrp_check.sources import reading
+from mrp_testing.workspace import WORKSPACE
+
+# One worker of pytest builds for all of these tests.
+pytestmark = [pytest.mark.quick, pytest.mark.xdist_group("check_cpp")]
+
+FOLDER = WORKSPACE / "src" / "mrp" / "src"
+PUBLISHER, SUBSCRIBER = "publisher_cpp_node", "subscriber_cpp_node"
+CPP_FACTS = pathlib.Path(cpp_headers.__file__).with_name("cpp_facts.py")
+SOURCES = {name: (FOLDER / f"{name}.cpp").read_text() for name in (PUBLISHER, SUBSCRIBER)}
+
+
+@pytest.fixture(scope="session")
+def headers(tmp_path_factory):
+    return cpp_headers.make(tmp_path_factory.mktemp("headers") / "ros.pch")
+
+
+def said_of(folder, headers, standard=cpp_headers.STANDARD):
+    """Return what cpp_facts.py says of src/a.cpp in a folder."""
+    unit = [str(folder / "src/a.cpp"), standard]
+    task = crossing.to_json(Task(str(folder), str(headers), [unit]))
+    command = ["/usr/bin/python3", CPP_FACTS, task]
+    done = subprocess.run(command, stdout=subprocess.PIPE, check=True)
+    (said,) = crossing.from_json(Answer, done.stdout).values()
+    return said
+
+
+def findings(folder, headers, node, source):
+    """Return what the rules say of a node of the tutorial that is made of a source."""
+    package = check_rules.make(folder, src__a_DOT_cpp=source)
+    said = said_of(folder, headers)
+    assert said.errors == []
+    facts = facts_.Facts()
+    reading.mark_unused(facts, reading.take(facts, "src/a.cpp", said))
+    facts.sources[node] = ["src/a.cpp"]
+    model = check_rules.model_of(package)
+    return check_rules.node_findings(package, model, facts)
+
+
+def replaced(node, *changes):
+    source = SOURCES[node]
+    for old, new in changes:
+        assert source.count(old) == 1, old
+        source = source.replace(old, new)
+    return source
+
+
+INIT = '  ros::init(argc, argv, "publisher_cpp_node");\n'
+TIMER = "timer_ = nh_.createTimer(ros::Duration(0.5), &PublisherCppNode::timerCallback, this);"
+ADVERTISE = 'publisher_ = nh_.advertise<std_msgs::UInt32>("great_topic", 10);'
+SUBSCRIBE = "subscriber_ = nh_.subscribe"
+
+COUNT = "counter_ += 2;"
+
+# The node, what is replaced, and the finding: its id, the text of its line, and a word of it.
+BROKEN = {
+    "no_init": (PUBLISHER, [(INIT, "")], "node-start", "main(", r"ros::init"),
+    "handle_first": (
+        PUBLISHER,
+        [(INIT, ""), ('  ros::NodeHandle nh("~");\n', '  ros::NodeHandle nh("~");\n' + INIT)],
+        "node-start",
+        'nh("~")',
+        "before",
+    ),
+    "global_handle": (
+        PUBLISHER,
+        [("int main(", "ros::NodeHandle early;\n\nint main(")],
+        "node-start",
+        "early",
+        "before main",
+    ),
+    "other_name": (
+        PUBLISHER,
+        [('"publisher_cpp_node"', '"publisher"')],
+        "node-name",
+        "ros::init",
+        PUBLISHER,
+    ),
+    "no_spin": (PUBLISHER, [("  ros::spin();\n", "")], "spin", "return 0", "end"),
+    "no_spin_no_return": (
+        PUBLISHER,
+        [("  ros::spin();\n", ""), ("  return 0;\n", "")],
+        "spin",
+        "}",
+        "end of main",
+    ),
+    "spin_once": (SUBSCRIBER, [("ros::spin()", "ros::spinOnce()")], "spin", "spinOnce", "at once"),
+    "local": (
+        PUBLISHER,
+        [(ADVERTISE, "ros::Publisher " + ADVERTISE)],
+        "lifetime",
+        "advertise",
+        "PublisherCppNode",
+    ),
+    "local_of_callback": (
+        PUBLISHER,
+        [
+            ("    " + ADVERTISE + "\n", ""),
+            ("  ros::Publisher publisher_;\n", ""),
+            (
+                "    publisher_.publish",
+                "    ros::Publisher " + ADVERTISE + "\n    publisher_.publish",
+            ),
+        ],
+        "lifetime",
+        "advertise",
+        "timerCallback",
+    ),
+    "discarded": (
+        SUBSCRIBER,
+        [(SUBSCRIBE, "nh_.subscribe")],
+        "lifetime",
+        "subscribe",
+        "kept nowhere",
+    ),
+    "timer_discarded": (
+        PUBLISHER,
+        [(TIMER, TIMER.replace("timer_ = ", ""))],
+        "lifetime",
+        "createTimer",
+        "kept nowhere",
+    ),
+    "no_timer": (PUBLISHER, [(TIMER, "")], "callbacks", "void timerCallback", "nobody ever"),
+    "short_counter": (
+        PUBLISHER,
+        [("uint32_t counter_", "uint16_t counter_")],
+        "wrap",
+        "uint16_t",
+        "65535",
+    ),
+    "signed_counter": (
+        PUBLISHER,
+        [("uint32_t counter_", "int counter_")],
+        "wrap",
+        "int counter_",
+        "undefined",
+    ),
+    "float_counter": (
+        PUBLISHER,
+        [("uint32_t counter_", "float counter_")],
+        "wrap",
+        "float",
+        "never wraps",
+    ),
+    "starts_anew": (
+        PUBLISHER,
+        [(COUNT, COUNT + " if (counter_ > 100) { counter_ = 2; }")],
+        "wrap",
+        "counter_ = 2",
+        "again at 2 when it comes to 100",
+    ),
+    "conditional": (
+        PUBLISHER,
+        [(COUNT, "counter_ = counter_ >= 1000 ? 0 : counter_ + 2;")],
+        "wrap",
+        "counter_ >= 1000",
+        "again at 0 when it comes to 1000",
+    ),
+    "modulo": (
+        PUBLISHER,
+        [(COUNT, "counter_ = (counter_ + 2) % 256;")],
+        "wrap",
+        "% 256",
+        "when it comes to 256",
+    ),
+    "short_publisher": (PUBLISHER, [('_topic", 10', '_topic", 1')], "queue", ", 1)", "asks for 10"),
+    "long_queue": (SUBSCRIBER, [('_topic", 10', '_topic", 11')], "queue", ", 11,", "asks for 10"),
+    "short_queue": (SUBSCRIBER, [('"great_topic", 10', '"great_topic", 1')], "queue", "1,", "one"),
+}
+
+
+@pytest.mark.parametrize(("node", "changes", "id_", "line", "words"), BROKEN.values(), ids=BROKEN)
+def test_broken_line_is_found(node, changes, id_, line, words, tmp_path, headers):
+    source = replaced(node, *changes)
+    found = findings(tmp_path, headers, node, source)
+    assert [finding.id for finding in found] == [id_], found
+    assert line in source.splitlines()[found[0].line - 1]
+    assert re.search(words, f"{found[0].message} {found[0].expected}")
+
+
+OWN_THREAD = """  ros::AsyncSpinner one(1);
+  one.start();
+  ros::waitForShutdown();
+"""
+LOOP = """  ros::Rate rate(10);
+  while (ros::ok())
+  {
+    ros::spinOnce();
+    rate.sleep();
+  }
+"""
+LAMBDA = "[this](const ros::TimerEvent& e) { timerCallback(e); }"
+CORRECT = {
+    "as_it_is": (PUBLISHER, []),
+    "subscriber": (SUBSCRIBER, []),
+    "global_publisher": (
+        PUBLISHER,
+        [
+            ("  ros::Publisher publisher_;\n", ""),
+            ("class Pub", "ros::Publisher publisher_;\n\nclass Pub"),
+        ],
+    ),
+    "own_thread": (SUBSCRIBER, [("  ros::spin();\n", OWN_THREAD)]),
+    "loop": (SUBSCRIBER, [("  ros::spin();\n", LOOP)]),
+    "lambda": (PUBLISHER, [("&PublisherCppNode::timerCallback, this", LAMBDA)]),
+    "on_the_heap": (
+        PUBLISHER,
+        [
+            ("  PublisherCppNode node;", "  auto node = std::make_unique<PublisherCppNode>();"),
+            ("#include <cstdint>", "#include <cstdint>\n#include <memory>"),
+        ],
+    ),
+    "own_wrap": (
+        PUBLISHER,
+        [(COUNT, "if (counter_ >= 4294967294u) { counter_ = 0; } else { counter_ += 2; }")],
+    ),
+    "modulus": (PUBLISHER, [(COUNT, "counter_ = (counter_ + 2ul) % 4294967296ul;")]),
+    # It is wrong, but it does not begin again: what it publishes says so.
+    "skips": (PUBLISHER, [(COUNT, "counter_ += counter_ == 8 ? 4 : 2;")]),
+    "long_counter": (PUBLISHER, [("uint32_t counter_", "uint64_t counter_")]),
+}
+
+
+@pytest.mark.parametrize(("node", "changes"), CORRECT.values(), ids=CORRECT)
+def test_what_is_correct_is_not_flagged(node, changes, tmp_path, headers):
+    assert told(findings(tmp_path, headers, node, replaced(node, *changes))) == []
+
+
+@pytest.mark.slow
+def test_headers_that_do_not_fit_are_read_again(tmp_path, headers):
+    check_rules.make(tmp_path, src__a_DOT_cpp=SOURCES[PUBLISHER])
+    said = said_of(tmp_path, headers)
+    assert {place.kind for place in said.places} >= {Kind.PUBLISHER, Kind.LOG, Kind.STEP}
+    assert said_of(tmp_path, headers, "-std=gnu++20") == said
+    assert said_of(tmp_path, tmp_path / "no_such_file") == said

@@ -1,0 +1,331 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The checker's rules about files: text, manifest, CMake, scripts; broken and alike."""
+
+import check_rules
+import pytest
+from check_rules import CMAKE, MANIFEST, PUB_SUB, told
+from mrp_check.building import compiler, configuring, cpp_words
+from mrp_check.rules import cmake as cmake_rule
+from mrp_check.rules import dependencies, messages, package_name, scripts, targets, text
+from mrp_check.rules import manifest as manifest_rule
+from mrp_check.student import cmake, manifest
+
+pytestmark = pytest.mark.quick
+
+NODE = (
+    "#!/usr/bin/env python\nimport rospy\nfrom std_msgs.msg import UInt32\nrospy.init_node('a')\n"
+)
+
+
+@pytest.mark.parametrize(
+    ("content", "expected"),
+    [
+        (NODE.encode(), []),
+        ("#!/usr/bin/env python\n# ä\n".encode(), []),
+        (b"\xef\xbb\xbf" + NODE.encode(), [("text", 1)]),
+        (NODE.replace("\n", "\r\n").encode(), [("text", 1)]),
+        (b"#!/usr/bin/env python\n# \xe4\n", [("text", 2)]),
+        (b"#!/usr/bin/env python\n# coding: latin-1\n# \xe4\n", []),
+        (NODE.encode("utf-16"), [("text", 1)]),
+    ],
+    ids=range(7),
+)
+def test_text(content, expected, tmp_path):
+    package = check_rules.make(tmp_path, src__odd_DOT_py=content)
+    assert told(text.findings(package, set())) == expected
+
+
+def test_declared_latin1_breaks_what_catkin_install_python_makes(tmp_path):
+    content = b"#!/usr/bin/env python\n# coding: latin-1\n# \xe4\n"
+    package = check_rules.make(tmp_path, src__odd_DOT_py=content)
+    assert told(text.findings(package, {"src/odd.py"})) == [("text", 3)]
+
+
+def test_windows_line_ends_of_cpp_are_a_note(tmp_path):
+    package = check_rules.make(tmp_path, src__a_DOT_cpp="int main()\r\n{\r\n}\r\n")
+    assert told(text.findings(package, set())) == []
+    assert told(text.findings(package, set()), "note") == [("text", 1)]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "line", "says"),
+    [
+        ("</name>", "</nam>", 3, "<name> of line 3 is closed by </nam>"),
+        ("</description>", "", 5, "<description> is opened"),
+        ("</package>", "", 2, "<package> is opened there and not closed"),
+        ("<version>0.1.0</version>", "", 2, "version"),
+        (' email="someone@some.example"', "", 6, "email"),
+        ("<depend>rospy", "<dependd>rospy", 10, "dependd"),
+        ("<depend>rospy</depend>", "<run_depend>rospy</run_depend>", 10, "run_depend"),
+        ("  <buildtool_depend>catkin</buildtool_depend>\n", "", 8, "catkin"),
+    ],
+    ids=range(8),
+)
+def test_broken_manifest(old, new, line, says, tmp_path):
+    assert MANIFEST.count(old) == 1
+    package = check_rules.make(tmp_path, **{"package_DOT_xml": MANIFEST.replace(old, new)})
+    parsed, problem = manifest.parse(package)
+    findings = [problem] if problem else list(manifest_rule.findings(package, parsed))
+    assert told(findings) == [("manifest", line)]
+    assert says in findings[0].message
+
+
+def test_good_manifest(tmp_path):
+    package = check_rules.make(tmp_path)
+    parsed, problem = manifest.parse(package)
+    assert (problem, told(manifest_rule.findings(package, parsed))) == (None, [])
+
+
+def dependency_findings(folder, manifest_text=MANIFEST, cmake_text=CMAKE, **files):
+    files = {"src__odd_DOT_py": NODE, "src__a_DOT_cpp": "#include <ros/ros.h>\n", **files}
+    cmake_text += "add_executable(a src/a.cpp)\n"
+    package = check_rules.make(
+        folder, **{"package_DOT_xml": manifest_text, "CMakeLists_DOT_txt": cmake_text}, **files
+    )
+    parsed, _ = manifest.parse(package)
+    return list(dependencies.findings(package, PUB_SUB, parsed, check_rules.model_of(package)))
+
+
+def test_what_is_declared_is_no_finding(tmp_path):
+    assert told(dependency_findings(tmp_path), "error", "warning", "note") == []
+
+
+def test_missing_dependency_in_the_manifest(tmp_path):
+    text_ = MANIFEST.replace("  <depend>rospy</depend>\n", "")
+    (finding,) = dependency_findings(tmp_path, text_)
+    assert (finding.file, finding.line, finding.severity) == ("package.xml", 10, "error")
+    assert "rospy" in finding.message
+
+
+def test_misspelt_dependency_is_its_own_lines_fault(tmp_path):
+    text_ = MANIFEST.replace("<depend>rospy", "<depend>rosppy")
+    (finding,) = dependency_findings(tmp_path, text_)
+    assert (finding.line, finding.fix) == (10, "Write rospy for rosppy.")
+
+
+def test_missing_component(tmp_path):
+    text_ = CMAKE.replace("COMPONENTS roscpp", "COMPONENTS")
+    (finding,) = dependency_findings(tmp_path, cmake_text=text_)
+    assert (finding.file, finding.line, finding.severity) == ("CMakeLists.txt", 3, "error")
+
+
+def test_package_that_nobody_declares_is_the_using_lines_fault(tmp_path):
+    source = "#include <ros/ros.h>\n#include <ros/package.h>\n"
+    (finding,) = dependency_findings(tmp_path, src__a_DOT_cpp=source)
+    assert (finding.file, finding.line) == ("src/a.cpp", 2)
+    assert "roslib" in finding.message
+
+
+@pytest.mark.parametrize(
+    "source",
+    [
+        "#include <ros/ros.h>\n// #include <ros/package.h>\n",
+        "#include <ros/ros.h>\n/*\n#include <ros/package.h>\n*/\n",
+    ],
+    ids=range(2),
+)
+def test_comment_uses_nothing(source, tmp_path):
+    assert told(dependency_findings(tmp_path, src__a_DOT_cpp=source)) == []
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "line", "says"),
+    [
+        ("find_package(catkin REQUIRED COMPONENTS roscpp rospy std_msgs)\n", "", 2, "find_package"),
+        ("catkin_package(CATKIN_DEPENDS roscpp rospy std_msgs)\n", "", 3, "catkin_package"),
+        ("catkin_package(", "add_executable(b src/a.cpp)\ncatkin_package(", 5, "comes after"),
+        ("catkin_install", "add_executable(b src/aa.cpp)\ncatkin_install", 5, "src/a.cpp is meant"),
+    ],
+    ids=range(4),
+)
+def test_broken_cmake(old, new, line, says, tmp_path):
+    assert CMAKE.count(old) == 1
+    package = check_rules.make(
+        tmp_path, CMakeLists_DOT_txt=CMAKE.replace(old, new), src__a_DOT_cpp="int main() {}\n"
+    )
+    model = check_rules.model_of(package)
+    (finding,) = [*cmake_rule.findings(package, model), *targets.findings(package, model)]
+    assert (finding.file, finding.line) == ("CMakeLists.txt", line)
+    assert says in finding.message
+
+
+def test_cmake_as_text():
+    calls = cmake.parsed(
+        "# add_executable(no no.cpp)\nset(SOURCES a.cpp\n  b.cpp) #[[ add_library(no) ]]\n"
+        'project("x")\nADD_EXECUTABLE(${PROJECT_NAME}_a ${SOURCES})\n',
+        "CMakeLists.txt",
+    )
+    assert [call[:2] + call[3:] for call in calls] == [
+        ("set", ["SOURCES", "a.cpp", "b.cpp"], 2),
+        ("project", ["x"], 4),
+        ("add_executable", ["x_a", "a.cpp", "b.cpp"], 5),
+    ]
+
+
+def test_who_is_wrong_about_the_name_is_decided_by_the_others(tmp_path):
+    package = check_rules.make(tmp_path / "some_pkg")
+    model = check_rules.model_of(package)
+    assert list(package_name.findings(package, model, None)) == []
+    text_ = CMAKE.replace("project(some_pkg)", "project(other)")
+    package = check_rules.make(tmp_path / "some_pkg", CMakeLists_DOT_txt=text_)
+    (finding,) = package_name.findings(package, check_rules.model_of(package), None)
+    assert (finding.file, finding.line) == ("CMakeLists.txt", 2)
+    package = check_rules.make(tmp_path / "other", CMakeLists_DOT_txt=text_)
+    (finding,) = package_name.findings(package, check_rules.model_of(package), None)
+    assert (finding.file, finding.line) == ("package.xml", 3)
+
+
+@pytest.mark.parametrize(
+    ("first", "cmake_text", "expected"),
+    [
+        ("#!/usr/bin/env python", CMAKE, []),
+        ("#!/usr/bin/env python3", "", []),
+        ("#!/usr/bin/python3", "", []),
+        ("#! /usr/bin/python3 -u", "", []),
+        ("#!/usr/bin/env -S python3 -u", "", []),
+        ("# no shebang", CMAKE, [("scripts", 1)]),
+        ("#!/usr/bin/env pyhton", CMAKE, [("scripts", 1)]),
+        ("#!/usr/bin/pyhton3", "", [("scripts", 1)]),
+        ("#!/bin/bash", CMAKE, [("scripts", 1)]),
+        ("\n#!/usr/bin/env python", CMAKE, [("scripts", 1)]),
+    ],
+    ids=range(10),
+)
+def test_first_line(first, cmake_text, expected, tmp_path):
+    text_ = CMAKE if cmake_text else CMAKE.replace("catkin_install_python", "# ")
+    source = first + NODE[NODE.index("\n") :]
+    package = check_rules.make(tmp_path, src__odd_DOT_py=source, CMakeLists_DOT_txt=text_)
+    model = check_rules.model_of(package)
+    assert told(scripts.findings(package, model, {"src/odd.py": None})) == expected
+
+
+@pytest.mark.parametrize(("by", "severity"), [("catkin_install_python", "note"), ("# ", "error")])
+def test_script_that_is_not_executable(by, severity, tmp_path):
+    text_ = CMAKE.replace("catkin_install_python", by)
+    source = NODE.replace("env python", "env python3")
+    package = check_rules.make(tmp_path, src__odd_DOT_py=source, CMakeLists_DOT_txt=text_)
+    (tmp_path / "src" / "odd.py").chmod(0o644)
+    model = check_rules.model_of(package)
+    assert told(scripts.findings(package, model, {}), severity) == [("scripts", 1)]
+
+
+def test_script_that_is_not_there(tmp_path):
+    text_ = CMAKE.replace("src/odd.py", "src/od.py")
+    source = NODE.replace("env python", "env python3")
+    package = check_rules.make(tmp_path, src__odd_DOT_py=source, CMakeLists_DOT_txt=text_)
+    (finding,) = scripts.findings(package, check_rules.model_of(package), {})
+    assert (finding.file, finding.line) == ("CMakeLists.txt", 5)
+    assert "src/odd.py" in finding.fix
+
+
+def test_script_that_hides_a_module_of_rospys(tmp_path):
+    source = NODE.replace("env python", "env python3")
+    package = check_rules.make(tmp_path, src__logging_DOT_py=source, src__odd_DOT_py=source)
+    findings = list(scripts.findings(package, check_rules.model_of(package), {}))
+    assert [(f.file, f.severity) for f in findings] == [("src/logging.py", "error")]
+
+
+CPP = """#include <ros/ros.h>
+int main()
+{
+  if (true)
+  {
+    f();
+  return 0;
+}
+"""
+
+
+def test_unbalanced_brace_is_found_by_the_indentation():
+    assert cpp_words.unbalanced_brace(CPP.splitlines()) == (5, "}")
+    assert cpp_words.unbalanced_brace(CPP.replace("f();", "f(); }").splitlines()) is None
+    assert cpp_words.unbalanced_brace(["}", "// {"]) == (1, "{")
+
+
+@pytest.mark.parametrize(
+    ("error", "says"),
+    [
+        ("expected ‘;’ before ‘return’", "a semicolon is missing"),
+        ("‘ros’ has not been declared", "#include <ros/ros.h> is missing"),
+        ("‘uint32_t’ was not declared in this scope", "#include <cstdint> is missing"),
+        ("‘countr’ was not declared in this scope; did you mean ‘counter’?", "counter is meant"),
+        ("std_msgs/UInt23.h: No such file or directory", "std_msgs/UInt32.h is meant"),
+        (
+            "no matching function for call to ‘ros::NodeHandle::subscribe(const char [2])’",
+            "arguments of subscribe() do not fit",
+        ),
+        (
+            "binding reference of type ‘ros::ParameterAdapter<std_msgs::UInt32_<std::allocator<"
+            "void> >&>::Parameter’ {aka ‘std_msgs::UInt32_<std::allocator<void> >&’} to ‘const"
+            " std_msgs::UInt32_<std::allocator<void> >’ discards qualifiers",
+            "a std_msgs::UInt32& that is not const",
+        ),
+        ("something that nobody has seen before", "something that nobody has seen before"),
+    ],
+    ids=range(8),
+)
+def test_compilers_errors_in_plain_words(error, says, tmp_path):
+    package = check_rules.make(tmp_path / "src" / "some_pkg", src__a_DOT_cpp=CPP)
+    output = (
+        f"{package.root}/src/a.cpp:6:5: error: {error}\n{package.root}/src/a.cpp:7:1: error: x\n"
+    )
+    (problem,) = compiler.problems(output, package.root)
+    finding = compiler.finding(package, problem)
+    assert (finding.id, finding.file, finding.line) == ("compile", "src/a.cpp", 6)
+    assert says in finding.message
+
+
+def test_error_in_a_header_of_ros_is_where_the_package_uses_it(tmp_path):
+    package = check_rules.make(tmp_path / "src" / "some_pkg", src__a_DOT_cpp=CPP)
+    output = (
+        "In file included from /usr/include/ros/ros.h:1,\n"
+        f"                 from {package.root}/src/a.cpp:1:\n"
+        "/usr/include/ros/x.h: In instantiation of ‘void f()’:\n"
+        f"{package.root}/src/a.cpp:6:5:   required from here\n"
+        "/usr/include/ros/x.h:9:1: error: no type\n"
+    )
+    (problem,) = compiler.problems(output, package.root)
+    assert (problem.file, problem.line) == ("src/a.cpp", 6)
+
+
+@pytest.mark.parametrize("name", ["odd.py.save.1", "odd.py~", "odd.py.bak", "#odd.py#"])
+def test_what_an_editor_keeps_is_no_script(name, tmp_path):
+    package = check_rules.make(
+        tmp_path, **{f"src__{name}": "#!/usr/bin/env python\nimport rospi\n"}
+    )
+    assert package.files == ["CMakeLists.txt", "package.xml", f"src/{name}"]
+    assert package.of_kind("python") == []
+
+
+@pytest.mark.parametrize(
+    ("generator", "severities"),
+    [("message_generation", []), ("genmsg", ["warning"]), ("roslib", ["error", "error"])],
+)
+def test_what_makes_messages(generator, severities, tmp_path):
+    text_ = CMAKE.replace(
+        "catkin_package", "add_message_files(FILES A.msg)\ngenerate_messages()\n#"
+    )
+    package = check_rules.make(
+        tmp_path,
+        package_DOT_xml=MANIFEST.replace(
+            "</package>", f"<depend>{generator}</depend><depend>message_runtime</depend></package>"
+        ),
+        CMakeLists_DOT_txt=text_.replace("roscpp rospy", f"{generator} roscpp rospy"),
+        msg__A_DOT_msg="int32 a\n",
+    )
+    parsed, _ = manifest.parse(package)
+    model = check_rules.model_of(package)
+    found = messages.findings(package, PUB_SUB, model, parsed)
+    assert [finding.severity for finding in found] == severities
+
+
+def test_package_that_this_machine_has_not_is_not_the_students_fault(tmp_path):
+    package = check_rules.make(
+        tmp_path,
+        package_DOT_xml=MANIFEST.replace("</package>", "<depend>cv_bridge</depend></package>"),
+    )
+    said = 'Could not find a package configuration file provided by "{}" with any of'
+    assert configuring.absent(package, said.format("cv_bridge")) == "cv_bridge"
+    # Nobody asks for this one, and that one is misspelt.
+    assert configuring.absent(package, said.format("tf2")) is None
+    assert configuring.absent(package, said.format("rospyy")) is None

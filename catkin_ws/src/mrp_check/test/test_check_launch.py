@@ -1,0 +1,166 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The checker's rules about the launch file, as roslaunch's own reader reads it."""
+
+import re
+
+import check_rules
+import pytest
+from check_rules import PUB_SUB, told
+from mrp_check.rules import launch_file, launch_group, launch_nodes, launch_output, launch_remap
+from mrp_check.student import launch as launching
+
+pytestmark = pytest.mark.slow  # each test imports roslaunch anew, in a process of its own
+
+CMAKE = check_rules.CMAKE.replace(
+    "catkin_install_python(PROGRAMS src/odd.py DESTINATION bin)\n",
+    "add_executable(publisher_cpp_node src/a.cpp)\n"
+    "add_executable(subscriber_cpp_node src/b.cpp)\n"
+    "catkin_install_python(PROGRAMS src/publisher_py_node.py src/subscriber_py_node.py"
+    " DESTINATION bin)\n",
+)
+NODE = '    <node pkg="some_pkg" type="{0}" name="{1}" output="screen"/>\n'
+NODES = [
+    NODE.format(name + ("" if "cpp" in name else ".py"), name)
+    for name in (
+        "publisher_cpp_node",
+        "publisher_py_node",
+        "subscriber_cpp_node",
+        "subscriber_py_node",
+    )
+]
+LAUNCH = f"""<launch>
+  <arg name="group" default="mrp"/>
+  <group ns="$(arg group)">
+{"".join(NODES)}  </group>
+</launch>
+"""
+FILES = (launch_file, launch_nodes, launch_group, launch_output, launch_remap)
+RULES = [file.RULE for file in FILES]
+
+
+def findings(folder, text, **files):
+    """Return the findings about a launch file."""
+    files = {"src__a_DOT_cpp": "", "src__b_DOT_cpp": "", "CMakeLists_DOT_txt": CMAKE, **files}
+    for name in ("publisher", "subscriber"):
+        files[f"src__{name}_py_node_DOT_py"] = "#!/usr/bin/env python\n"
+    package = check_rules.make(folder / "some_pkg", launch__pub_sub_DOT_launch=text, **files)
+    case = check_rules.case_of(package, folder / "scratch", model=check_rules.model_of(package))
+    found = [finding for rule in RULES for finding in rule.findings(case)]
+    case.close()
+    return found
+
+
+def replaced(old, new):
+    assert LAUNCH.count(old) == 1, old
+    return LAUNCH.replace(old, new)
+
+
+PUBLISHER_PY = 'type="publisher_py_node.py" name="publisher_py_node"'
+BROKEN = {
+    "not_closed": ("  </group>\n", "", [("launch-file", 3)], "group"),
+    "no_type": ('type="publisher_cpp_node" ', "", [("launch-file", 4)], "type="),
+    "no_such_package": (
+        "  <arg name",
+        '  <include file="$(find nowhere)/a.launch"/>\n  <arg name',
+        [("launch-file", 2)],
+        "nowhere",
+    ),
+    "no_such_argument": ("$(arg group)", "$(arg robot)", [("launch-file", 3)], "robot"),
+    "name_twice": (
+        PUBLISHER_PY,
+        'type="publisher_py_node.py" name="publisher_cpp_node"',
+        [("launch-file", 5)],
+        "publisher_cpp_node",
+    ),
+    "other_name": (
+        PUBLISHER_PY,
+        'type="publisher_py_node.py" name="talker"',
+        [("launch-nodes", 5)],
+        "talker",
+    ),
+    "not_started": (NODES[1], "", [("launch-nodes", 6)], "publisher_py_node"),
+    "no_ending": (
+        PUBLISHER_PY,
+        PUBLISHER_PY.replace(".py", ""),
+        [("launch-nodes", 5)],
+        "publisher_py_node.py",
+    ),
+    "other_package": (
+        NODES[3],
+        NODES[3].replace("some_pkg", "sone_pkg"),
+        [("package-name", 7)],
+        "some_pkg",
+    ),
+    "to_the_log": (
+        NODES[2],
+        NODES[2].replace(' output="screen"', ""),
+        [("launch-output", 6)],
+        "log",
+    ),
+    "renamed": (
+        NODES[1],
+        NODES[1].replace(
+            "/>", '>\n      <remap from="great_topic" to="small_topic"/>\n    </node>'
+        ),
+        [("topic", 6)],
+        "small_topic",
+    ),
+    "other_group": ('default="mrp"', 'default="mpr"', [("launch-group", 2)], "mpr"),
+    "no_group": ('<group ns="$(arg group)">', "<group>", [("launch-group", 3)], "mrp"),
+    "own_group": (
+        NODES[1],
+        NODES[1].replace("<node ", '<node ns="more" '),
+        [("launch-group", 5)],
+        "/mrp/more",
+    ),
+    "group_written_down": ("$(arg group)", "mrp", [("launch-group", 3)], "second robot"),
+    "unknown_element": ("  <arg name", "  <prameter/>\n  <arg name", [("launch-file", 2)], "param"),
+}
+
+
+@pytest.mark.parametrize(("old", "new", "wanted", "words"), BROKEN.values(), ids=BROKEN)
+def test_broken_launch_file(old, new, wanted, words, tmp_path):
+    found = findings(tmp_path, replaced(old, new))
+    assert told(found) == wanted, found
+    assert re.search(words, f"{found[0].message} {found[0].expected} {found[0].fix}")
+
+
+@pytest.mark.quick
+def test_other_file_name(tmp_path):
+    package = check_rules.make(tmp_path, launch__pubsub_DOT_launch=LAUNCH)
+    path, (finding,) = launching.readable(package, PUB_SUB)
+    assert (path, finding.id, finding.file) == (None, "launch-file", "launch/pubsub.launch")
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ("<launch>", "<launch>\n  <!-- a comment -->"),
+        ("</launch>", '  <node pkg="rosout" type="rosout" name="more"/>\n</launch>'),
+        ("</launch>", '  <node pkg="some_pkg" type="a.py" name="more" ns="x"/>\n</launch>'),
+        (
+            NODES[0],
+            NODES[0].replace("/>", '>\n      <remap from="chatter" to="talk"/>\n    </node>'),
+        ),
+        (NODES[0], NODES[0].replace("<node ", '<node required="true" respawn="false" ')),
+        ("<group ", '<param name="rate" value="2"/>\n  <group '),
+    ],
+    ids=range(6),
+)
+def test_what_looks_like_it_is_not_flagged(old, new, tmp_path):
+    assert told(findings(tmp_path, replaced(old, new), scripts__a_DOT_py="")) == []
+
+
+def test_nodes_may_be_in_an_included_file(tmp_path):
+    inner = "<launch>\n" + "".join(NODES) + "</launch>\n"
+    include = '    <include file="$(find some_pkg)/launch/nodes.launch"/>\n'
+    text = LAUNCH.replace("".join(NODES), include)
+    assert told(findings(tmp_path, text, launch__nodes_DOT_launch=inner)) == []
+
+
+def test_line_of_an_included_file(tmp_path):
+    inner = "<launch>\n" + "".join(NODES).replace("subscriber_py_node.py", "subscriber.py")
+    include = '    <include file="$(find some_pkg)/launch/nodes.launch"/>\n'
+    text = LAUNCH.replace("".join(NODES), include)
+    (finding,) = findings(tmp_path, text, launch__nodes_DOT_launch=inner + "</launch>\n")
+    assert (finding.id, finding.file, finding.line) == ("launch-nodes", "launch/nodes.launch", 5)

@@ -1,0 +1,71 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What follows from what the observer has seen of a package's nodes, and from what it has not."""
+
+import check_rules
+import pytest
+from lab_package import OF_RUN, findings_of, make_package, spec_of
+from mrp_check import check
+from mrp_check.confined.seen import (
+    Alone,
+    DirectResult,
+    LaunchResult,
+    Message,
+    Registration,
+    Seen,
+)
+from mrp_check.contract.errors import CannotCheck
+from mrp_check.rules import REQUIREMENTS
+from mrp_check.running import observing, planning
+from mrp_check.sources.facts import Facts
+from mrp_check.student.package import Package
+
+pytestmark = pytest.mark.slow
+
+
+def observed_case(tmp_path, folder, observed):
+    """Return the case of a package of which the observer has seen that."""
+    spec = spec_of(["right"], [])
+    scratch = tmp_path / "scratch"
+    return check_rules.case_of(Package(folder), scratch, spec, facts=Facts(), observed=observed)
+
+
+def test_texts_on_a_number_topic_are_found_and_no_fault_of_the_checker(tmp_path):
+    """Of what arrives, nothing is a number: its type is wrong, and its values were never seen."""
+    folder = make_package(tmp_path / "lab_pkg", {"right": ("", "")}, {})
+    path, topic = "/lab/publisher_right", "/lab/of_right"
+    seen = Seen(
+        publications=[Registration(path, topic, "std_msgs/String", 0)],
+        messages=[Message(path, topic, {"data": "1"}, time / 2) for time in range(8)],
+    )
+    launch = LaunchResult(ending="enough", asked=5, lines=[], seen=seen)
+    observed = observing.Observed(launch=launch, executables={"publisher_right": folder})
+    case = observed_case(tmp_path, folder, observed)
+    found = [finding.id for rule in OF_RUN for finding in rule.findings(case)]
+    case.close()
+    assert "type" in found and "values" not in found
+    unseen = check.unseen(case, ["values", "rate", "latch", "exit", "type"])
+    assert unseen == {
+        "values": "publisher_right published no number",
+        "exit": "publisher_right was not seen to end",
+    }
+
+
+def test_a_fault_of_the_observer_is_no_finding(tmp_path, monkeypatch):
+    folder = make_package(tmp_path / "lab_pkg", {"right": ("", "")}, {})
+    monkeypatch.setattr(planning, "ENOUGH_ALONE", "none")
+    said = r"The observer itself failed: .*\.publishes: expected int; found 'none'"
+    with pytest.raises(CannotCheck, match=said):
+        findings_of(folder, spec_of(["right"], []), tmp_path / "scratch")
+
+
+def test_what_a_dead_node_would_do_was_never_seen(tmp_path):
+    folder = make_package(tmp_path / "lab_pkg", {"right": ("", "")}, {})
+    observed = observing.Observed(executables={"publisher_right": folder})
+    observed.direct = DirectResult({"publisher_right": Alone(code=1, ended_after=0.1)})
+    case = observed_case(tmp_path, folder, observed)
+    case.close()
+    of_run = [id_ for id_, one in REQUIREMENTS.items() if one.stage in ("run", "stop")]
+    unseen = check.unseen(case, of_run)
+    # Nobody asks it to hear anything.
+    assert {*of_run} - {*unseen} == {"received"}
+    assert {*unseen.values()} == {"publisher_right did not run"}

@@ -1,0 +1,237 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The checker's rules about Python: each on a line that is wrong and on one that looks like it."""
+
+import re
+
+import check_rules
+import pytest
+from check_rules import told
+from mrp_check.confined.places import Kind, Place
+
+pytestmark = pytest.mark.quick
+
+HEAD = """#!/usr/bin/env python
+import rospy
+from std_msgs.msg import UInt32
+
+
+class Node:
+    def __init__(self):
+        self.counter = 1
+        self.publisher = rospy.Publisher("great_topic", UInt32, queue_size=10)
+        self.timer = rospy.Timer(rospy.Duration(0.5), self.callback)
+
+    def callback(self, event):
+        msg = UInt32()
+        msg.data = self.counter
+        self.publisher.publish(msg)
+        self.counter = (self.counter + 2) % 2**32
+
+
+def main():
+    rospy.init_node("publisher_py_node")
+    rospy.loginfo("namespace of node = " + rospy.get_name())
+    node = Node()
+    rospy.spin()
+
+
+if __name__ == "__main__":
+    main()
+"""
+
+# What is replaced, by what, and the finding: its id, the text of its line, and a word of it.
+BROKEN = [
+    ("import rospy\n", "\n", "python-names", "rospy.Publisher", "import of rospy"),
+    ("import UInt32", "import UInt23", "python-names", "UInt23", "UInt32"),
+    ("import rospy\n", "import rospi\n", "python-names", "import rospi", "rospi"),
+    ("from std_msgs.msg", "from std_msgs", "python-names", "from std_msgs", "UInt32"),
+    ("rospy.spin()", "rospy.spln()", "python-names", "rospy.spln", "spin"),
+    ("rospy.spin()", "rospy.spin", "spin", "rospy.spin", "brackets"),
+    ("    main()\n", "    main\n", "node-start", "    main", "brackets"),
+    (
+        '    rospy.init_node("publisher_py_node")\n',
+        '    early = Node()\n    rospy.init_node("publisher_py_node")\n',
+        "node-start",
+        "early = Node()",
+        "before rospy.init_node",
+    ),
+    ("= self.counter\n", "= self.conter\n", "python-names", "self.conter", "self.counter"),
+    ("= self.counter\n", "= counter\n", "python-names", "= counter", "self.counter"),
+    ("msg.data = ", "msg.dta = ", "python-names", "msg.dta", "data"),
+    ("self.callback)", "self.callback())", "callbacks", "self.callback()", "without brackets"),
+    ("self, event", "self", "callbacks", "def callback(self)", "takes no argument"),
+    ("self, event", "event", "python-names", "def callback", "self"),
+    ("self.callback)", '"callback")', "callbacks", '"callback"', "function"),
+    ("rospy.Duration(0.5)", "0.5", "callbacks", "rospy.Timer", "rospy.Duration"),
+    (", UInt32, queue", ', "UInt32", queue', "type", "rospy.Publisher", "class"),
+    (
+        '"great_topic", UInt32',
+        'UInt32, "great_topic"',
+        "type",
+        "rospy.Publisher",
+        "name comes first",
+    ),
+    ("queue_size=10", "queuesize=10", "python-names", "queuesize", "queue_size"),
+    ("def main():", "def main()", "python-syntax", "def main()", "colon"),
+    ("get_name())", "get_name()", "python-syntax", "rospy.loginfo", "never closed"),
+    (
+        "        msg = ",
+        "       msg = ",
+        "python-syntax",
+        "msg = UInt32|msg.data",
+        "indented|indent",
+    ),
+    ("        msg = ", "        // msg\n        msg = ", "python-syntax", "// msg", "#"),
+    ("        msg = ", "        global x = 1\n        msg = ", "python-syntax", "global x", "two"),
+]
+
+
+def replaced(old, new):
+    assert HEAD.count(old) >= 1, old
+    return HEAD.replace(old, new, 1)
+
+
+def test_the_tutorials_way_has_no_finding(tmp_path):
+    assert told(check_rules.python_findings(tmp_path, HEAD), "error", "warning", "note") == []
+
+
+@pytest.mark.parametrize(("old", "new", "id_", "line", "words"), BROKEN, ids=[b[1] for b in BROKEN])
+def test_broken_line_is_found(old, new, id_, line, words, tmp_path):
+    text = replaced(old, new)
+    errors = [
+        f
+        for f in check_rules.python_findings(tmp_path, text)
+        if f.severity == "error" and not f.consequence_of
+    ]
+    assert [f.id for f in errors] == [id_], errors
+    shown = text.splitlines()[errors[0].line - 1]
+    assert any(part in shown for part in line.split("|")), shown
+    assert re.search(words, f"{errors[0].message} {errors[0].expected} {errors[0].fix}")
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        (
+            "rospy.Timer(rospy.Duration(0.5), self.callback)",
+            "rospy.Timer(rospy.Duration(0.5), lambda event: self.callback(event))",
+        ),
+        (
+            "rospy.Timer(rospy.Duration(0.5), self.callback)",
+            "rospy.Timer(period=rospy.Duration(nsecs=500000000), callback=self.callback)",
+        ),
+        ("self, event", "self, event=None, *more"),
+        ("import rospy\n", "import rospy as ros\nrospy = ros\n"),
+        ("from std_msgs.msg import UInt32", "import std_msgs.msg\nUInt32 = std_msgs.msg.UInt32"),
+        ("from std_msgs.msg import UInt32", "from std_msgs.msg import *"),
+        (
+            "import rospy\n",
+            "import rospy\ntry:\n    import no_such_module\nexcept ImportError:\n    pass\n",
+        ),
+        ("import rospy\n", "from rospy import *\nimport rospy\n"),
+        ("self.counter = 1", "setattr(self, 'counter', 1)"),
+        ("msg = UInt32()", "msg = UInt32(data=0)"),
+        (
+            "    def callback",
+            "    @property\n    def other(self):\n        return self.counter\n\n    def callback",
+        ),
+        ("class Node:", "class Node(object):"),
+        ("rospy.loginfo(", "rospy.logwarn_throttle(5, "),
+    ],
+    ids=range(13),
+)
+def test_what_looks_like_it_is_not_flagged(old, new, tmp_path):
+    assert told(check_rules.python_findings(tmp_path, replaced(old, new))) == []
+
+
+def test_what_is_not_kept_is_a_note(tmp_path):
+    text = replaced("self.timer = rospy.Timer", "rospy.Timer")
+    assert told(check_rules.python_findings(tmp_path, text)) == []
+    assert told(check_rules.python_findings(tmp_path, text), "note") == [("lifetime", 10)]
+
+
+def test_facts_say_what_the_source_says(tmp_path):
+    _, facts = check_rules.python_facts_of(tmp_path, HEAD)
+    file = "src/odd.py"
+    said = {place.kind: place for place in facts.places}
+    assert said[Kind.INIT] == Place(file, 20, Kind.INIT, "publisher_py_node")
+    publisher = Place(file, 9, Kind.PUBLISHER, "great_topic", queue=10, queue_line=9)
+    assert said[Kind.PUBLISHER] == publisher
+    assert said[Kind.TIMER] == Place(file, 10, Kind.TIMER, period=0.5)
+    assert said[Kind.COUNTER] == Place(file, 8, Kind.COUNTER)
+    assert said[Kind.STEP].line == 16
+    assert said[Kind.LOG].text == "namespace of node = {}"
+
+
+@pytest.mark.parametrize(
+    ("expression", "value"),
+    [
+        ('"a" + "b"', "ab"),
+        ('"a%s %d" % ("b", 2)', "ab 2"),
+        ('"{} {}".format("a", rospy.get_name())', "a {}"),
+        ('f"x{1}{rospy.get_name()}"', "x1{}"),
+        ('rospy.get_namespace() + "/t"', "{}/t"),
+        ('rospy.resolve_name("t")', "t"),
+        ("CONSTANT", "great"),
+    ],
+)
+def test_plain_texts_are_read(expression, value, tmp_path):
+    text = f'CONSTANT = "great"\nimport rospy\nrospy.init_node({expression})\n'
+    _, facts = check_rules.python_facts_of(tmp_path, text)
+    (init,) = [place for place in facts.places if place.kind is Kind.INIT]
+    assert init.text == value
+
+
+@pytest.mark.parametrize(
+    ("queue", "severity"), [(0, "warning"), (1, "error"), (9, "warning"), (11, "warning")]
+)
+def test_queue_is_as_long_as_the_contract_says(queue, severity, tmp_path):
+    text = replaced("queue_size=10", f"queue_size={queue}")
+    package, facts = check_rules.python_facts_of(tmp_path, text)
+    model = check_rules.model_of(package)
+    found = check_rules.node_findings(package, model, facts)
+    assert told(found, severity) == [("queue", 9)]
+
+
+def test_module_that_this_machine_has_not_is_not_the_students_fault(tmp_path):
+    text = replaced("import rospy\n", "import rospy\nimport no_such_camera\n")
+    (finding,) = check_rules.python_findings(tmp_path, text)
+    assert (finding.severity, finding.line) == ("note", 3)
+    assert "Debian package python3-no-such-camera" in finding.message
+    text = replaced("import rospy\n", "import rospy\nimport cv3\n")
+    (finding,) = check_rules.python_findings(tmp_path, text)
+    assert "csv" not in f"{finding.message} {finding.fix}"
+
+
+@pytest.mark.parametrize(
+    ("indent", "line"), [("    ", "    node = Node()"), ("", "    main()")], ids=["main", "module"]
+)
+def test_missing_spin_belongs_to_the_end(indent, line, tmp_path):
+    text = replaced("    rospy.spin()\n", "")
+    if not indent:
+        # The node is begun outside of all functions.
+        text = text.replace("    rospy.init_node", "    pass\n\n\nrospy.init_node")
+        text = text.replace("    rospy.loginfo", "rospy.loginfo").replace("    node =", "node =")
+    package, facts = check_rules.python_facts_of(tmp_path, text)
+    model = check_rules.model_of(package)
+    (finding,) = check_rules.node_findings(package, model, facts)
+    assert (finding.id, text.splitlines()[finding.line - 1]) == ("spin", line)
+
+
+@pytest.mark.parametrize(
+    ("new", "line"),
+    [
+        (
+            "        if self.counter != 5:\n            self.publisher.publish(msg)",
+            "if self.counter",
+        ),
+        ("        self.publisher.publish(msg)", None),
+    ],
+)
+def test_condition_before_publish(new, line, tmp_path):
+    text = replaced("        self.publisher.publish(msg)", new)
+    package, facts = check_rules.python_facts_of(tmp_path, text)
+    one = check_rules.case_of(package, tmp_path / "scratch", facts=facts, observed=None)
+    place = one.places.condition_of_publish("publisher_py_node")
+    one.close()
+    assert (text.splitlines()[place[1] - 1].strip().startswith(line)) if line else place is None

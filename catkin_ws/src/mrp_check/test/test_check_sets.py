@@ -1,0 +1,205 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The checker on packages whose defect is known (check_sets.py says where they are).
+
+Each correct package must be met, whatever its style; in each broken one the one defect must be
+found, with its id, at its place, and nothing else but its consequences.
+"""
+
+import json
+import os
+import pathlib
+import subprocess
+
+import check_sets
+import pytest
+from mrp_check.contract import defects
+from mrp_testing import compiler_cache, scratch
+from mrp_testing.proves import proves
+
+pytestmark = pytest.mark.sets
+
+# The checker's central tests, which `make test` runs: the tutorial, and one defect in it.
+# One worker of pytest runs both: what is compiled for the first need not be for the second.
+CENTRAL = ("mrp", "py_member_misspelt")
+
+
+def parameters(values, name):
+    """Return the values for parametrize; those whose name is in CENTRAL are marked."""
+    marks = [pytest.mark.quick, pytest.mark.xdist_group("central")]
+    return [pytest.param(value, marks=marks if name(value) in CENTRAL else []) for value in values]
+
+
+CHECK = check_sets.HERE.parent / "src" / "mrp_check"
+EXERCISES = defects.exercises()
+
+
+@pytest.fixture
+def run_check(tmp_path):
+    """Return a function that checks the package at a folder, and returns the report's data."""
+
+    def run(folder, spec, *options):
+        report = tmp_path / "report.json"
+        env = scratch.environment()
+        env.update(
+            PYTHONPATH=str(CHECK / "src"),
+            PYTHONDONTWRITEBYTECODE="1",
+            # Only what a style or a defect changes is compiled anew.
+            PATH=f"/usr/lib/ccache:{os.environ['PATH']}",
+            MRP_CHECK_CCACHE=str(compiler_cache.FOLDER.with_name("ccache_of_checks")),
+        )
+        command = ["/usr/bin/python3", CHECK / "scripts" / "check", folder]
+        done = subprocess.run(
+            [
+                *command,
+                "--spec",
+                CHECK / "specs" / spec,
+                "--json",
+                report,
+                "--timeout",
+                "900",
+                *options,
+            ],
+            env=env,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+        )
+        assert report.exists(), done.stdout
+        data = json.loads(report.read_text())
+        assert done.returncode == {"met": 0, "findings": 1}[data["verdict"]], done.stdout
+        return data
+
+    return run
+
+
+def shown(findings):
+    """Return findings as lines for a reader."""
+    return "\n".join(
+        "{id} {severity} {file}:{line} {message} | {expected} | {seen}".format(**one)
+        + (f" (from {one['consequence_of']})" if one["consequence_of"] else "")
+        for one in findings
+    )
+
+
+@proves(
+    "In Python, rospy keeps the subscriber too, and goes on calling the callback even if your own "
+    "object is gone.",
+    "project names the package, with the name that package.xml has.",
+    "Yes: a publisher may publish from a callback, too.",
+    "The package mrp_check builds and runs a package, and compares it with a contract.",
+    "A package may have any name.",
+    "Only errors count.",
+    "The exit code is 0 if all requirements are met, 1 if one is not, and 2 if the package could "
+    "not be checked.",
+    "They check correct packages in many styles, and none is reported as wrong.",
+    "This is the tutorial's spec, and the tutorial's package meets it:",
+    "The folder specs has one more example: relay.yaml, for a node that doubles what it receives, "
+    "with its own type of message.",
+    "Exit code 0 means that all requirements are met.",
+)
+@pytest.mark.parametrize("style", parameters(check_sets.STYLES, str))
+def test_correct_package_is_met(style, tmp_path, run_check):
+    folder = tmp_path / "package"
+    check_sets.lay_out(style, folder)
+    report = run_check(folder, check_sets.spec_of(style))
+    warns = check_sets.fields_of(style).get("Warns", [])
+    found = [one for one in report["findings"] if one["severity"] != "note"]
+    others = [one for one in found if one["id"] not in warns]
+    assert (report["verdict"], shown(others)) == ("met", "")
+    assert {one["id"] for one in found} == set(warns)
+
+
+@proves(
+    "Here they are those of ROS; without them, the linker reports an error.",
+    "It reports what is wrong, where, and which page explains it.",
+    "The exit code is 0 if all requirements are met, 1 if one is not, and 2 if the package could "
+    "not be checked.",
+    "They check packages with one defect each, and it reports the right file and line, and "
+    "nothing else.",
+    "Check: make check PKG=~/catkin_ws/src/my_package checks a package that you wrote.",
+)
+@pytest.mark.parametrize(
+    "defect",
+    parameters([one for one in check_sets.DEFECTS if not one.order], lambda one: one.name),
+    ids=lambda one: one.name,
+)
+def test_defect_is_found(defect, tmp_path, run_check):
+    folder = tmp_path / "package"
+    check_sets.lay_out(defect.base, folder)
+    check_sets.break_(folder, defect)
+    report = run_check(folder, check_sets.spec_of(defect.base))
+    # A rule that only warns breaks no requirement.
+    assert report["verdict"] == ("met" if defect.severity == "warning" else "findings")
+    assert_one_defect(report["findings"], defect, folder, (defect.severity,))
+    assert_fixes_fit(report["findings"], folder)
+
+
+def assert_fixes_fit(findings, folder):
+    """Raise AssertionError unless each diff that a finding proposes can be applied."""
+    for finding in findings:
+        if "\n--- a/" in finding["fix"]:
+            text = finding["fix"].partition("\n")[2] + "\n"
+            patch = ["patch", "-p1", "--fuzz=0", "--dry-run"]
+            subprocess.run(patch, cwd=folder, input=text, text=True, check=True)
+
+
+def assert_one_defect(findings, defect, folder, severities=("error",)):
+    """Raise AssertionError unless the defect is found, and nothing that does not follow from it."""
+    causes = [
+        one for one in findings if one["severity"] in severities and not one["consequence_of"]
+    ]
+    told = [one for one in causes if check_sets.is_found(one, defect, folder)]
+    if defect.missed:
+        assert not told, "it is found: take its line Missed away"
+        return
+    assert told, f"expected: {defect}\nfound:\n{shown(findings)}"
+    others = [one for one in causes if one not in told]
+    assert not others, f"besides the defect:\n{shown(others)}"
+
+
+@proves(
+    "Each exercise fails for its own reason, and its solution passes.",
+    "It only reads the folder that you name: it builds and runs a copy, in a scratch folder.",
+    "Some of these mistakes are exercises: packages that you fix, and that the checker checks.",
+    "Practise: make exercise gives you broken packages to fix, one after the other.",
+)
+@pytest.mark.parametrize("exercise", EXERCISES, ids=lambda one: one.name)
+def test_exercise_fails_for_its_own_reason_and_its_solution_passes(exercise, tmp_path, run_check):
+    folder = tmp_path / "package"
+    check_sets.lay_out("mrp", folder)
+    check_sets.break_(folder, exercise)
+    report = run_check(folder, "pub_sub.yaml")
+    assert_one_defect(report["findings"], exercise, folder, severities=("error", "warning"))
+    assert_fixes_fit(report["findings"], folder)
+    # The solution makes the tutorial's package of it, which is met: see "mrp" above.
+    check_sets.break_(folder, exercise, "--reverse")
+    check_sets.lay_out("mrp", tmp_path / "tutorial")
+    assert contents(folder) == contents(tmp_path / "tutorial")
+
+
+ALONE = [
+    ("mrp", "launch/pub_sub.launch", 'type="subscriber_py', 'type="publisher_py', "launch-nodes"),
+    ("scripts_folder", "src/even.cpp", "unsigned int", "unsigned short", "wrap"),
+]
+
+
+@proves("--only checks the named requirements alone.")
+@pytest.mark.parametrize(
+    ("style", "file", "old", "new", "id_"), ALONE, ids=["launch-nodes", "wrap"]
+)
+def test_one_requirement_alone_is_found_broken_too(style, file, old, new, id_, tmp_path, run_check):
+    check_sets.lay_out(style, tmp_path / "package")
+    broken = tmp_path / "package" / file
+    assert old in broken.read_text()
+    broken.write_text(broken.read_text().replace(old, new))
+    report = run_check(tmp_path / "package", check_sets.spec_of(style), "--only", id_)
+    assert report["requirements"] == {id_: "broken"}
+
+
+def contents(folder):
+    """Return path -> bytes of all files of a folder."""
+    return {
+        path.relative_to(folder): path.read_bytes()
+        for path in pathlib.Path(folder).rglob("*")
+        if path.is_file()
+    }

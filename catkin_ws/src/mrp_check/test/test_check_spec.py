@@ -1,0 +1,146 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The checker's specs: ours can be read, and a wrong one is told by file, line and place."""
+
+import json
+import pathlib
+import re
+
+import pytest
+from mrp_check import rules
+from mrp_check.contract import resources, spec
+from mrp_check.contract.errors import SpecError
+from mrp_check.contract.requirements import STAGES
+from mrp_check.rules import REQUIREMENTS
+from mrp_testing.proves import proves
+
+pytestmark = pytest.mark.quick
+
+MINIMAL = """title: An exercise
+topics:
+  a_topic:
+    type: std_msgs/UInt32
+nodes:
+  a_node:
+    publishes:
+      topic: a_topic
+launch:
+  file: a.launch
+"""
+
+
+@pytest.mark.parametrize("name", ["pub_sub", "relay"])
+def test_our_specs_can_be_read(name):
+    contract = spec.read(spec.find(name))
+    assert contract.nodes and contract.topics and contract.launch.file
+
+
+def test_values_wrap_round():
+    values = spec.read(spec.find("pub_sub")).nodes["publisher_cpp_node"].publishes.values
+    assert values.after(2**32 - 2) == 0
+    assert spec.Values(1, 2).after(2**32 - 1) == 2**32 + 1
+
+
+@proves(
+    "The folder specs has one more example: relay.yaml, for a node that doubles what it receives, "
+    "with its own type of message.",
+)
+def test_relay_doubles():
+    relays = spec.read(spec.find("relay")).nodes["relay_node"].relays
+    assert (relays.of(3), relays.of(2**31)) == (6, 0)
+
+
+def test_line_pattern():
+    line = r"\[A\] {name} has {value}"
+    match = spec.pattern(line, "/mrp/a").fullmatch("[A] /mrp/a has 12")
+    assert match.group("value") == "12"
+    assert not spec.pattern(line, "/mrp/a").fullmatch("[A] /mrp/b has 12")
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "says"),
+    [
+        ("title: An exercise\n", "", r":1: .*expected the key 'title'; it is missing\."),
+        ("topic: a_topic", "topic: a_topik", r":8: .*no topic 'a_topik'.*mean 'a_topic'\?"),
+        ("publishes:", "publish:", r":6: .*no key 'publish'.*mean 'publishes'\?"),
+        ("type: std_msgs/UInt32", "type: UInt32", r":4: topics\.a_topic\.type: 'UInt32' does not"),
+        ("type: std_msgs/UInt32", "type: 3", r":4: .*expected a text; found 3\."),
+        ("topic: a_topic", "topic: a_topic\n      queue: 0", r":9: .*at least 1; found 0\."),
+        ("topic: a_topic", "topic: a_topic\n    prints: ['[A']", r":9: .*no regular expression"),
+        ("std_msgs/UInt32", "PACKAGE/Count", r":4: .*'messages' has no message 'Count'"),
+        ("launch:", "points: {valuse: 1}\nlaunch:", r":9: .*no requirement 'valuse'.*'values'\?"),
+        ("launch:", "topics: {}\nlaunch:", r":9: .*the key 'topics' stands twice"),
+        ("title: An", "title: [An", r":\d+: .*no valid YAML"),
+        ("    type: std", "\ttype: std", r":4: .*no valid YAML"),
+        ("std_msgs/UInt32", "std_msgs/UInt23", r":4: .*no message 'std_msgs/UInt23'.*mean"),
+        ("std_msgs/UInt32", "no_msgs/UInt32", r":4: .*no message 'no_msgs/UInt32'"),
+        (
+            "type: std_msgs/UInt32",
+            "type: std_msgs/UInt32\n    field: dta",
+            r":5: .*found 'dta'; std_msgs/UInt32 has: data\. Did you mean 'data'\?",
+        ),
+        (
+            "type: std_msgs/UInt32",
+            "type: std_msgs/Header\n    field: stamp.secs.x",
+            r":5: .*time has no fields",
+        ),
+        ("type: std_msgs/UInt32", "type: std_msgs/Header", r":3: .*seq, stamp, frame_id"),
+        (
+            "launch:",
+            "messages: {Count: {count: uint23}}\nlaunch:",
+            r":9: messages\.Count\.count: there is no message 'uint23'",
+        ),
+    ],
+    ids=range(18),
+)
+def test_wrong_spec_is_told_in_one_sentence(old, new, says, tmp_path):
+    path = tmp_path / "wrong.yaml"
+    assert MINIMAL.count(old) == 1
+    path.write_text(MINIMAL.replace(old, new))
+    with pytest.raises(SpecError) as error:
+        spec.read(path, REQUIREMENTS)
+    assert str(error.value).startswith(str(path))
+    assert re.search(says, str(error.value)), error.value
+    assert "\n" not in str(error.value)
+    if "YAML" not in str(error.value):
+        assert str(error.value).endswith(str(spec.SCHEMA))
+
+
+def test_minimal_spec_can_be_read(tmp_path):
+    path = tmp_path / "minimal.yaml"
+    path.write_text(MINIMAL)
+    assert spec.read(path).node_path("a_node") == "/a_node"
+
+
+def test_missing_spec_is_told(tmp_path):
+    with pytest.raises(SpecError, match="cannot be read"):
+        spec.read(tmp_path / "none.yaml")
+
+
+def test_schemas_are_json():
+    for name in ("spec.json", "report.json"):
+        assert json.loads((resources.folder("schema") / name).read_text())["title"]
+
+
+def test_requirements_point_to_pages_that_exist():
+    pages = resources.folder("specs").parents[1] / "mrp" / "doc" / "pages"
+    assert {requirement.stage for requirement in REQUIREMENTS.values()} == set(STAGES)
+    for requirement in REQUIREMENTS.values():
+        page, _, anchor = requirement.section.partition("#")
+        lines = (pages / f"{page}.rst").read_text().splitlines()
+        titles = [line for line, below in zip(lines, lines[1:]) if re.fullmatch(r"[-=]{3,}", below)]
+        anchors = [re.sub(r"[^a-z0-9]+", "-", title.lower()).strip("-") for title in titles]
+        assert not anchor or anchor in anchors, (requirement.section, anchors)
+
+
+def test_each_file_of_rules_is_a_rule_with_its_own_place():
+    files = {path.stem for path in pathlib.Path(rules.__file__).parent.glob("*.py")}
+    assert len(rules.RULES) == len(files - {"__init__"})
+    places = [(rule.stage, rule.order) for rule in rules.RULES]
+    assert len({*places}) == len(places)
+
+
+def test_what_a_rule_can_report_is_some_rule_s_own():
+    """A requirement stands in one rule alone; others may find it not met."""
+    own = [id_ for rule in rules.RULES for id_ in rule.requirements]
+    assert sorted(own) == sorted(REQUIREMENTS)
+    assert {id_ for rule in rules.RULES for id_ in rule.also} <= {*own}

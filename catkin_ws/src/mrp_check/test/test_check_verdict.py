@@ -1,0 +1,137 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What a check concludes of each requirement: met, broken, or not known, and why not."""
+
+import json
+import re
+
+import check_rules
+import jsonschema
+import pytest
+from mrp_check import check
+from mrp_check.case import Case
+from mrp_check.contract.errors import CannotCheck
+from mrp_check.contract.finding import Finding
+from mrp_check.contract.requirements import Rule
+from mrp_check.report import class_table, console, json_, junit
+from mrp_check.report import html as html_report
+from mrp_check.rules import RULES
+from mrp_testing.proves import proves
+
+pytestmark = pytest.mark.quick
+
+RUNNING = """#!/usr/bin/env python
+import rospy
+rospy.init_node("publisher_py_node")
+rospy.spin()
+"""
+
+
+def examined(folder, rules, monkeypatch, only=(), **files):
+    """Return the Report of a package of Python nodes, by these rules alone."""
+    monkeypatch.setattr(check, "RULES", rules)
+    package = check_rules.make(folder / "some_pkg", **files)
+    return check.check(package, check_rules.PUB_SUB, only, timeout=300)
+
+
+def rule(*found, ids=("text",), fails=None, stage="files"):
+    def findings(case):
+        yield from found
+        if fails:
+            raise fails
+
+    return Rule(stage, 1, (), findings, also=ids)
+
+
+@pytest.mark.parametrize(
+    ("fails", "says"),
+    [
+        (TypeError("no number"), "The checker itself failed, in findings().*TypeError: no number"),
+        (CannotCheck("The machine is too busy."), "The machine is too busy."),
+    ],
+    ids=["fault", "busy"],
+)
+def test_a_rule_that_fails_costs_its_own_requirements_alone(
+    fails, says, tmp_path, monkeypatch, report_schema
+):
+    wrong = Finding("cmake", "It is wrong.", "CMakeLists.txt", 1)
+    rules = [
+        rule(fails=fails),
+        rule(wrong, ids=("cmake",)),
+        rule(ids=("manifest",), stage="static"),
+    ]
+    one = examined(tmp_path, rules, monkeypatch, only=("text", "cmake", "manifest"))
+    assert one.verdict == check.UNCHECKED
+    assert one.requirements == {
+        "manifest": check.MET,
+        "cmake": check.BROKEN,
+        "text": check.UNCHECKED,
+    }
+    assert [finding.message for finding in one.findings] == ["It is wrong."]
+    assert re.search(says, one.reason) and re.search(says, one.unseen["text"])
+    jsonschema.validate(json.loads(json_.text(one)), report_schema)
+    for text in (console.text(one), junit.text(one), html_report.text(one)):
+        assert str(fails) in text
+
+
+def test_a_rule_reports_no_other_requirement_than_it_says(tmp_path, monkeypatch):
+    other = rule(Finding("spin", "It never spins."), ids=("text",))
+    one = examined(tmp_path, [other], monkeypatch, only=("text",))
+    assert (one.verdict, one.findings) == (check.UNCHECKED, [])
+    assert "a rule reports spin, and does not say so" in one.reason
+
+
+def test_what_failed_once_is_not_tried_again(tmp_path, monkeypatch):
+    tried = []
+
+    def model(case):
+        tried.append(case)
+        raise CannotCheck("CMake did not end.")
+
+    monkeypatch.setattr(Case, "model", property(model))
+    rules = [
+        Rule("files", 1, ("model",), list, also=("text",)),
+        Rule("files", 2, ("facts",), list, also=("cmake",)),
+    ]
+    one = examined(tmp_path, rules, monkeypatch, only=("text", "cmake"))
+    assert (one.reason, len(tried)) == ("CMake did not end.", 1)
+    assert {*one.requirements.values()} == {check.UNCHECKED}
+
+
+STATIC = [rule for rule in RULES if rule.stage in ("files", "static")]
+STATIC_IDS = [id_ for rule in STATIC for id_ in rule.requirements]
+
+
+@pytest.mark.parametrize("id_", ["wrap", "launch-nodes"])
+def test_one_requirement_alone_is_checked_as_among_all(id_):
+    """--only runs what the rules need that can report the requirement, in whichever stage."""
+    rules = [rule for rule in RULES if id_ in rule.ids]
+    assert len(rules) > 1
+    needs = check.needs_of([id_])
+    assert "launch" in needs and "facts" in needs
+    assert all(needs >= {*rule.needs} for rule in rules)
+
+
+@proves("One with [--] could not be checked: the report says why, and it earns no points.")
+def test_what_was_never_seen_is_neither_met_nor_paid(tmp_path, monkeypatch):
+    """A package without sources: nobody can say anything of its nodes."""
+    one = examined(tmp_path, STATIC, monkeypatch, only=STATIC_IDS)
+    never = {"dependencies", "python-syntax", "node-start", "spin", "lifetime", "queue"}
+    assert {id_ for id_ in never if one.requirements[id_] != check.UNCHECKED} == set()
+    assert one.unseen["spin"] == "no source of publisher_cpp_node was found"
+    assert "[--]   Each node waits for callbacks (spin): no source of" in console.text(one)
+    assert "no source of publisher_cpp_node" in html_report.text(one)
+    assert "no source of publisher_cpp_node" in junit.text(one)
+    assert json.loads(json_.text(one))["unseen"] == one.unseen
+    assert one.requirements["manifest"] == check.MET
+    submission = class_table.Submission("anna", json_.data(one))
+    met = [id_ for id_, verdict in one.requirements.items() if verdict == check.MET]
+    assert submission.points(check_rules.PUB_SUB) == len(met) < 8
+
+
+def test_many_findings_outside_the_exercise_are_one_line(tmp_path, monkeypatch):
+    files = {f"scripts__tool{n}_DOT_py": "#!/usr/bin/python3\nfoo()\n" for n in range(9)}
+    files["src__publisher_py_node_DOT_py"] = RUNNING + "bar()\n"
+    one = examined(tmp_path, STATIC, monkeypatch, only=STATIC_IDS, **files)
+    names = [finding for finding in one.findings if finding.id == "python-names"]
+    assert [finding.file for finding in names] == ["scripts/tool0.py", "src/publisher_py_node.py"]
+    assert names[0].message.startswith("9 such faults in files that are no node of the exercise")

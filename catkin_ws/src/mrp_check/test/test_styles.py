@@ -1,0 +1,97 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The styles, which check_sets.py lays out: each makes a package, and a fault in one is a sentence.
+
+test_check_sets.py builds and runs them.
+"""
+
+import pathlib
+import xml.etree.ElementTree as ElementTree
+
+import check_sets
+import pytest
+from mrp_check.contract import resources
+from mrp_check.rules import REQUIREMENTS
+
+pytestmark = pytest.mark.quick
+
+OTHERS = check_sets.STYLES[1:]  # than the tutorial's
+
+PATCH = """\
+Style: some
+Base: nothing
+
+diff --git b/src/a.py b/src/a.py
+new file mode 100755
+--- /dev/null
++++ b/src/a.py
+@@ -0,0 +1 @@
++first
+"""
+
+
+@pytest.mark.parametrize("style", OTHERS)
+def test_style_makes_a_package(style, tmp_path):
+    check_sets.lay_out(style, tmp_path)
+    xml = [path for path in tmp_path.rglob("*") if path.suffix in (".launch", ".xml")]
+    assert {ElementTree.parse(path).getroot().tag for path in xml} == {"launch", "package"}
+
+
+@pytest.mark.parametrize("style", OTHERS)
+def test_head_names_what_is_there(style):
+    fields = check_sets.fields_of(style)
+    assert fields["Base"][0] in (*check_sets.STYLES, "nothing")
+    assert (resources.folder("specs") / check_sets.spec_of(style)).exists()
+    assert [id_ for id_ in fields.get("Warns", []) if id_ not in REQUIREMENTS] == []
+
+
+@pytest.fixture
+def lay_out(tmp_path, monkeypatch):
+    """A function that lays out a style of which the patch has this text."""
+    monkeypatch.setattr(check_sets, "CORRECT", tmp_path)
+
+    def of(text, style="some"):
+        (tmp_path / f"{style}.patch").write_text(text)
+        check_sets.lay_out(style, tmp_path / style)
+        return tmp_path / style
+
+    return of
+
+
+def contents(folder):
+    """Return path -> (may be executed, text) of all files of a folder."""
+    files = [path for path in pathlib.Path(folder).rglob("*") if path.is_file()]
+    return {
+        str(path.relative_to(folder)): (bool(path.stat().st_mode & 0o100), path.read_bytes())
+        for path in files
+    }
+
+
+def test_patch_replaces_files_of_its_base(lay_out):
+    assert contents(lay_out(PATCH)) == {"src/a.py": (True, b"first\n")}
+    second = PATCH.replace("nothing", "some").replace("100755", "100644")
+    assert contents(lay_out(second.replace("first", "second"), "other")) == {
+        "src/a.py": (False, b"second\n")
+    }
+
+
+def test_head_without_a_diff_changes_files_of_its_base(lay_out):
+    lay_out(PATCH)
+    lay_out(PATCH.replace("a.py", "b.py").replace("nothing", "some"), "two")
+    folder = lay_out("Base: two\nWithout: src/a.py\nCRLF: src/b.py\n", "windows")
+    assert contents(folder) == {"src/b.py": (True, b"first\r\n")}
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "fault"),
+    [
+        ("+first", "", r"(?s)some\.patch to fit .*patch says:.*\n.* check_sets\.py shows how"),
+        ("Style:", "Styles:", r"some\.patch: expected one of .*, Warns; found the field Styles\."),
+        ("Base: nothing", "Base: nothing\nWithout: b.py", r"some\.patch: expected .* have b\.py,"),
+        ("Base: nothing", "Base: nothing\nCRLF: b.py", r"some\.patch: expected .* have b\.py,"),
+    ],
+    ids=["diff", "field", "Without", "CRLF"],
+)
+def test_fault_says_which_patch_it_is_in(old, new, fault, lay_out):
+    assert PATCH.count(old) == 1
+    with pytest.raises(check_sets.PatchError, match=fault):
+        lay_out(PATCH.replace(old, new))

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A latched publisher: use it for what changes seldom and late subscribers need, such as a map, and
+// not for a stream of values.
+
+#include <ros/ros.h>
+#include <std_msgs/UInt32.h>
+
+int main(int argc, char* argv[])
+{
+  ros::init(argc, argv, "latch");
+  ros::NodeHandle nh;
+
+  // It keeps the last message, and sends it to each subscriber that connects later.
+  const bool latch = true;
+  ros::Publisher publisher = nh.advertise<std_msgs::UInt32>("great_topic", 1, latch);
+
+  std_msgs::UInt32 msg;
+  msg.data = 42;
+  publisher.publish(msg);
+  ROS_INFO_STREAM("published " << msg.data);
+  ros::spin();
+  return 0;
+}

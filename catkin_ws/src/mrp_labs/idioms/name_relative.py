@@ -1,0 +1,24 @@
+#!/usr/bin/env python
+# SPDX-License-Identifier: BSD-3-Clause
+"""A relative name: use it for every topic on which nodes meet, and not for what belongs to one node
+alone."""
+
+import rospy
+from std_msgs.msg import UInt32
+
+
+def subscriber_callback(msg):
+    rospy.loginfo("received %d", msg.data)
+
+
+def main():
+    rospy.init_node("name_relative")
+
+    # Started in the namespace /robot1, the node subscribes to /robot1/great_topic.
+    subscriber = rospy.Subscriber("great_topic", UInt32, subscriber_callback, queue_size=10)
+    rospy.loginfo("subscribes to %s", subscriber.resolved_name)
+    rospy.spin()
+
+
+if __name__ == "__main__":
+    main()

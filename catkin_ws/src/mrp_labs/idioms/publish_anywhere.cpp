@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Publishes from a subscriber's callback, without a timer: use it to answer a message, and not to
+// publish at a rate of your own.
+
+#include <ros/ros.h>
+#include <std_msgs/UInt32.h>
+
+class PublishAnywhere
+{
+public:
+  PublishAnywhere()
+  {
+    // In this order: the callback needs the publisher from the first message on.
+    publisher_ = nh_.advertise<std_msgs::UInt32>("doubled", 10);
+    subscriber_ = nh_.subscribe("number", 10, &PublishAnywhere::subscriberCallback, this);
+  }
+
+private:
+  void subscriberCallback(const std_msgs::UInt32& msg)
+  {
+    std_msgs::UInt32 answer;
+    answer.data = 2 * msg.data;
+    publisher_.publish(answer);
+  }
+
+  ros::NodeHandle nh_;
+  ros::Publisher publisher_;
+  ros::Subscriber subscriber_;
+};
+
+int main(int argc, char* argv[])
+{
+  ros::init(argc, argv, "publish_anywhere");
+  PublishAnywhere node;
+  ros::spin();
+  return 0;
+}

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A subscriber's queue of 1: use it where only the newest value counts, such as a sensor's, and not
+// where each value counts.
+
+#include <ros/ros.h>
+#include <std_msgs/UInt32.h>
+
+void subscriberCallback(const std_msgs::UInt32& msg)
+{
+  ROS_INFO_STREAM("received " << msg.data);
+  ros::WallDuration(1.0).sleep();  // stands for work that takes longer than the publisher's period
+}
+
+int main(int argc, char* argv[])
+{
+  ros::init(argc, argv, "queue_of_one");
+  ros::NodeHandle nh;
+
+  // While the callback works, each message that arrives takes the place of the one before it.
+  ros::Subscriber subscriber = nh.subscribe("great_topic", 1, subscriberCallback);
+  ros::spin();
+  return 0;
+}

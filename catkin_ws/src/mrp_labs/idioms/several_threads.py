@@ -1,0 +1,33 @@
+#!/usr/bin/env python
+# SPDX-License-Identifier: BSD-3-Clause
+"""Callbacks in several threads: use them where one callback must not hold up another, and not
+without a lock around what they share."""
+
+import threading
+
+import rospy
+from std_msgs.msg import UInt32
+
+
+class SeveralThreads:
+    def __init__(self):
+        self.lock = threading.Lock()
+        self.total = 0
+        self.first = rospy.Subscriber("first", UInt32, self.subscriber_callback, queue_size=10)
+        self.second = rospy.Subscriber("second", UInt32, self.subscriber_callback, queue_size=10)
+
+    # rospy calls it in a thread of each publisher's connection, without a line of yours.
+    def subscriber_callback(self, msg):
+        with self.lock:
+            self.total += msg.data
+            rospy.loginfo("total %d in thread %d", self.total, threading.get_ident())
+
+
+def main():
+    rospy.init_node("several_threads")
+    node = SeveralThreads()
+    rospy.spin()
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,112 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Loops in place of a timer: which of them drift, and what spinOnce costs that comes too seldom.
+
+The test itself turns the clock, and waits for the nodes at each turn: so nothing depends on how
+fast the machine is.
+"""
+
+import unittest
+
+import rospy
+import rostest
+from mrp_testing import log_line
+from mrp_testing.clock import TurnedClock
+from mrp_testing.lab import PACKAGE, Lab
+from mrp_testing.nodes import receivers_of
+from mrp_testing.proves import proves
+
+STEP = 0.5  # seconds by which the clock is turned
+MESSAGES = 63
+PERIOD = 0.25  # seconds between two messages of the lab with spinOnce
+TOPIC = "/loop_spin_once/great_topic"
+QUEUE_SIZE = 4  # messages, of each subscriber
+
+
+class TestLoop(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        rospy.init_node("test_loop")
+
+    @proves(
+        "After 60 seconds each has published 60 messages.",
+        "After 60 seconds it has published 40 messages.",
+    )
+    def test_drift(self):
+        keep, drift = (
+            [f"/loop_drift/{kind}_{language}" for kind in kinds for language in ("cpp", "py")]
+            for kinds in (("timer", "rate"), ("sleep",))
+        )
+        with TurnedClock() as clock, Lab("loop_drift.launch", "clock:=false") as lab:
+
+            def least():
+                """Return the number of messages of those that keep the period."""
+                return min(len(times(lab, node)) for node in keep)
+
+            clock.begin(lab, len(keep + drift), STEP, lambda: least() > 1)
+            while least() < MESSAGES:
+                count = least()
+                clock.turn(STEP)
+                # A node that was late may have begun its period anew, half of it later.
+                clock.turn_until(lab, STEP, lambda: least() > count)
+
+            for node in keep:
+                # The first ones may come late, while the nodes still wait for the clock.
+                begin, *others = times(lab, node)[2:MESSAGES]
+                for number, time in enumerate(others, 1):
+                    self.assertAlmostEqual(time - begin, number, delta=4 * STEP, msg=node)
+            for node in drift:
+                # Half of the period more for each, or even more on a busy machine.
+                found = times(lab, node)[2:]
+                self.assertGreater(len(found), 2, node)
+                for before, after in zip(found, found[1:]):
+                    self.assertGreater(after - before, 1.5 - 0.01, node)
+
+    @proves(
+        "When the queue is full, the oldest message is dropped.",
+        "The slow loop gets the four newest messages of each two seconds, late and all at once.",
+        "The quick loop misses none, and neither does a subscriber in Python.",
+    )
+    def test_spin_once_too_seldom(self):
+        publisher, often, seldom, python = (
+            f"/loop_spin_once/{name}"
+            for name in ("publisher_cpp", "often_cpp", "seldom_cpp", "subscriber_py")
+        )
+        with TurnedClock() as clock, Lab("loop_spin_once.launch") as lab:
+            lab.wait_for(
+                lambda: receivers_of(publisher, TOPIC) == sorted([often, seldom, python]),
+                "all subscribers are connected",
+            )
+            clock.begin(lab, 4, PERIOD, lambda: lab.values(python))
+            while len(batches(lab.values(seldom))) <= 3:
+                count = len(lab.values(python))
+                clock.turn(PERIOD)
+                lab.wait_for_count(python, count + 1)
+            for node in (often, python):
+                self.assertEqual(len(batches(lab.values(node))), 1, f"{node}: a gap\n{lab}")
+            # The last one may still be on its way to the console.
+            for batch in batches(lab.values(seldom))[:-1]:
+                self.assertEqual(len(batch), QUEUE_SIZE, str(lab))
+
+
+def times(lab, node):
+    """Return when a node published the messages 1, 2, 3, ... by the clock of the nodes."""
+    logged = filter(None, map(log_line.parse, list(lab.lines)))
+    found = [one for one in logged if one.text.startswith(f"{node} published ")]
+    values = [int(one.text.split()[-1]) for one in found]
+    assert values == list(range(1, len(values) + 1)), f"{node}: {values}"
+    return [one.simulated or 0 for one in found]
+
+
+def batches(texts):
+    """Split values into runs in which each is the one before plus one."""
+    result = []
+    for value in map(int, texts):
+        if not result or value != result[-1][-1] + 1:
+            result.append([])
+        result[-1].append(value)
+    return result
+
+
+if __name__ == "__main__":
+    rostest.rosrun(PACKAGE, "loop", TestLoop)

@@ -1,0 +1,125 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""A publisher with a fair and a slow subscriber: a queue for each, and without a queue."""
+
+import contextlib
+import os
+import re
+import signal
+import unittest
+
+import rospy
+import rostest
+from mrp_labs.message_text import to_text
+from mrp_testing.clock import TurnedClock
+from mrp_testing.lab import PACKAGE
+from mrp_testing.nodes import connections_of, program
+from mrp_testing.process import Process
+from mrp_testing.waiting import wait_until, within
+from std_msgs.msg import String
+
+COUNT = 20  # messages that each publisher publishes
+QUEUE = 5
+MEGABYTES = 4  # of each message
+# Seconds of the simulated clock: a turn brings a message, however the sums are rounded.
+PERIOD = 0.95
+TURN = 1.0
+BLOCKED = 1.0  # seconds: much longer than a message takes
+
+
+class TestSlowSubscriber(unittest.TestCase):
+    """A publisher with two subscribers: this test is one, and the other one stands still.
+
+    This test is the publisher's clock, too: it lets it publish when the message before is here.
+    """
+
+    @classmethod
+    def setUpClass(cls):
+        rospy.init_node("test_slow_subscriber")
+
+    def start(self, executable, name, *parameters):
+        type_, topic = "_type:=std_msgs/String", f"_topic:=/{self.topic}"
+        name = f"__name:={self.topic}_{name}"
+        process = Process(program(PACKAGE, executable), name, type_, topic, *parameters)
+        return self.stack.enter_context(process)
+
+    @contextlib.contextmanager
+    def publisher(self, executable, queue_size):
+        """Start a publisher and both its subscribers; the slow one stands still."""
+        self.topic = executable.split(".")[0] + str(queue_size)
+        self.numbers = []  # that this test has received
+        subscriber = rospy.Subscriber(f"/{self.topic}", String, self.receive)
+        with contextlib.ExitStack() as self.stack:
+            self.stack.callback(subscriber.unregister)
+            self.clock = self.stack.enter_context(TurnedClock())
+            values = {"size": f"{MEGABYTES}000000", "count": COUNT, "queue_size": queue_size}
+            values.update(period=PERIOD, wait_for_subscribers=2)
+            options = [f"_{name}:={value}" for name, value in values.items()]
+            publisher = self.start(executable, "fair", *options)
+            self.slow = self.start("lab_subscriber_py_node.py", "slow")
+            fair, slow, this = f"/{self.topic}_fair", f"/{self.topic}_slow", rospy.get_name()
+            publisher.wait_for(lambda: connected(fair, self.topic) >= {slow, this}, "the topic")
+            self.clock.begin(publisher, 2, TURN, lambda: self.numbers)
+            os.kill(self.slow.pid, signal.SIGSTOP)
+            self.stack.callback(os.kill, self.slow.pid, signal.SIGCONT)
+            yield
+
+    def receive(self, msg):
+        self.numbers.append(int(to_text(msg).split('"')[1]))
+
+    def more(self):
+        """Let the publisher publish once more; return whether its number comes."""
+        before = len(self.numbers)
+        self.clock.turn(TURN)
+        return within(BLOCKED, lambda: len(self.numbers) > before)
+
+    def receive_all(self):
+        """Let the publisher publish until this test has all numbers."""
+
+        def step():
+            self.more()
+            return len(self.numbers) >= COUNT
+
+        wait_until(step, lambda: f"{COUNT} numbers, not only {self.numbers}")
+
+    def received_by_slow(self):
+        """Return all that the slow subscriber has received, once it has the last number."""
+
+        def numbers():
+            found = re.findall(r'received "(\d+)"', "\n".join(self.slow.lines))
+            return list(map(int, found))
+
+        self.slow.wait_for(lambda: COUNT in numbers(), lambda: f"{COUNT} in {numbers()}")
+        return numbers()
+
+    def check_only_the_slow_one_loses(self, executable):
+        with self.publisher(executable, QUEUE):
+            self.receive_all()
+            self.assertEqual(self.numbers, list(range(1, COUNT + 1)))
+            os.kill(self.slow.pid, signal.SIGCONT)
+            self.assertLess(len(self.received_by_slow()), COUNT)
+
+    def test_slow_subscriber_does_not_hold_up_the_other_cpp(self):
+        self.check_only_the_slow_one_loses("lab_publisher_cpp_node")
+
+    def test_slow_subscriber_does_not_hold_up_the_other_py(self):
+        self.check_only_the_slow_one_loses("lab_publisher_py_node.py")
+
+    def test_without_a_queue_the_slow_subscriber_holds_up_the_other_py(self):
+        with self.publisher("lab_publisher_py_node.py", "none"):
+            while self.more() or self.more():
+                pass
+            self.assertLess(len(self.numbers), COUNT)
+            os.kill(self.slow.pid, signal.SIGCONT)
+            self.receive_all()
+            self.assertEqual(self.received_by_slow(), list(range(1, COUNT + 1)))
+            self.assertEqual(self.numbers, list(range(1, COUNT + 1)))
+
+
+def connected(node, topic):
+    """Return the nodes to which a node sends a topic."""
+    return {to for _, to, way, _, name, *_ in connections_of(node) if way == "o" and topic in name}
+
+
+if __name__ == "__main__":
+    rostest.rosrun(PACKAGE, "slow_subscriber", TestSlowSubscriber)

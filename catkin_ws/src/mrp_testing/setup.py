@@ -1,0 +1,7 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""For catkin_python_setup() alone, by which Python finds src/mrp_testing."""
+
+from catkin_pkg.python_setup import generate_distutils_setup
+from setuptools import find_packages, setup
+
+setup(**generate_distutils_setup(packages=find_packages("src"), package_dir={"": "src"}))

@@ -1,0 +1,94 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A lab under test: run with roslaunch as a student runs it, and read line by line."""
+
+import collections
+import re
+
+import roslib.packages
+
+from mrp_testing import log_line
+from mrp_testing.process import Process
+
+PACKAGE = "mrp_labs"
+
+_RECEIVED = re.compile(
+    r"(?P<node>/\S+) received (?P<value>.*) from (?P<publisher>/\S+?)"
+    r"(?: in thread (?P<thread>\d+))?"
+)
+
+# A message that a subscriber has received. value: its text; thread: a number, or None.
+Received = collections.namedtuple("Received", "value publisher thread")
+
+
+def path_of(launch_file):
+    """Return the path of one of the labs' launch files: see Lab."""
+    return roslib.packages.find_resource(PACKAGE, launch_file)[0]
+
+
+class Lab(Process):
+    """A lab that runs, and the lines that it has printed so far.
+
+    launch_file: such as "latch.launch"
+    arguments: those of roslaunch, such as "period:=1", or the paths of more launch files: several
+        labs at once take less time than one after another
+
+    traceback: whether one belongs to the claim
+
+    Use it in a `with`: on leaving without an error, the lab is ended as by Ctrl-C, unless it has
+    ended by itself, and must end cleanly: with exit code 0, no traceback and no abort.
+    """
+
+    def __init__(self, launch_file, *arguments, extra_env=None, traceback=False):
+        super().__init__("roslaunch", PACKAGE, launch_file, *arguments, extra_env=extra_env)
+        self.traceback = traceback
+
+    def __exit__(self, *exception):
+        try:
+            if exception[0] is None:
+                code = self.stop() if self.code is None else self.wait()
+                assert code == 0, f"exit code {code} of {self}"
+                for line in self.lines:
+                    assert "lock_error" not in line, str(self)
+                    assert self.traceback or "Traceback" not in line, str(self)
+        finally:
+            super().__exit__(*exception)
+
+    def logged(self, node, levels=("INFO",)):
+        """Return the texts that a node has logged, each without the node's name in front."""
+        texts = [one.text for one in self._log_lines() if one.level in levels]
+        return [text[len(node) + 1 :] for text in texts if text.startswith(node + " ")]
+
+    def _log_lines(self):
+        return filter(None, map(log_line.parse, list(self.lines)))
+
+    def received(self, node):
+        """Return what a subscriber node has received: a list of Received."""
+        result = []
+        for one in self._log_lines():
+            match = _RECEIVED.fullmatch(one.text)
+            if match and match["node"] == node:
+                result.append(Received(match["value"], match["publisher"], match["thread"]))
+        return result
+
+    def values(self, node, publisher=None):
+        """Return the texts of the values that a subscriber node has received, of one publisher or
+        of all."""
+        return [r.value for r in self.received(node) if publisher in (None, r.publisher)]
+
+    def wait_until_received(self, node, *values, publisher=None):
+        """Wait until a subscriber node has received each of these values; return all it has."""
+        wanted = set(map(str, values))
+        self.wait_for(
+            lambda: wanted <= set(self.values(node, publisher)),
+            lambda: f"{node} received {wanted}, not only {self.values(node, publisher)}",
+        )
+        return self.values(node, publisher)
+
+    def wait_for_count(self, node, count, publisher=None):
+        """Wait until a subscriber node has received that many values, whichever; return all that it
+        has. The first ones of a publisher are lost to a subscriber that starts after it."""
+        self.wait_for(
+            lambda: len(self.values(node, publisher)) >= count,
+            lambda: f"{node} received {count} values, not only {self.values(node, publisher)}",
+        )
+        return self.values(node, publisher)

@@ -1,0 +1,19 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Where this workspace is. An installed copy of this package does not know it."""
+
+import pathlib
+import shutil
+
+WORKSPACE = pathlib.Path(__file__).resolve().parents[4]  # catkin_ws
+ROOT = WORKSPACE.parent  # the repository, where the Makefile is
+
+
+def copy_repository(target, *without):
+    """Copy what git knows or would know of the repository to `target`, which is not there yet.
+
+    without: patterns of more names to leave out
+    """
+    built = (".git", "build", "devel", "install", "__pycache__", ".*_cache")
+    ignore = shutil.ignore_patterns(*built, *without)
+    shutil.copytree(ROOT, target, ignore=ignore, symlinks=True)
+    (target / "catkin_ws" / "src" / "CMakeLists.txt").unlink(missing_ok=True)

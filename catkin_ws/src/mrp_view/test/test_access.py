@@ -1,0 +1,67 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Who gets an answer from the viewer, and what its page may do; and whom it asks itself."""
+
+import base64
+import hashlib
+import http.client
+
+import pytest
+from mrp_view import access, rpc
+
+pytestmark = pytest.mark.quick
+
+
+@pytest.mark.parametrize(
+    ("host", "listens_on", "allowed"),
+    [
+        ("localhost:8765", "127.0.0.1", True),
+        ("127.0.0.1:8765", "127.0.0.1", True),
+        ("[::1]:8765", "127.0.0.1", True),
+        ("LOCALHOST", "127.0.0.1", True),
+        ("evil.example:8765", "127.0.0.1", False),
+        ("localhost.evil.example", "127.0.0.1", False),
+        ("127.0.0.1.evil.example:8765", "127.0.0.1", False),
+        ("192.168.0.7:8765", "127.0.0.1", False),
+        ("", "127.0.0.1", False),
+        ("localhost:8765@evil.example", "127.0.0.1", False),
+        ("192.168.0.7:8765", "0.0.0.0", True),
+        ("[fe80::1]:8765", "0.0.0.0", True),
+        ("evil.example:8765", "0.0.0.0", False),
+        ("robot.local:8765", "0.0.0.0", True),
+    ],
+)
+def test_host(host, listens_on, allowed):
+    assert access.allowed_host(host, listens_on, ["Robot.local"]) == allowed
+
+
+@pytest.mark.parametrize(
+    ("origin", "allowed"),
+    [
+        ("http://localhost:8765", True),
+        ("http://localhost:8766", False),
+        ("http://evil.example", False),
+        ("null", False),
+        (None, False),
+        ("http://localhost:8765.evil.example", False),
+    ],
+)
+def test_origin(origin, allowed):
+    assert access.allowed_origin(origin, "localhost:8765") == allowed
+
+
+def test_policies_allow_nothing_inline_but_by_its_hash():
+    html = '<script src="a.js"></script><script>here()</script><p style="--x: 1">'
+    policy = access.policy_of(html)
+    for text in ("here()", "--x: 1"):
+        digest = base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()
+        assert f"'sha256-{digest}'" in policy
+    for one in (policy, access.PAGE_POLICY):
+        assert "unsafe-inline" not in one and "unsafe-eval" not in one
+
+
+def test_nobody_there_is_an_error_and_no_hang():
+    with pytest.raises(OSError):
+        rpc.Proxy("http://127.0.0.1:1/", 5).call("getPid")
+    with pytest.raises(OSError):
+        rpc.Proxy("no address", 5).call("getPid")
+    assert issubclass(http.client.HTTPException, rpc.ERRORS)

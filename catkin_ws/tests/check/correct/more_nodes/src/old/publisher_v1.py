@@ -1,2 +1,0 @@
-# The first try, in Python 2. Nothing uses it.
-print "hello"

@@ -1,0 +1,136 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A workspace and a shell that are well, for the tests of make doctor to spoil."""
+
+import collections
+import json
+import os
+import re
+import shutil
+import subprocess
+
+from mrp_testing.waiting import DEADLINE
+from mrp_testing.workspace import WORKSPACE
+
+DOCTOR = WORKSPACE / "tools" / "doctor.py"
+PYTHON = "/usr/bin/python3"
+REAL_PATH = "/usr/bin:/bin"
+
+# Runs the doctor with other facts of the machine (lower case) or constants (upper case).
+WITH_FACTS = """
+import json, sys
+sys.path.insert(0, sys.argv[1])
+import doctor
+facts = json.loads(sys.argv[2])
+vars(doctor).update({name: fact for name, fact in facts.items() if name.isupper()})
+fields = {name: fact for name, fact in facts.items() if name.islower()}
+sys.exit(doctor.examine(doctor.this_machine()._replace(**fields)))
+"""
+
+# What the doctor says where all is well.
+WELL = {
+    "packages": "all 3 of run.txt and tools.txt are installed",
+    "python3": "/usr/bin/python3 imports catkin_pkg and rospy",
+    "installation": "ROS comes from Debian",
+    "host name": "not in use, because ROS_HOSTNAME is set",
+    "ROS_HOSTNAME and ROS_IP": "ROS_HOSTNAME=localhost is this machine",
+    "ROS_MASTER_URI": "http://localhost:{port} is on this machine",
+    "master's port": "{port} is free",
+    "scripts": "every script is executable",
+    "build": "setup.bash and both C++ nodes are there",
+    "shell": "devel/setup.bash is sourced",
+}
+NEEDING_PACKAGES = {
+    "python3": "skipped: needs packages",
+    "installation": "skipped: needs packages",
+    "build": "skipped: needs packages",
+    "shell": "skipped: needs build",
+}
+TAKE_OUT = "take its line out of ~/.bashrc (grep -n setup ~/.bashrc) and open a new terminal"
+
+LINE = re.compile(r"(\[OK\]   |\[FAIL\] |\[--\]   )([^:]+): (.*)")
+MEND = "       mend: "
+Check = collections.namedtuple("Check", "status text mends")
+
+
+class Report:
+    """What the doctor printed, and its exit code."""
+
+    def __init__(self, code, output):
+        self.code, self.output = code, output
+        *lines, self.summary = output.splitlines()
+        self.checks = {}  # in the order of printing
+        title = None
+        for line in lines:
+            if line.startswith(MEND):
+                self.checks[title].mends.append(line[len(MEND) :])
+            else:
+                status, title, text = LINE.fullmatch(line).groups()
+                self.checks[title] = Check(status.strip(" []"), text, [])
+
+    def of(self, status):
+        """Return title -> text of the checks with that status."""
+        return {title: c.text for title, c in self.checks.items() if c.status == status}
+
+    def assert_only_failure(self, title, text, *mends, skipped=None):
+        skipped = skipped or {}
+        assert self.checks[title] == Check("FAIL", text, list(mends)), self.output
+        assert self.of("--") == (skipped or {}), self.output
+        assert set(self.of("OK")) == set(WELL) - set(skipped) - {title}, self.output
+        assert (self.summary, self.code) == (f"{len(WELL)} checks, 1 failed", 1), self.output
+
+
+class Patient:
+    """A workspace and an environment in which all is well, for a test to spoil."""
+
+    def __init__(self, folder, port):
+        self.folder = folder
+        self.workspace = folder / "catkin_ws"
+        self.write("apt/run.txt", "# Comment.\nlibc6  # on every Debian\n\nbash|no-such-package\n")
+        self.write("apt/tools.txt", "libc6\nno-such-package | dpkg # any one of them\n")
+        self.write("src/mrp/package.xml", "<package><name>mrp</name></package>")
+        self.write("src/mrp/src/node.py", "#!/usr/bin/env python3\n", mode=0o755)
+        self.write("src/mrp/test/module.py", '"""No script."""\n')
+        self.write("devel/setup.bash", "")
+        self.write("devel/lib/mrp/publisher_cpp_node", "")
+        self.write("devel/lib/mrp/subscriber_cpp_node", "")
+        self.script = self.workspace / "tools" / "doctor.py"
+        self.script.parent.mkdir()
+        shutil.copy(DOCTOR, self.script)
+        # The tests about python3 take the real one; it imports rospy slowly.
+        python3 = self.write("stand_in/python3", "#!/bin/sh\nexit 0\n", mode=0o755)
+        self.port = port
+        self.uri = f"http://localhost:{port}"
+        self.env = {
+            "PATH": f"{os.path.dirname(python3)}:{REAL_PATH}",
+            "HOME": str(folder),
+            "ROS_DISTRO": "Debian",
+            "ROS_HOSTNAME": "localhost",
+            "ROS_MASTER_URI": self.uri,
+            "ROS_PACKAGE_PATH": str(self.workspace / "src"),
+            "CMAKE_PREFIX_PATH": str(self.workspace / "devel"),
+        }
+
+    def write(self, name, text, mode=0o644):
+        """Write a file, by its path from the workspace; return its absolute path."""
+        path = self.workspace / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text)
+        path.chmod(mode)
+        return str(path)
+
+    def examine(self, **facts):
+        command = [PYTHON, str(self.script)]
+        if facts:
+            facts = json.dumps(facts, default=str)
+            command = [PYTHON, "-B", "-c", WITH_FACTS, str(self.script.parent), facts]
+        run = subprocess.run(
+            command, env=self.env, capture_output=True, text=True, timeout=DEADLINE
+        )
+        assert run.stderr == ""
+        return Report(run.returncode, run.stdout)
+
+    def noetic(self):
+        """Make ROS Noetic proper the one that this shell knows; return the facts for it."""
+        (self.folder / "ros" / "noetic").mkdir(parents=True)
+        self.env["ROS_DISTRO"] = "noetic"
+        return {"opt_ros": self.folder / "ros", "dpkg_query": "/no/dpkg-query"}

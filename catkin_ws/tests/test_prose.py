@@ -1,0 +1,228 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What the build of the pages and its tools take for a sentence, for a quote, and for a result.
+
+test_claims.py sees whether the build fails.
+"""
+
+import ast
+
+import mutate_prose
+import pytest
+import quote_claims
+from docutils.core import publish_doctree
+from docutils.parsers.rst import roles
+from pages import claims, evidence
+from sentences import ProofMark, Sentence, of, of_markdown
+
+pytestmark = pytest.mark.quick
+
+
+@pytest.fixture
+def texts_of(monkeypatch):
+    """A function: returns (text, proofs) of each sentence of a text in reStructuredText."""
+
+    def role(name, rawtext, text, lineno, inliner, options=None, content=None):
+        return [ProofMark(proof=text)], []
+
+    monkeypatch.setitem(roles._roles, "proof", role)
+    return lambda text: [(one.text, one.proofs) for one, _ in of(publish_doctree(text), "page")]
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("One. Two? *Three*!", [("One.", ()), ("Two?", ()), ("Three!", ())]),
+        ("One line\nand **one** more.", [("One line and one more.", ())]),
+        ("Paul N. Beuchat, as in 3.5. But", [("Paul N. Beuchat, as in 3.5.", ()), ("But", ())]),
+        (
+            "A ``b. C`` is a name. No. 5 is.",
+            [("A b. C is a name.", ()), ("No.", ()), ("5 is.", ())],
+        ),
+        ('He says "no." Then.', [('He says "no."', ()), ("Then.", ())]),
+        ("One :proof:`a`. Two.", [("One.", ("a",)), ("Two.", ())]),
+        ("One. :proof:`a` Two.", [("One.", ("a",)), ("Two.", ())]),
+        ("One :proof:`a` :proof:`b`: two\n:proof:`c`.", [("One: two.", ("a", "b", "c"))]),
+        ("- One :proof:`a`\n- Two", [("One", ("a",)), ("Two", ())]),
+        ("term\n   What it is.", [("term", ()), ("What it is.", ())]),
+        (
+            ".. image:: a.png\n   :alt: It shows two. No more.",
+            [("It shows two.", ()), ("No more.", ())],
+        ),
+        ("::\n\n   Code. It is.\n\n.. A comment.", []),
+    ],
+)
+def test_sentences(texts_of, text, expected):
+    assert texts_of(text) == expected
+
+
+def test_cell_and_heading_are_sentences(texts_of):
+    table = "=====  =====\nOne    Two.\n=====  =====\n"
+    assert texts_of(f"Head\n====\n\nText\n\n{table}") == [
+        (text, ()) for text in ("Head", "Text", "One", "Two.")
+    ]
+
+
+def test_readme_has_its_marks_in_comments(tmp_path):
+    path = tmp_path / "README.md"
+    path.write_text("# It\n\nIt runs `a. B` <!-- proof: x/y/z -->. See [it](https://a.org).\n")
+    found = of_markdown(path)
+    assert [(one.text, one.proofs, one.linked, one.page) for one in found] == [
+        ("It", (), False, "README"),
+        ("It runs a. B.", ("x/y/z",), False, "README"),
+        ("See it.", (), True, "README"),
+    ]
+
+
+def test_a_test_may_prove_a_whole_table_of_the_readme(tmp_path):
+    path = tmp_path / "README.md"
+    path.write_text(
+        "See [one](two.md):\n\n<!-- proof: x/y/z -->\n\n"
+        "| a | b |\n| --- | --- |\n| c | d |\n\nEnd.\n"
+    )
+    found = of_markdown(path)
+    assert [(one.text, one.proofs, one.typed) for one in found] == [
+        ("See one:", (), True),
+        ("a", ("x/y/z",), False),
+        ("b", (), False),
+        ("c", (), False),
+        ("d", (), False),
+        ("End.", (), True),
+    ]
+
+
+@pytest.mark.parametrize(
+    ("case", "language"),
+    [
+        ("test_publisher_py", "Python"),
+        ("test_cpp_twin", "C++"),
+        ("publisherCpp", "C++"),
+        ("test_copy", ""),
+        ("test_happy_end", ""),
+    ],
+)
+def test_language_of_a_test_case(tmp_path, case, language):
+    path = tmp_path / "test_it.py"
+    path.write_text(f"def {case if case.startswith('test') else 'test_' + case}():\n    pass\n")
+    (_, test), *_ = evidence.python_cases(path)
+    assert test.language == language
+
+
+def test_last_results_of_rostest_and_pytest(tmp_path):
+    (tmp_path / "mrp").mkdir()
+    (tmp_path / "mrp" / "rosunit-stop.xml").write_text(
+        '<testsuite><testcase name="test_a"/>'
+        '<testcase name="test_b"><error/></testcase></testsuite>'
+    )
+    broken = 'classname="tests.test_broken" name="test_broken_variant_fails'
+    (tmp_path / "pytest_slow.xml").write_text(
+        f'<testsuites><testsuite><testcase {broken}[e05]"/><testcase {broken}[e06]"><failure/>'
+        '</testcase><testcase classname="test_a" name="test_b[1]"/>'
+        '<testcase classname="test_a" name="test_b[2]"><skipped/></testcase>'
+        "</testsuite></testsuites>"
+    )
+    (tmp_path / "bookworm").mkdir()
+    (tmp_path / "bookworm" / "containers.xml").write_text(
+        '<testsuite><testcase classname="docker.test.test_run" name="test_c"/></testsuite>'
+    )
+    assert evidence.last_results(tmp_path) == {
+        "mrp/stop/test_a": True,
+        "mrp/stop/test_b": False,
+        "broken/e05": True,
+        "broken/e06": False,
+        "workspace/test_a/test_b": False,
+        "docker/test_run/test_c": True,
+    }
+
+
+LONG = "It holds " + "ten and " * 20 + '"one" more.'
+
+
+def test_quotes_are_written_into_python(tmp_path):
+    text = "import os\n\n\nclass Test:\n    @slow\n    def test_it(self):\n        pass\n"
+    for quotes in [("One.", LONG), ("Two.",), ()]:
+        text = quote_claims.in_python(text, "test_it", quotes)
+        path = tmp_path / "test_it.py"
+        path.write_text(text)
+        assert [test.quotes for _, test in evidence.python_cases(path)] == [quotes]
+        assert max(map(len, text.splitlines())) <= 100
+        assert text.count("from mrp_testing.proves import proves\n") == 1
+        function = ast.parse(text).body[-1].body[0]
+        assert len(function.decorator_list) == (2 if quotes else 1)
+
+
+def test_quotes_are_written_into_cpp(tmp_path):
+    text = "int i;\n\n// Why.\nTEST(One, a)\n{\n}\n\nTEST(One, b)\n{\n}\n"
+    for quotes in [("One.", LONG), ("Two.",), ()]:
+        text = quote_claims.in_cpp(text, "a", quotes)
+        path = tmp_path / "test_it.cpp"
+        path.write_text(text)
+        assert [test.quotes for _, test in evidence.cpp_cases(path)] == [quotes, ()]
+        assert "// Why.\n" in text and max(map(len, text.splitlines())) <= 100
+
+
+def test_quotes_are_written_into_a_defect():
+    head = "Breaks: it\nFails: a.test b\nSays: one\n    two\nFinds: x\n\n--- a/b.py\n"
+    one = quote_claims.in_patch(head, "it", ("One.", LONG))
+    assert one.startswith(
+        "Breaks: it\nFails: a.test b\nSays: one\n    two\nProves: One.\nProves: It "
+    )
+    assert max(map(len, one.splitlines())) <= 100
+    assert quote_claims.in_patch(one, "it", ()) == head
+
+
+def sentence(text, **values):
+    return Sentence("pages/one", "one", 1, text, **values)
+
+
+def test_a_changed_sentence_keeps_its_reason_and_a_new_one_gets_one(tmp_path):
+    listed = {"Call make now.": "instruction", "It flies.": "opinion"}
+    sentences = [
+        sentence("Call make then."),
+        sentence("It is proved.", proofs=("a",)),
+        sentence("Quite another one?"),
+        sentence("See it.", linked=True),
+        sentence("Head", heading=True),
+        sentence("Claims something new."),
+    ]
+    wanted = {
+        "Head": "heading",
+        "Call make then.": "instruction",
+        "Quite another one?": "question",
+        "See it.": "source",
+        "Claims something new.": "open",
+    }
+    assert quote_claims.wanted_list(sentences, listed) == wanted
+    claims.write_list(tmp_path / "one.txt", "pages/one", wanted)
+    assert claims.read_list(tmp_path / "one.txt") == wanted
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("It holds 10 messages.", ["It holds 11 messages."]),
+        (
+            "In C++ the oldest is first.",
+            [
+                "In Python the oldest is first.",
+                "In C++ the newest is first.",
+                "In C++ the oldest is not first.",
+                "In C++ the oldest is last.",
+            ],
+        ),
+        ("No value arrives.", ["Each value arrives."]),
+        ("Each value in UInt32 of a/first.py.", ["No value in UInt32 of a/first.py."]),
+        ("Nothing to change.", ["Nothing not to change."]),
+    ],
+)
+def test_mutants(text, expected):
+    assert [mutant.text for mutant in mutate_prose.mutants([sentence(text)])] == expected
+    assert mutate_prose.mutants([sentence(text, typed=False)]) == []
+
+
+def test_score_may_not_fall():
+    rows = [{"commit": "a", "percent": "50.0"}, {"commit": "b", "percent": "40.0"}]
+    assert mutate_prose.fault(rows, 40.0) is None
+    assert mutate_prose.fault([], 1.0) is None
+    assert "expected a score of at least 40.0 %, as at b; found 39.9 %" in mutate_prose.fault(
+        rows, 39.9
+    )

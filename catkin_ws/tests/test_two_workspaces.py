@@ -1,0 +1,52 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Two workspaces with a package of the same name, and one terminal."""
+
+import subprocess
+
+import pytest
+from mrp_testing import scratch
+
+# One worker of pytest builds for all of these tests.
+pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("two_workspaces")]
+
+PACKAGE = "same_name"
+NAMES = ("first", "second")
+CMAKE = f"""cmake_minimum_required(VERSION 3.10)
+project({PACKAGE} NONE)
+find_package(catkin REQUIRED)
+catkin_package()
+"""
+MANIFEST = f"""<package format="3">
+  <name>{PACKAGE}</name>
+  <version>0.1.0</version>
+  <description>A package without any program.</description>
+  <maintainer email="maintainers@mrp.example">The mrp maintainers</maintainer>
+  <license>BSD-3-Clause</license>
+  <buildtool_depend>catkin</buildtool_depend>
+</package>
+"""
+
+
+@pytest.fixture(scope="module")
+def workspaces(tmp_path_factory):
+    """The folder of two workspaces, each built in a terminal that has sourced no other one."""
+    folder = tmp_path_factory.mktemp("workspaces")
+    for name in NAMES:
+        package = folder / name / "src" / PACKAGE
+        package.mkdir(parents=True)
+        (package / "CMakeLists.txt").write_text(CMAKE)
+        (package / "package.xml").write_text(MANIFEST)
+        scratch.catkin_make(folder / name)
+    return folder
+
+
+@pytest.mark.parametrize("order", [NAMES, NAMES[::-1]], ids=lambda order: f"{order[-1]}_is_last")
+def test_the_one_whose_setup_was_sourced_last_is_used(workspaces, order):
+    sources = " && ".join(f"source {workspaces / name}/devel/setup.bash" for name in order)
+    found = subprocess.run(
+        ["bash", "-c", f"{sources} && rospack find {PACKAGE}"],
+        env=scratch.environment(),
+        capture_output=True,
+        text=True,
+    )
+    assert found.stdout.strip() == str(workspaces / order[-1] / "src" / PACKAGE), found.stderr

@@ -1,0 +1,86 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Does what the pages say, and records what they show of it.
+
+Usage: record_pages.py [PAGE]
+Writes into src/mrp/doc/recorded/ what the commands print, and the graphs. With a PAGE, such as
+latch, it writes what that page shows, and does only the steps that the page needs. What differs
+from the record in nothing but times, values and the like keeps its old text.
+"""
+
+import json
+import re
+import sys
+import tempfile
+
+import run_page
+from run_page import RECORDED, StepError, page_of, pages_of
+
+
+def masked(lines):
+    """Return the lines, with what differs from run to run as #: times, process ids, ports, values.
+
+    Lines of several nodes come in any order, and more or fewer of a kind: so it is a set.
+    """
+    # Debian 13's env leaves out its folder, and the language decides upon the quotes.
+    text = "\n".join(lines).replace("/usr/bin/env:", "env:").translate(str.maketrans("‘’", "''"))
+    return {re.sub(r"(?<![\w.])-?\d+(\.\d+)?(?=s?(?!\w))", "#", line) for line in text.splitlines()}
+
+
+def differences(recorded, shown, printed):
+    """Return the masked lines in which an output differs from what is recorded of it.
+
+    shown, printed: what the page shows of the output, and all of it
+    """
+    # A node that is slow to start has a line of each kind, too; perhaps not with the first numbers,
+    # to which the page keeps.
+    return (masked(shown) - masked(recorded)) | (masked(recorded) - masked(printed))
+
+
+def renewed(recorded, shown, to_do, page=None):
+    """Return what recorded/outputs.json and graphs.json are to have.
+
+    recorded: what they have, as a pair
+    shown: run_page.Shown of to_do
+    page: only what this page shows is renewed; without it all, and what no page shows any more goes
+    """
+    outputs, graphs = recorded
+    names = {
+        step.get(kind)
+        for step in to_do
+        for kind in ("output", "graph")
+        if page in (None, page_of(step))
+    }
+    new = {
+        name: outputs[name]
+        if name in outputs and not differences(outputs[name], lines, shown.printed[name])
+        else lines
+        for name, lines in shown.outputs.items()
+        if name in names
+    }
+    new_graphs = {name: one for name, one in shown.graphs.items() if name in names}
+    return ({**outputs, **new}, {**graphs, **new_graphs}) if page else (new, new_graphs)
+
+
+def record(page=None):
+    """Do the steps of all pages or of one, and write what they print into recorded/."""
+    with tempfile.TemporaryDirectory() as site, tempfile.TemporaryDirectory() as home:
+        run_page.build(site, "-D", "recording=1")
+        to_do = run_page.steps(site)
+        if page not in (None, *pages_of(to_do)):
+            raise StepError(f"expected a page of {', '.join(pages_of(to_do))}; found {page}")
+        shown = run_page.read(to_do, home, say=print, only=page)
+    files = [RECORDED / "outputs.json", RECORDED / "graphs.json"]
+    recorded = [json.loads(file.read_text()) for file in files]
+    for file, found in zip(files, renewed(recorded, shown, to_do, page)):
+        text = json.dumps(found, indent=1, sort_keys=True, ensure_ascii=False)
+        file.write_text(text + "\n")
+
+
+if __name__ == "__main__":
+    if len(sys.argv) > 2:
+        sys.exit(__doc__)
+    try:
+        record(*sys.argv[1:])
+    except StepError as error:
+        sys.exit(f"error: {error}")
