@@ -62,6 +62,7 @@ def test_cell_and_heading_are_sentences(texts_of):
     ]
 
 
+@pytest.mark.slow  # reads Markdown: MyST comes with what builds the pages
 def test_readme_has_its_marks_in_comments(tmp_path):
     path = tmp_path / "README.md"
     path.write_text("# It\n\nIt runs `a. B` <!-- proof: x/y/z -->. See [it](https://a.org).\n")
@@ -73,6 +74,7 @@ def test_readme_has_its_marks_in_comments(tmp_path):
     ]
 
 
+@pytest.mark.slow  # reads Markdown: MyST comes with what builds the pages
 def test_a_test_may_prove_a_whole_table_of_the_readme(tmp_path):
     path = tmp_path / "README.md"
     path.write_text(
