@@ -53,10 +53,11 @@ fi
 log=$(mktemp)
 trap 'rm -f "$log"' EXIT
 # apt-get keeps from its children the descriptor on which it says its progress, and sudo keeps all but
-# the first three from apt-get: so it has one more, made here.
+# the first three from apt-get: so it has one more, made here. Another apt-get, such as Ubuntu's own
+# update, may hold the lock for minutes.
 apt_get() {
   "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive LC_ALL=C \
-    bash -c 'exec apt-get "$@" 3>&1' apt-get "$@"
+    bash -c 'exec apt-get "$@" 3>&1' apt-get -o DPkg::Lock::Timeout=600 "$@"
 }
 
 "${as_root[@]}" true  # sudo asks for the password here, where nothing hides its question

@@ -91,6 +91,7 @@ class TestValues(unittest.TestCase):
         "The last line increases the counter.",
         "createTimer takes the time between two calls, in seconds, and the function to call.",
         "The timer makes the node publish once every half second.",
+        "Neither changes what is sent.",
         "The tutorial's publishers send one number in each period.",
         "A publisher begins again with its first value.",
         "Two messages a second come from each publisher, and the callback has time for one of "
@@ -109,6 +110,7 @@ class TestValues(unittest.TestCase):
         "The last line increases the counter.",
         "rospy.Timer takes the time between two calls, in seconds, and the function to call.",
         "The timer makes the node publish once every half second.",
+        "Neither changes what is sent.",
         "The tutorial's publishers send one number in each period.",
         "A publisher begins again with its first value.",
         "It prints about 12: the Python publisher still sends two messages a second, and rostopic "

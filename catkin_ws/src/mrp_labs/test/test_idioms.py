@@ -287,8 +287,15 @@ class TestIdioms(unittest.TestCase):
                 self.assertEqual(subscriber.senders, {idiom.name})
 
     @proves(
+        "Its sleep waits until the next turn is due.",
         "So there is one message in each period.",
+        "The condition asks whether the node is to end, with rospy.is_shutdown() or ros::ok().",
+        "The message is a std_msgs/String, so the program makes a text out of the number first.",
+        "Neither changes what is sent.",
         "The talker says one text in each period.",
+        "Under a simulated clock, sleep raises rospy.ROSInterruptException.",
+        "ros::ok() is false from then on, and main returns 0, also under a clock that stands "
+        "still.",
     )
     def test_loop_talker(self):
         for language in LANGUAGES:
@@ -308,7 +315,12 @@ class TestIdioms(unittest.TestCase):
                 first = int(values[0].split()[1])
                 self.assertEqual(values, [f"hello {first + i}" for i in range(len(values))])
 
-    @proves("It spins, and ROS calls its callback for each message:")
+    @proves(
+        "The other node needs no loop.",
+        "It spins, and ROS calls its callback for each message:",
+        "It tells ROS to end the node, and your loop must ask.",
+        "The condition then ends the loop.",
+    )
     def test_loop_talker_and_listener(self):
         for language, other in (LANGUAGES, LANGUAGES[::-1]):
             with Idiom("loop_listener", language) as listener, Idiom("loop_talker", other):
@@ -320,7 +332,10 @@ class TestIdioms(unittest.TestCase):
                 first = heard()[0]
                 listener.wait_until_logged(*(f'heard "hello {first + i}"' for i in range(3)))
 
-    @proves("So each turn has the newest value.")
+    @proves(
+        "So each turn has the newest value.",
+        "It calls those of all messages that have arrived, and returns.",
+    )
     def test_loop_with_callbacks(self):
         for language in LANGUAGES:
             with TurnedClock() as clock, contextlib.closing(

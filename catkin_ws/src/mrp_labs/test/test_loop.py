@@ -29,8 +29,14 @@ class TestLoop(unittest.TestCase):
         rospy.init_node("test_loop")
 
     @proves(
+        "In this lab each turn works for half of its period, which is a second:",
+        "A timer keeps its period, and so does a loop with a rate.",
         "After 60 seconds each has published 60 messages.",
+        "The sleep of a rate waits for what is left of the period.",
+        "A loop with rospy.sleep(1.0) or ros::Duration(1.0).sleep() drifts: it adds the work to "
+        "the period.",
         "After 60 seconds it has published 40 messages.",
+        "A rate does not drift, and a plain sleep does.",
     )
     def test_drift(self):
         keep, drift = (
@@ -63,9 +69,15 @@ class TestLoop(unittest.TestCase):
                     self.assertGreater(after - before, 1.5 - 0.01, node)
 
     @proves(
+        "In C++ the loop must come round often.",
+        "What arrives between two calls of spinOnce waits in the subscriber's queue.",
         "When the queue is full, the oldest message is dropped.",
+        "In this lab a publisher sends four messages a second.",
+        "Each has a queue of 4:",
         "The slow loop gets the four newest messages of each two seconds, late and all at once.",
         "The quick loop misses none, and neither does a subscriber in Python.",
+        "The publisher of the lab with spinOnce sends four messages a second.",
+        "It receives the four newest messages of each two seconds.",
     )
     def test_spin_once_too_seldom(self):
         publisher, often, seldom, python = (

@@ -18,6 +18,7 @@ from mrp_testing.nodes import program
 from mrp_testing.process import LIVE, Process
 from mrp_testing.waiting import wait_until, within
 from std_msgs.msg import UInt8MultiArray, UInt32
+from mrp_testing.proves import proves
 
 LONG_SLEEP = 0.5  # seconds: much longer than what is asked for, 1 ms
 SUBSCRIBER, PUBLISHER = "/of_subscriber", "/of_publisher"
@@ -75,6 +76,10 @@ class TestRospy(unittest.TestCase):
         gc.collect()
         self.assertIsNone(gone())
 
+    @proves(
+        "In Python, rospy keeps the subscriber too, and goes on calling the callback even if your "
+        "own object is gone.",
+    )
     def test_subscriber_goes_on_without_its_object_py(self):
         values = []
         self.drop_subscriber(values)
@@ -83,6 +88,7 @@ class TestRospy(unittest.TestCase):
         wait_until(lambda: values == [7], lambda: f"7, not {values}")
         self.assertIn(rospy.get_name(), Graph().subscribers[SUBSCRIBER])
 
+    @proves("Keep it all the same: you need it to stop the subscriber with unregister.")
     def test_unregister_ends_a_subscriber_py(self):
         values = []
         subscriber = rospy.Subscriber("/ended", UInt32, lambda msg: values.append(msg.data))
@@ -95,6 +101,10 @@ class TestRospy(unittest.TestCase):
         self.assertNotIn("/ended", Graph().subscribers)
         self.assertEqual(values, [7])
 
+    @proves(
+        "In Python, rospy keeps the publisher too: it stays registered until you call its "
+        "unregister, or until the node ends, even if your own object is gone.",
+    )
     def test_publisher_stays_without_its_object_until_the_node_ends_py(self):
         with run("""
             import gc, rospy, weakref
@@ -112,12 +122,17 @@ class TestRospy(unittest.TestCase):
             self.assertEqual(process.stop(), 0, str(process))
         self.assertNotIn(PUBLISHER, Graph().publishers)
 
+    @proves(
+        "In Python, rospy keeps the publisher too: it stays registered until you call its "
+        "unregister, or until the node ends, even if your own object is gone.",
+    )
     def test_unregister_ends_a_publisher_py(self):
         publisher = rospy.Publisher(PUBLISHER, UInt32, queue_size=10)
         self.assertEqual(Graph().publishers[PUBLISHER], [rospy.get_name()])
         publisher.unregister()
         self.assertNotIn(PUBLISHER, Graph().publishers)
 
+    @proves("If you leave out queue_size, rospy prints a warning.")
     def test_publisher_without_queue_size_is_warned_of_py(self):
         process = ended("""
             import rospy, sys
@@ -132,6 +147,10 @@ class TestRospy(unittest.TestCase):
         self.assertNotIn(warning, "\n".join(process.errors[:place]))
         self.assertIn(warning, "\n".join(process.errors[place:]))
 
+    @proves(
+        "rospy.on_shutdown takes a function that rospy calls when the node is to end, before it "
+        "closes the publisher.",
+    )
     def test_on_shutdown_comes_before_the_publishers_are_closed_py(self):
         values = []
         subscriber = rospy.Subscriber("/last_words", UInt32, lambda msg: values.append(msg.data))
@@ -151,6 +170,7 @@ class TestRospy(unittest.TestCase):
             self.assertEqual(process.stop(), 0, str(process))
         wait_until(lambda: values == [7], lambda: f"7, not {values}: {process}")
 
+    @proves("The data of a UInt8MultiArray arrives in Python as bytes, not as a tuple.")
     def test_uint8_multi_array_arrives_as_bytes_py(self):
         arrays = []
         subscriber = rospy.Subscriber("/array", UInt8MultiArray, arrays.append)
@@ -161,6 +181,7 @@ class TestRospy(unittest.TestCase):
         self.assertEqual(arrays[0].data, b"\x01\x02\xff")
         self.assertEqual(arrays[0].data[2], 255)
 
+    @proves("Lines of the level debug are not shown unless you ask for them.")
     def test_debug_is_not_shown_unless_asked_for_py(self):
         self.assertNotIn("debug", levels(ended(LOG_BY_DEFAULT).lines))
         self.assertIn("debug", levels(ended(LOG, "DEBUG").lines))
@@ -181,9 +202,17 @@ class TestRospy(unittest.TestCase):
             stack.enter_context(Process(program(PACKAGE, "lab_clock_py_node.py")))
             process.wait_for(lambda: "up" in process.lines, "it is up again")
 
+    @proves(
+        "rospy.sleep, rospy.Rate.sleep, ros::Duration::sleep and ros::Rate::sleep do not return, "
+        "either.",
+    )
     def test_sleep_does_not_return_without_a_clock_py(self):
         self.check_sleeps_until_there_is_a_clock("rospy.sleep(0.001)")
 
+    @proves(
+        "rospy.sleep, rospy.Rate.sleep, ros::Duration::sleep and ros::Rate::sleep do not return, "
+        "either.",
+    )
     def test_rate_sleep_does_not_return_without_a_clock_py(self):
         self.check_sleeps_until_there_is_a_clock("rospy.Rate(1000).sleep()")
 

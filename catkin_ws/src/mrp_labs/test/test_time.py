@@ -54,7 +54,9 @@ def times(line):
 
 class TestTime(unittest.TestCase):
     @proves(
+        "With /use_sim_time and no publisher of /clock, time stands still.",
         "A loop publishes its first message, sleeps for good, and logs nothing about it.",
+        "The loops of this lab show it.",
         "rospy.sleep and ros::Duration::sleep stand still as the rates do.",
         "Then ROS timers never fire, and the node logs nothing about it.",
         "In this lab five publishers wait for their timers, and nobody publishes /clock.",

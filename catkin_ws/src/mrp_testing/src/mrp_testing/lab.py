@@ -50,6 +50,8 @@ class Lab(Process):
                 for line in self.lines:
                     assert "lock_error" not in line, str(self)
                     assert self.traceback or "Traceback" not in line, str(self)
+            else:
+                print(self)  # what it printed often says why
         finally:
             super().__exit__(*exception)
 
