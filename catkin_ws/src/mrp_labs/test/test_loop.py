@@ -60,7 +60,10 @@ class TestLoop(unittest.TestCase):
                 # The first ones may come late, while the nodes still wait for the clock.
                 begin, *others = times(lab, node)[2:MESSAGES]
                 for number, time in enumerate(others, 1):
-                    self.assertAlmostEqual(time - begin, number, delta=4 * STEP, msg=node)
+                    # The clock may have been turned on while a node had no processor. A node that
+                    # drifts is twice as late.
+                    late = 4 * STEP + number / 4
+                    self.assertAlmostEqual(time - begin, number, delta=late, msg=node)
             for node in drift:
                 # Half of the period more for each, or even more on a busy machine.
                 found = times(lab, node)[2:]

@@ -7,7 +7,7 @@ from rosgraph_msgs.msg import Clock
 from mrp_testing.waiting import wait_until, within
 
 # 0 is the time of a node that has not heard the clock yet: so it begins a little later.
-_BEGIN = 0.02  # seconds
+_BEGIN = rospy.Time(nsecs=20_000_000)
 _PATIENCE = 2.0  # seconds of the machine's clock
 
 
@@ -49,8 +49,9 @@ class TurnedClock:
         wait_until(turned, lambda: f"what turns of the clock bring\n{process}")
 
     def turn(self, seconds):
-        self._now += seconds
+        # In whole nanoseconds: 0.02 and 16 times 0.25 as floats are less than 4.02.
+        self._now += rospy.Duration.from_sec(seconds)
         self._publish()
 
     def _publish(self):
-        self._publisher.publish(Clock(rospy.Time.from_sec(self._now)))
+        self._publisher.publish(Clock(self._now))
