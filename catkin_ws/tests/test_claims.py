@@ -23,12 +23,13 @@ PYTHON = "catkin_ws/src/mrp/test/test_one.py"
 CPP = "catkin_ws/src/mrp/test/test_one.cpp"
 PATCH = "catkin_ws/defects/one.patch"
 DOCKER = "docker/test/test_run.py"
+LAUNCH = "catkin_ws/src/mrp/launch/one.launch"
 
 FILES = {
     f"{DOC}/conf.py": """\
 import pathlib, sys
 sys.path.insert(0, str(pathlib.Path(__file__).parent / "extension"))
-extensions = ["sphinx_inline_tabs", "proof", "listing"]
+extensions = ["sphinx_inline_tabs", "proof", "listing", "value"]
 pages_not_checked_yet = ["index", "pages/tests"]
 """,
     f"{DOC}/index.rst": """\
@@ -53,6 +54,7 @@ One
 A queue of ``1.5`` drops
 the *oldest* value :proof:`mrp/one/test_both`. Paul N. Beuchat is
 named. Is it so :proof:`docker/test_run/test_it`?
+It waits for :value:`one.waiter.seconds` s :proof:`docker/test_run/test_it`.
 
 .. tab:: Python
 
@@ -107,8 +109,9 @@ Proves: It blocks: at
 --- a/src/one.cpp
 +++ b/src/one.cpp
 """,
+    LAUNCH: '<launch><node name="waiter"><param name="seconds" value="7"/></node></launch>',
     DOCKER: """\
-@proves("Is it so?")
+@proves("Is it so?", "It waits for 7 s.")
 def test_it():
     pass
 """,
@@ -153,7 +156,7 @@ def change(root, file, old, new):
 def test_what_fits_together_is_built(root):
     code, said = build(root)
     assert code == 0, said
-    assert "Sentences: 4 proved, 1 heading, 0 instruction, 1 definition, " in said
+    assert "Sentences: 5 proved, 1 heading, 0 instruction, 1 definition, " in said
     page = (root / "site/pages/one.html").read_text()
     label = "Proof by the test test_both: A queue of 1.5 drops the oldest value."
     assert f'href="tests.html#mrp-one-test-both" aria-label="{label}">' in page
@@ -245,6 +248,16 @@ CHANGES = {
         ("[definition]", "[because]"),
         ["gives an unknown reason. Expected one of: heading, "],
     ),
+    "a value": (
+        LAUNCH,
+        ('"7"', '"8"'),
+        ["page: It waits for 8 s.", "test: It waits for 7 s."],
+    ),
+    "the name of a value": (
+        PAGE,
+        ("waiter.seconds", "waiter.second"),
+        ["one.rst:4: ERROR: value: expected a name such as seconds; found second"],
+    ),
     "a proved sentence in the list": (
         LIST,
         ("See the API.", "See the API.\nIs it so?"),
@@ -265,6 +278,14 @@ def test_what_changes_alone_fails_the_build(root, name):
     assert code != 0
     for text in expected:
         assert text in said
+
+
+def test_a_number_that_is_typed_fails_the_build(root):
+    for file, end in ((PAGE, "named. Is"), (LIST, "is named.")):
+        change(root, file, end, end.replace("named", "named by 7"))
+    code, said = build(root)
+    assert code != 0 and "has a number that is typed, and no test proves it" in said
+    assert "page: Paul N. Beuchat is named by 7." in said
 
 
 def test_a_quote_is_checked_though_no_page_has_changed(root):

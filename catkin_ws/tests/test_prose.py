@@ -9,8 +9,10 @@ import ast
 import mutate_prose
 import pytest
 import quote_claims
+import typed_numbers
 from docutils.core import publish_doctree
 from docutils.parsers.rst import roles
+from mrp_testing import contract
 from pages import claims, evidence
 from sentences import ProofMark, Sentence, of, of_markdown
 
@@ -228,3 +230,93 @@ def test_score_may_not_fall():
     assert "expected a score of at least 40.0 %, as at b; found 39.9 %" in mutate_prose.fault(
         rows, 39.9
     )
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("It holds 10 messages, or -1.5 of ten.", ("10", "1.5", "ten")),
+        ("Twice a day, half of them arrive in two seconds.", ("Twice", "half", "two")),
+        ("One of the first, UInt32 in UTF-8, a second time: _ and robot1.", ()),
+        ("Debian 12 or 13 has Python 3.11 in terminal 2 since the beginning of 1970.", ()),
+        ("Two publishers of the four nodes. It takes 5 minutes.", ()),
+        ("Three publishers of the five nodes. It takes 5 hours.", ("Three", "five", "5")),
+    ],
+)
+def test_typed_numbers(text, expected):
+    assert typed_numbers.find(text) == expected
+
+
+def test_nodes_whose_number_may_be_typed_are_those_of_the_contract():
+    words = typed_numbers.WORDS
+    for number, name in (
+        (len(contract.NODES), "nodes"),
+        (len(contract.PUBLISHERS), "publishers"),
+        (len(contract.SUBSCRIBERS), "subscribers"),
+    ):
+        assert [word for word in words[2:] if not typed_numbers.find(f"{word} {name}")] == [
+            words[number]
+        ]
+
+
+def test_a_number_is_typed_in_prose_alone(texts_of):
+    document = publish_doctree("It holds ``10`` of 20 messages.")
+    assert [one.numbers for one, _ in of(document, "page")] == [("20",)]
+
+
+@pytest.mark.slow  # the extension needs Sphinx
+@pytest.mark.parametrize(
+    ("expression", "expected"),
+    [
+        ("contract.QUEUE_SIZE + 1", "11"),
+        ("contract.TOPIC", "great_topic"),
+        ("one.talker.period", "0.5"),
+        ("one.talker.queue_size", "4"),
+        ("one.queue_size", "4"),
+        ("one.talker.latch", "true"),
+        ("word(len(one.nodes))", "two"),
+        ("rosmaster.DEFAULT_MASTER_PORT", "11311"),
+        ("times.rows[0].size", "8"),
+    ],
+)
+def test_value_is_taken_from_where_it_is_defined(tmp_path, expression, expected):
+    import value
+
+    assert value.value_of(expression, sources(tmp_path)) == expected
+
+
+@pytest.mark.slow  # the extension needs Sphinx
+@pytest.mark.parametrize(
+    ("expression", "expected"),
+    [
+        ("contract.QUEUE", "such as QUEUE_SIZE; found QUEUE"),
+        ("contrac.QUEUE_SIZE", "such as contract; found contrac"),
+        ("one.talker.perod", "such as period; found perod"),
+        ("one.listner", "such as listener; found listner"),
+        ("one.talker", "expected a number or a text, found"),
+        ("1 +", "expected an expression, found '1 \\+'"),
+    ],
+)
+def test_an_unknown_value_is_an_error_with_the_nearest_names(tmp_path, expression, expected):
+    import value
+
+    with pytest.raises(value.UnknownError, match=expected):
+        value.value_of(expression, sources(tmp_path))
+
+
+def sources(folder):
+    """Return value.Sources of a folder with a launch file and a recording."""
+    import value
+
+    launch = folder / "mrp_labs" / "launch" / "one.launch"
+    recording = folder / "mrp" / "doc" / "recorded" / "times.json"
+    for path in (launch, recording):
+        path.parent.mkdir(parents=True)
+    launch.write_text(
+        '<launch><arg name="queue_size" default="4"/><group ns="a">'
+        '<param name="~queue_size" value="$(arg queue_size)"/>'
+        '<node name="talker"><param name="period" value="0.5"/>'
+        '<param name="latch" value="true"/></node></group><node name="listener"/></launch>'
+    )
+    recording.write_text('{"rows": [{"size": 8}]}')
+    return value.Sources(folder)

@@ -15,6 +15,7 @@ extensions = [
     "sphinx_copybutton",
     "source_code",
     "quote",
+    "value",
     "terminal",
     "proof",
     "listing",

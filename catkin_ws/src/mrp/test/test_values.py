@@ -83,14 +83,14 @@ class TestValues(unittest.TestCase):
         self.assertEqual(late[0], values[-1] + contract.STEP, "what the late subscriber hears")
 
     @proves(
-        "The C++ publisher sends 2, 4, 6 and so on, one number every half second.",
+        "The C++ publisher sends 2, 4, 6 and so on, one number every 0.5 seconds.",
         "counter_ begins with 2, and publisher_ and timer_ keep what the constructor has made.",
         "These two are not, so a late subscriber begins with the next number. latch says when to "
         "use it.",
         "A timer calls this function.",
         "The last line increases the counter.",
         "createTimer takes the time between two calls, in seconds, and the function to call.",
-        "The timer makes the node publish once every half second.",
+        "The timer makes the node publish once every 0.5 seconds.",
         "Neither changes what is sent.",
         "The tutorial's publishers send one number in each period.",
         "A publisher begins again with its first value.",
@@ -102,14 +102,14 @@ class TestValues(unittest.TestCase):
         self.check(contract.PUBLISHER_CPP)
 
     @proves(
-        "The Python publisher sends 1, 3, 5 and so on, one number every half second.",
+        "The Python publisher sends 1, 3, 5 and so on, one number every 0.5 seconds.",
         "These two are not, so a late subscriber begins with the next number. latch says when to "
         "use it.",
         "A timer calls this function.",
         "The function must take it, because rospy passes it, although the node does not use it.",
         "The last line increases the counter.",
         "rospy.Timer takes the time between two calls, in seconds, and the function to call.",
-        "The timer makes the node publish once every half second.",
+        "The timer makes the node publish once every 0.5 seconds.",
         "Neither changes what is sent.",
         "The tutorial's publishers send one number in each period.",
         "A publisher begins again with its first value.",

@@ -12,6 +12,7 @@ import pathlib
 import sys
 
 from docutils import nodes
+from docutils.parsers.rst import directives
 from evidence import WORKSPACE
 from picture import Picture
 from sphinx.util.docutils import SphinxDirective
@@ -63,12 +64,15 @@ class Tables(SphinxDirective):
 
 
 class Plot(Picture):
+    option_spec = {"alt": directives.unchanged_required}
+
     def run(self):
         name = self.arguments[0]
         if "alt" not in self.options or name not in plots.PLOTS:
             raise self.error(f"expected the option 'alt', and one of {', '.join(plots.PLOTS)}")
         plot = plots.PLOTS[name](results(self.env))
-        return [self.svg(plot.width, plot.height, plot.parts)] if plot else []
+        alt = self.options["alt"]
+        return [self.svg(plot.width, plot.height, plot.parts, alt)] if plot else []
 
 
 def setup(app):

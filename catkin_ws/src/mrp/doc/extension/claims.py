@@ -13,6 +13,7 @@ fails the build of the pages.
 import difflib
 from typing import NamedTuple
 
+import typed_numbers
 from sentences import plain
 
 REASONS = {
@@ -69,6 +70,8 @@ MESSAGES = {
     "listed and proved": "This sentence has a proof: delete it from the list of its page.",
     "no link": "The list says that this sentence is taken from a source. Put the link into the "
     "sentence, or give another reason.",
+    "typed number": "This sentence has a number that is typed, and no test proves it. Take the number "
+    "from where it is defined (extension/value.py), or leave it out.",
     "no such page": "No page has this name: delete its list of unproved sentences.",
     "no such reason": f"The list gives an unknown reason. Expected one of: {', '.join(REASONS)}.",
 }
@@ -182,6 +185,8 @@ def _lists(checked, lists):
                 yield Fault("not listed", where, one.text, old)
             elif reason is not None and one.proofs:
                 yield Fault("listed and proved", where, one.text)
+            elif one.numbers and not one.proofs and reason not in typed_numbers.FREE:
+                yield Fault("typed number", where, one.text, ", ".join(one.numbers))
             elif reason == "source" and not one.linked:
                 yield Fault("no link", where, one.text)
             elif reason is not None and reason not in REASONS:

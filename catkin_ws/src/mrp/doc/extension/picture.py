@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Directives that draw what was recorded from running nodes. Each has the option `alt`: what the
-picture shows, in words.
+"""Directives that draw what was recorded from running nodes, and say it in words for a reader who
+does not see the picture.
 
 .. ros-graph:: NAME the nodes and topics under NAME in recorded/graphs.json, drawn by Graphviz
 .. timeline:: NAME   who published and who received which value when, in the lines under NAME in
@@ -13,7 +13,6 @@ import re
 import subprocess
 
 from docutils import nodes
-from docutils.parsers.rst import directives
 from sphinx.util.docutils import SphinxDirective
 from terminal import recorded
 
@@ -24,27 +23,30 @@ _LINE = re.compile(
 
 class Picture(SphinxDirective):
     required_arguments = 1
-    option_spec = {"alt": directives.unchanged_required}
     file = "outputs.json"
 
     def run(self):
-        if "alt" not in self.options:
-            raise self.error("a picture must have the option 'alt'")
         found = recorded(self, self.file, self.arguments[0])
-        return [] if found is None else [self.draw(found)]
+        if found is None:
+            return []
+        drawn = self.draw(found)
+        drawn["generated"] = True
+        return [drawn]
 
-    def svg(self, width, height, parts):
-        """Return an SVG within the page: so page.css gives it the page's colours, and its width."""
-        alt = html.escape(self.options["alt"])
+    def svg(self, width, height, parts, alt):
+        """Return an SVG within the page: so page.css gives it the page's colours, and its width.
+
+        alt: what the picture shows, in words
+        """
         text = "\n".join(
             [
                 f'<div class="picture"><svg role="img" viewBox="0 0 {width} {height}" '
-                f'style="--width: {width}px" aria-label="{alt}">',
+                f'style="--width: {width}px" aria-label="{html.escape(alt)}">',
                 *parts,
                 "</svg></div>",
             ]
         )
-        return nodes.raw(text, text, format="html", alt=self.options["alt"])
+        return nodes.raw(text, text, format="html", alt=alt)
 
 
 class Graph(Picture):
@@ -72,7 +74,20 @@ class Graph(Picture):
         # Graphviz gives the same ids to the parts of every graph, and a page may have several. And
         # the script that marks a searched word on the page stops at an SVG's titles.
         parts = re.sub(r' id="[^"]*"|<title>.*?</title>\n', "", parts)
-        return self.svg(width, height, [parts])
+        return self.svg(width, height, [parts], self.alt(graph))
+
+    def alt(self, graph):
+        """Say of each topic which nodes publish it, and which ones subscribe to it."""
+        sentences = []
+        for topic, type_ in graph["topics"].items():
+            publish, subscribe = (
+                ", ".join(node for node, other in graph[kind] if other == topic) or "no node"
+                for kind in ("publishers", "subscribers")
+            )
+            sentences.append(
+                f"Topic {topic}, type {type_}: published by {publish}; subscribed to by {subscribe}."
+            )
+        return " ".join(sentences)
 
 
 class Timeline(Picture):
@@ -97,7 +112,14 @@ class Timeline(Picture):
         for second in range(int(end - begin) + 1):
             x = left + 15 + second * scale
             parts.append(f'<text x="{x:.1f}" y="{height - 6}" class="label">{second} s</text>')
-        return self.svg(width, height, parts)
+        return self.svg(width, height, parts, self.alt(events))
+
+    def alt(self, events):
+        """Say which node published or received which values, in their order."""
+        values = {}
+        for event in events:
+            values.setdefault(f"{event['node']} {event['what']}", []).append(event["value"])
+        return " ".join(f"{who} {', '.join(its)}." for who, its in sorted(values.items()))
 
 
 class Queue(Picture):
@@ -120,7 +142,21 @@ class Queue(Picture):
                     f'<rect x="{x}" y="{y}" width="{box - 4}" height="26" class="{css_class}"/>'
                 )
                 parts.append(f'<text x="{x + 12}" y="{y + 17}" class="value">{number}</text>')
-        return self.svg(left + last * box, row * len(received) + 8, parts)
+        return self.svg(left + last * box, row * len(received) + 8, parts, self.alt(last, received))
+
+    def alt(self, last, received):
+        """Say which messages each subscriber received."""
+        sentences = [f"Messages 1 to {last}."]
+        for name, numbers in received.items():
+            runs = []  # of numbers without a gap
+            for number in sorted(numbers):
+                if runs and number == runs[-1][-1] + 1:
+                    runs[-1].append(number)
+                else:
+                    runs.append([number])
+            texts = [f"{run[0]} to {run[-1]}" if len(run) > 1 else f"{run[0]}" for run in runs]
+            sentences.append(f"{name} received {', '.join(texts)}.")
+        return " ".join(sentences)
 
 
 def setup(app):

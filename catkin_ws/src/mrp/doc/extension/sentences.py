@@ -9,6 +9,7 @@ table and the alternative text of a picture are.
 import re
 from typing import NamedTuple
 
+import typed_numbers
 from docutils import nodes, utils
 
 LANGUAGES = ("C++", "Python")
@@ -16,7 +17,10 @@ LANGUAGES = ("C++", "Python")
 # A full stop before white space; but not that of an initial ("N. Beuchat"), and not before a small
 # letter.
 _END = re.compile(r"""(?<=[.!?])(?<!\b[A-Z]\.)["')\]]*(?=\s+[^a-z\s])""")
-_CODE = "0"  # stands for each character of code, in which a full stop ends nothing
+# Stands for each character of code, in which a full stop ends nothing and a number is not typed; and
+# for each one that the role `value` has taken from elsewhere.
+_CODE = "_"
+TAKEN = "taken"  # the class of what this role makes
 # What Sphinx makes of quotes, dashes and dots.
 _PLAIN = str.maketrans({"“": '"', "”": '"', "‘": "'", "’": "'", "–": "--", "—": "---", "…": "..."})
 _HEADINGS = (nodes.title, nodes.term, nodes.caption, nodes.label, nodes.rubric)
@@ -37,6 +41,7 @@ class Sentence(NamedTuple):
     proofs: the tests that its marks name
     language: that of the tab in which it stands, or ""
     linked: whether it has a link that leads out of the pages
+    numbers: those that are typed in it, see typed_numbers.py
     heading: whether it is a heading, or a term that is explained
     typed: whether somebody has typed it into the page; otherwise a directive has made it from data
     """
@@ -48,6 +53,7 @@ class Sentence(NamedTuple):
     proofs: tuple = ()
     language: str = ""
     linked: bool = False
+    numbers: tuple = ()
     heading: bool = False
     typed: bool = True
 
@@ -139,6 +145,7 @@ def _split(block):
                     "text": plain(text[begin:end]),
                     "proofs": tuple(mark["proof"] for mark in mine),
                     "linked": any(begin <= place < end for place in links),
+                    "numbers": typed_numbers.find(plain(code[begin:end])),
                 },
                 mine,
             )
@@ -161,7 +168,8 @@ def _read(block):
         part = re.sub(r"\s", " ", node.astext())
         parent = node.parent
         text += part
-        code += _CODE * len(part) if isinstance(parent, nodes.literal) else part
+        covered = isinstance(parent, nodes.literal) or TAKEN in parent.get("classes", ())
+        code += _CODE * len(part) if covered else part
         if "://" in parent.get("refuri", ""):
             links.append(len(text) - 1)
     return text, code.translate({ord(one): plain(one) for one in "“”‘’"}), marks, links

@@ -1,0 +1,140 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Role `value`: a number or a name that a page takes from where it is defined.
+
+:value:`contract.QUEUE_SIZE`                    the contract: mrp_testing/contract.py
+:value:`loop_spin_once.publisher_cpp.period`    a launch file: NODE.PARAMETER, or an argument
+:value:`rospy.topics.DEFAULT_BUFF_SIZE`         ROS's own default, in a module of ROS
+:value:`results.machine.cores`                  a recording: recorded/results.json
+
+The text is an expression in Python, such as `contract.QUEUE_SIZE + 1` or `len(latch.nodes)`. There
+`word(...)` writes a number as a word. The sentence that a test quotes has what the reader sees.
+"""
+
+import difflib
+import importlib
+import json
+import re
+import sys
+import xml.etree.ElementTree as ElementTree
+
+from docutils import nodes
+from evidence import WORKSPACE
+from sentences import TAKEN
+from sphinx.util.docutils import SphinxRole
+from typed_numbers import WORDS
+
+ROS = ("rospy", "rosmaster")
+FILES = ("mrp/launch/*.launch", "mrp_labs/launch/*.*", "mrp/doc/recorded/*.json")
+
+
+class UnknownError(Exception):
+    """An expression has no value; the text says what was expected and what was found."""
+
+
+class Names(dict):
+    """What has names: each is an attribute, too."""
+
+    def __getattr__(self, name):
+        if name not in self:
+            raise AttributeError(name, name=name, obj=self)
+        return self[name]
+
+
+class Sources(dict):
+    """The names with which an expression may begin. used: the files that were read for it."""
+
+    def __init__(self, folder=WORKSPACE / "src"):
+        super().__init__(len=len, word=lambda number: WORDS[int(number)])
+        self.used = set()
+        self.files = {path.stem: path for one in FILES for path in folder.glob(one)}
+        self.modules = {"contract": "mrp_testing.contract", **{name: name for name in ROS}}
+        sys.path.insert(0, str(folder / "mrp_testing" / "src"))
+
+    def __missing__(self, name):
+        if name in self.modules:
+            found = importlib.import_module(self.modules[name])
+            self.used.add(found.__file__)
+            return found
+        self.used.add(str(self.files[name]))
+        return read(self.files[name])
+
+    def known(self):
+        return [*self, *self.modules, *self.files]
+
+
+def read(path):
+    """Return what a recording or a launch file says."""
+    if path.suffix == ".json":
+        return json.loads(path.read_text(), object_hook=Names)
+    root = ElementTree.parse(path).getroot()
+    args = {one.get("name"): _typed(one.get("default", "")) for one in root.iter("arg")}
+    found = Names(args, nodes=[])
+    _add(root, found, {})
+    return found
+
+
+def _add(element, found, private):
+    """Add the nodes of a <launch> or <group>. private: parameters of all nodes that follow."""
+    private = dict(private)
+    for one in element:
+        if one.tag == "param" and one.get("name").startswith("~"):
+            private[one.get("name")[1:]] = _value(one, found)
+        elif one.tag == "node":
+            own = {param.get("name"): _value(param, found) for param in one.iter("param")}
+            found[one.get("name")] = Names({**private, **own})
+            found["nodes"].append(one.get("name"))
+        elif one.tag == "group":
+            _add(one, found, private)
+
+
+def _value(param, args):
+    value = param.get("value", "")
+    return _typed(re.sub(r"\$\(arg (\w+)\)", lambda match: _shown(args[match.group(1)]), value))
+
+
+def _typed(text):
+    """Return a text, as a number if it is one."""
+    return float(text) if re.fullmatch(r"-?\d+(\.\d+)?", text) else text
+
+
+def _shown(value):
+    return str(int(value)) if isinstance(value, float) and value == int(value) else str(value)
+
+
+def value_of(text, sources):
+    """Return the text for an expression. Raises UnknownError."""
+    try:
+        found = eval(text, {"__builtins__": {}}, sources)
+    except NameError as error:
+        raise _unknown(error.name, sources.known()) from None
+    except AttributeError as error:
+        names = error.obj if isinstance(error.obj, dict) else dir(error.obj)
+        raise _unknown(error.name, names) from None
+    except Exception as error:
+        raise UnknownError(f"expected an expression, found {text!r}: {error!r}") from None
+    if not isinstance(found, (int, float, str)):
+        raise UnknownError(f"expected a number or a text, found {found!r}")
+    return _shown(found)
+
+
+def _unknown(name, known):
+    near = difflib.get_close_matches(name, known, 3, 0.5) or sorted(known)
+    return UnknownError(f"expected a name such as {', '.join(near[:5])}; found {name}")
+
+
+class ValueRole(SphinxRole):
+    def run(self):
+        sources = Sources()
+        try:
+            text = value_of(self.text, sources)
+        except UnknownError as error:
+            message = self.inliner.reporter.error(f"value: {error}", line=self.lineno)
+            return [self.inliner.problematic(self.rawtext, self.rawtext, message)], [message]
+        for file in sources.used:
+            self.env.note_dependency(file)
+        return [nodes.inline(self.rawtext, text, classes=[TAKEN])], []
+
+
+def setup(app):
+    app.add_role("value", ValueRole())
+    return {"parallel_read_safe": False}
