@@ -283,6 +283,7 @@ def test_what_changes_alone_fails_the_build(root, name):
 def test_a_number_that_is_typed_fails_the_build(root):
     for file, end in ((PAGE, "named. Is"), (LIST, "is named.")):
         change(root, file, end, end.replace("named", "named by 7"))
+    change(root, LIST, "[definition]", "[open]")
     code, said = build(root)
     assert code != 0 and "has a number that is typed, and no test proves it" in said
     assert "page: Paul N. Beuchat is named by 7." in said

@@ -70,8 +70,8 @@ MESSAGES = {
     "listed and proved": "This sentence has a proof: delete it from the list of its page.",
     "no link": "The list says that this sentence is taken from a source. Put the link into the "
     "sentence, or give another reason.",
-    "typed number": "This sentence has a number that is typed, and no test proves it. Take the number "
-    "from where it is defined (extension/value.py), or leave it out.",
+    "typed number": "This sentence has a number that is typed, and no test proves it. Take the "
+    "number from where it is defined (extension/value.py), or leave it out.",
     "no such page": "No page has this name: delete its list of unproved sentences.",
     "no such reason": f"The list gives an unknown reason. Expected one of: {', '.join(REASONS)}.",
 }

@@ -84,9 +84,8 @@ class Graph(Picture):
                 ", ".join(node for node, other in graph[kind] if other == topic) or "no node"
                 for kind in ("publishers", "subscribers")
             )
-            sentences.append(
-                f"Topic {topic}, type {type_}: published by {publish}; subscribed to by {subscribe}."
-            )
+            who = f"published by {publish}; subscribed to by {subscribe}"
+            sentences.append(f"Topic {topic}, type {type_}: {who}.")
         return " ".join(sentences)
 
 

@@ -17,7 +17,7 @@ LANGUAGES = ("C++", "Python")
 # A full stop before white space; but not that of an initial ("N. Beuchat"), and not before a small
 # letter.
 _END = re.compile(r"""(?<=[.!?])(?<!\b[A-Z]\.)["')\]]*(?=\s+[^a-z\s])""")
-# Stands for each character of code, in which a full stop ends nothing and a number is not typed; and
+# Stands for each character of code, in which a full stop ends nothing and no number is typed; and
 # for each one that the role `value` has taken from elsewhere.
 _CODE = "_"
 TAKEN = "taken"  # the class of what this role makes

@@ -11,7 +11,8 @@ WORDS = "zero one two three four five six seven eight nine ten eleven twelve".sp
 # "one" is also a pronoun. An ordinal says where something stands: it is no number here.
 _MORE = "zero twenty thirty forty fifty hundred thousand million half twice dozen".split()
 _NUMBER = re.compile(
-    rf"(?<![\w./])(?<!\w-)\d(?:[\d.,]*\d)?(?!\w)|\b(?:{'|'.join([*WORDS[2:], *_MORE])})\b", re.IGNORECASE
+    rf"(?<![\w./])(?<!\w-)\d(?:[\d.,]*\d)?(?!\w)|\b(?:{'|'.join([*WORDS[2:], *_MORE])})\b",
+    re.IGNORECASE,
 )
 
 # What a number may be that is typed -> why.
