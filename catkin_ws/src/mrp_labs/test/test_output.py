@@ -12,8 +12,8 @@ from mrp_testing import contract
 from mrp_testing.graph import Graph
 from mrp_testing.lab import PACKAGE
 from mrp_testing.process import LIVE, Process
-from std_msgs.msg import UInt32
 from mrp_testing.proves import proves
+from std_msgs.msg import UInt32
 
 LAUNCH = """
 <launch>

@@ -16,9 +16,9 @@ from mrp_testing.graph import Graph
 from mrp_testing.lab import PACKAGE
 from mrp_testing.nodes import program
 from mrp_testing.process import LIVE, Process
+from mrp_testing.proves import proves
 from mrp_testing.waiting import wait_until, within
 from std_msgs.msg import UInt8MultiArray, UInt32
-from mrp_testing.proves import proves
 
 LONG_SLEEP = 0.5  # seconds: much longer than what is asked for, 1 ms
 SUBSCRIBER, PUBLISHER = "/of_subscriber", "/of_publisher"

@@ -15,9 +15,9 @@ from mrp_testing.clock import TurnedClock
 from mrp_testing.lab import PACKAGE
 from mrp_testing.nodes import connections_of, program
 from mrp_testing.process import Process
+from mrp_testing.proves import proves
 from mrp_testing.waiting import wait_until, within
 from std_msgs.msg import String
-from mrp_testing.proves import proves
 
 COUNT = 20  # messages that each publisher publishes
 QUEUE = 5
