@@ -182,6 +182,13 @@ doctor:  ## find what keeps the tutorial from running on this machine
 	  echo "       mend: make deps"; exit 1; }
 	@/usr/bin/python3 -I catkin_ws/tools/doctor.py
 
+# A text may have quotes, and $(...) of a launch file, which make must not read.
+.PHONY: why
+unexport TEXT
+why: export WHY = $(value TEXT)
+why:  ## say what an error text means, and how to fix it: TEXT="...", or piped into it
+	@/usr/bin/python3 catkin_ws/tools/why.py "$$WHY" || [ $$? = 1 ]
+
 .PHONY: clean
 clean:  ## delete all that was built
 	rm -rf catkin_ws/build catkin_ws/devel catkin_ws/install

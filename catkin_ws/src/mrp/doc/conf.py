@@ -23,6 +23,7 @@ extensions = [
     "bench",
     "picture",
     "exercises",
+    "why",
 ]
 
 html_theme = "sphinx_rtd_theme"

@@ -17,6 +17,7 @@ The head of a patch says what it breaks, and who must find that:
     Order: 7                    its number, if it is an exercise,
     Task: # A title             what the student reads first,
     Hint: Look at the end.      and what the student may ask for
+    Shows: error: ...           a text that it makes a tool print, and more: see tools/why.py
 
 The value of a field goes on in the lines below it that are indented. There may be several lines In:
 each names a place that is right; and several lines Proves. The head ends where the diff begins.
@@ -37,11 +38,13 @@ from mrp_check.contract import resources
 _FIELD = re.compile(r"([A-Z][\w-]*):(?: (.*))?")
 # A patch has all fields of a group, or none.
 _GROUPS = (("Fails", "Says"), ("Finds", "In", "Tells"), ("Order", "Task", "Hint"))
+_WHY = ("Shows", "Also", "Why", "Fix", "Page", "Try", "Needs")
 _FIELDS = (
     *("Base", "Breaks", "Erratum", "Missed", "Proves", "Severity"),
     *(field for group in _GROUPS for field in group),
+    *_WHY,
 )
-_SEVERAL = ("In", "Proves")
+_SEVERAL = ("In", "Proves", "Shows", "Also")
 _FORMS = {
     "Erratum": (r"[EP][1-9]\d*", "the number of an erratum, such as E5"),
     "Fails": (r"\w+\.test \w+", "a rostest and a test case of it"),
@@ -76,6 +79,7 @@ class Defect:
     order: int = 0
     task: str = ""
     hint: str = ""
+    why: Mapping[str, Sequence[str]] = dataclasses.field(default_factory=dict)  # of tools/why.py
 
     @property
     def name(self) -> str:
@@ -88,14 +92,19 @@ class Defect:
 
 
 def fields(path: pathlib.Path) -> dict[str, list[str]]:
-    """Return field -> its values, of the lines "Field: value" in the head of a patch.
-
-    Raises DefectError if a line is something else.
-    """
+    """Return field -> its values, of the head of a patch. Raises DefectError as fields_of."""
     head = re.split(rb"^(?:--- |diff )", path.read_bytes(), maxsplit=1, flags=re.MULTILINE)[0]
+    return fields_of(head.decode(), path.name)
+
+
+def fields_of(text: str, name: str) -> dict[str, list[str]]:
+    """Return field -> its values, of the lines "Field: value" in a text.
+
+    Raises DefectError, with the text's name, if a line is something else.
+    """
     found: dict[str, list[list[str]]] = {}
     values: list[list[str]] | None = None
-    for line in head.decode().splitlines():
+    for line in text.splitlines():
         match = _FIELD.fullmatch(line)
         if match:
             values = found.setdefault(match.group(1), [])
@@ -104,7 +113,7 @@ def fields(path: pathlib.Path) -> dict[str, list[str]]:
             values[-1].append(line)
         else:
             raise DefectError(
-                f"{path.name}: expected 'Field: value' or an indented line; found {line!r}."
+                f"{name}: expected 'Field: value' or an indented line; found {line!r}."
             )
     return {field: [_text(*lines) for lines in values] for field, values in found.items()}
 
@@ -122,11 +131,13 @@ def read(path: pathlib.Path) -> Defect:
         raise DefectError(f"{path.name}: {fault}.")
     pairs = (value.partition(": ") for value in found.pop("In", ()))
     proves = tuple(found.pop("Proves", ()))
+    why = {field: found.pop(field) for field in _WHY if field in found}
     values = {field.lower(): value for field, (value,) in found.items()}
     return Defect(
         path=path,
         places=tuple((file, pattern) for file, _, pattern in pairs),
         proves=proves,
+        why=why,
         fails=tuple(values.pop("fails", "").split()),
         order=int(values.pop("order", 0)),
         **values,

@@ -1,0 +1,147 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The list of error texts: each is printed by the real tool, and found by what people see of it."""
+
+import os
+import pathlib
+import signal
+import subprocess
+
+import check_sets
+import pytest
+import why
+from front_door import environment, make
+from mrp_testing.master import master, uri_of
+from mrp_testing.ports import free_port
+from mrp_testing.process import LIVE, Process
+from mrp_testing.proves import proves
+from mrp_testing.waiting import wait_until
+from mrp_testing.workspace import ROOT, WORKSPACE
+
+pytestmark = pytest.mark.slow
+
+ENTRIES = why.entries()
+HERE = [one for one in ENTRIES if one.needs != "docker"]  # the others: docker/test/test_why.py
+THREADS = [
+    line.split(": ", 1)
+    for line in (pathlib.Path(__file__).parent / "texts_of_threads.txt").read_text().splitlines()
+    if line and not line.startswith("#")
+]
+NO_ERRORS = (
+    "the quick brown fox jumps over the lazy dog",
+    "[INFO] [1795222168.878456]: [PUBLISHER PY NODE] namespace of node = /mrp/publisher_py_node",
+    "[ 50%] Built target publisher_cpp_node",
+    "process[rosout-1]: started with pid [4242]",
+)
+RELEASE = pathlib.Path("/etc/debian_version").read_text().split(".")[0]
+
+
+@pytest.fixture(scope="session")
+def running_master():
+    """The port of a master that the tests of a worker share."""
+    port = free_port()
+    with master(port):
+        yield port
+
+
+@pytest.fixture
+def env(request, tmp_path):
+    """The environment of a user with a home of its own, and a master if the entry needs one."""
+    env = {k: v for k, v in os.environ.items() if not k.startswith("CCACHE")}
+    needs_master = request.getfixturevalue("entry").needs == "master"
+    port = request.getfixturevalue("running_master") if needs_master else free_port()
+    env.update(HOME=str(tmp_path), LC_ALL="C.UTF-8", PORT=str(port), ROS_MASTER_URI=uri_of(port))
+    env.update(WORKSPACE=str(WORKSPACE))
+    return env
+
+
+def missing(entry, lines):
+    """Return the lines of an entry's texts that are in none of the lines that were printed."""
+    printed = [why.mask(line) for line in list(lines)]
+    expected = [line for text in entry.shows for line in why.shown_on(text, RELEASE)]
+    return [line for line in expected if not any(why.mask(line) in one for one in printed)]
+
+
+@proves(
+    "Each heading is a text that a tool prints: a test runs the tool and compares.",
+)
+@pytest.mark.parametrize("entry", HERE, ids=lambda entry: entry.name)
+def test_text_is_printed(entry, tmp_path, env):
+    folder = tmp_path / "here"
+    folder.mkdir()
+    if entry.defect:
+        check_sets.lay_out(entry.defect.base, folder)
+        check_sets.break_(folder, entry.defect)
+    process = Process("bash", "-c", f"cd {folder}\n{entry.try_}", env=env, extra_env=LIVE)
+    with process:
+        wait_until(
+            lambda: process.code is not None or not missing(entry, process.lines), process.__str__
+        )
+        end(process)
+    assert missing(entry, process.lines) == [], str(process)
+
+
+def end(process):
+    """End a shell and all that it runs: what is in the foreground, as Ctrl-C does."""
+    try:
+        os.killpg(process.pid, signal.SIGINT)
+        wait_until(lambda: process.code is not None, process.__str__)
+        os.killpg(process.pid, signal.SIGKILL)
+    except ProcessLookupError:
+        pass
+    process.wait()
+
+
+@pytest.fixture(scope="module")
+def index():
+    return why.Index(ENTRIES)
+
+
+@pytest.mark.parametrize("entry", ENTRIES, ids=lambda entry: entry.name)
+def test_each_text_leads_to_its_entry(entry, index):
+    for text in (*entry.shows, *entry.also):
+        found = [one.name for one in index.nearest("\n".join(why.shown_on(text)))]
+        assert entry.name == found[0], text
+
+
+@proves("Names, paths and numbers do not count: yours may differ from those here.")
+@pytest.mark.parametrize(("name", "text"), THREADS)
+def test_names_paths_and_numbers_do_not_count(name, text, index):
+    assert name in [one.name for one in index.nearest(text)]
+
+
+@proves("It prints up to three entries, the nearest one first.")
+def test_make_why_answers_a_text():
+    done = make("why", "TEXT=RLException: [a.launch] requires the '$(arg x)' arg to be \"set\"")
+    assert done.returncode == 0
+    assert done.stdout.startswith("1. RLException: [a.launch] requires the 'group' arg to be set\n")
+    assert "\n   why:  `$(arg NAME)` names an argument" in done.stdout
+    assert "/pages/launching.html" in done.stdout
+
+
+@proves(
+    "If none is near, it says so.",
+)
+@pytest.mark.parametrize("text", NO_ERRORS)
+def test_nothing_is_near_what_is_no_error(text, index):
+    assert index.nearest(text) == []
+    assert why.answer([]).startswith("No entry is near this text.")
+
+
+@proves("It reads a whole log from a pipe, too, and finds the lines that matter:")
+def test_make_why_reads_a_log(tmp_path):
+    log = tmp_path / "log"
+    lines = ["... logging to /root/.ros/log/x.log", "[INFO] [1.2]: data = 3"] * 500
+    lines.insert(500, "ERROR: Unable to communicate with master!")
+    log.write_text("\n".join(lines))
+    with log.open() as stdin:
+        command = ["make", "-C", str(ROOT), "--no-print-directory", "why"]
+        done = subprocess.run(command, env=environment(), stdin=stdin, stdout=subprocess.PIPE)
+    assert done.stdout.decode().startswith("1. ERROR: Unable to communicate with master!\n")
+
+
+def test_names_are_unique_and_pages_are_there():
+    names = [one.name for one in ENTRIES]
+    assert sorted(names) == sorted(set(names))
+    pages = WORKSPACE / "src" / "mrp" / "doc" / "pages"
+    named = {one.page.partition("#")[0] for one in ENTRIES if one.page}
+    assert [page for page in named if not (pages / f"{page}.rst").exists()] == []

@@ -1,0 +1,238 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Says what an error text means, why it is printed, and how to fix it.
+
+Usage: why.py [TEXT]; without a text it reads what is piped into it, such as a whole log.
+
+An entry stands in a file of the folder why/, below its name in brackets, or in the head of a patch
+in defects/. Its fields:
+
+    Shows: [rospack] Error: ...    a text as it is printed; lines that belong together stand below
+    Also: rospack: ...             the same in another version; nothing here prints it
+    Why: The terminal ...          the cause, in one or two sentences
+    Fix: Source ...                what to do, in one or two sentences
+    Page: wrong#there-is-no-master where the pages say more
+    Try: rostopic list             the commands that make ROS print it
+    Needs: master                  what must run, or be installed, for them
+
+There may be several fields Shows and Also. A line of Shows that begins with "12| " or "13| " is
+that of one Debian release. tests/test_why.py runs Try, and holds Shows against what is printed.
+"""
+
+import dataclasses
+import itertools
+import os
+import pathlib
+import re
+import sqlite3
+import sys
+
+WORKSPACE = pathlib.Path(__file__).resolve().parents[1]
+SITE = WORKSPACE / "build" / "docs"
+sys.path.insert(0, str(WORKSPACE / "src" / "mrp_check" / "src"))
+
+from mrp_check.contract import defects  # noqa: E402
+
+FOLDER = WORKSPACE / "why"
+ANSWERS = 3
+REQUIRED, SEVERAL = ("Shows", "Why", "Fix", "Try"), ("Shows", "Also")
+FIELDS = (*REQUIRED, "Also", "Page", "Needs")
+
+# What differs from one run to the next, and from one machine to another.
+_MASKS = (
+    (re.compile(r"\x1b\[[0-9;]*m|\x1b\][^\x07]*\x07"), ""),
+    (re.compile("[‘’`´]"), "'"),
+    (re.compile("[“”]"), '"'),
+    (re.compile(r"(?<![\w.])~?/[^\s:;,'\"()\[\]<>]+"), "/#"),
+    # An exit code says what happened.
+    (re.compile(r"\b(?:0x[0-9a-f]+|[0-9a-f]{32})\b"), "#"),
+    (re.compile(r"(?<!exit code )(?<!exit code -)(?<!\d)(?:(?<=\s)-)?\d+(?:\.\d+)*"), "#"),
+)
+# Of a path, only the last part counts, and whether it is that of ROS's own packages.
+_FOLDERS = re.compile(r"(?<![\w.])~?(/opt/ros/\w+)?/(?:[^\s/:;,'\"()\[\]<>]+/)*")
+_WORD = re.compile(r"[^\W\d_]+|\d+")
+# A text is near an entry if it has this part of the entry's words, or the entry this part of its.
+_OF_ENTRY, _OF_TEXT = 0.5, 0.6
+_TOGETHER = 3  # lines: long messages are broken into that many
+
+
+@dataclasses.dataclass(frozen=True)
+class Entry:
+    """What is printed, why, and what to do. theme: the heading under which it stands."""
+
+    name: str
+    theme: str
+    shows: tuple
+    why: str
+    fix: str
+    try_: str
+    also: tuple = ()
+    page: str = ""
+    needs: str = ""
+    defect: defects.Defect = None
+
+    @property
+    def address(self):
+        """Its place on the pages: that of the page that explains it, or of the list."""
+        return self.page or f"why#{self.name}"
+
+
+class EntryError(Exception):
+    """An entry is not as it must be; the text is one sentence."""
+
+
+def entries():
+    """Return all entries: those of the files, by theme, and then those of defects."""
+    found = [one for path in sorted(FOLDER.glob("*.txt")) for one in _of_file(path)]
+    for defect in defects.read_all():
+        if defect.why:
+            found.append(_of_defect(defect))
+    return found
+
+
+def _of_file(path):
+    theme, *parts = re.split(r"^\[([\w-]+)\]\n", path.read_text(), flags=re.MULTILINE)
+    for name, text in zip(parts[::2], parts[1::2]):
+        found = defects.fields_of(text, f"{path.name}, {name}")
+        yield _entry(name, theme.strip("# \n"), found)
+
+
+def _of_defect(defect):
+    name = defect.name.replace("_", "-")
+    return _entry(name, "Mistakes in a package", defect.why, defect=defect)
+
+
+def _entry(name, theme, found, **more):
+    missing = [field for field in REQUIRED if field not in found]
+    unknown = [field for field in found if field not in FIELDS]
+    twice = [field for field in found if len(found[field]) > 1 and field not in SEVERAL]
+    if missing or unknown or twice:
+        what = f"missing {missing}, unknown {unknown}, more than once {twice}"
+        raise EntryError(f"{name}: expected each of {', '.join(FIELDS)} as it must be; {what}.")
+    one = {field: values[0] for field, values in found.items() if field not in SEVERAL}
+    several = {field.lower(): tuple(found.get(field, ())) for field in SEVERAL}
+    several = {field: tuple(map(_dedent, values)) for field, values in several.items()}
+    plain = {field.lower(): " ".join(one[field].split()) for field in one if field != "Try"}
+    return Entry(name=name, theme=theme, try_=one["Try"], **several, **plain, **more)
+
+
+def _dedent(text):
+    return "\n".join(line.strip() for line in text.splitlines())
+
+
+def shown_on(text, release=None):
+    """Return the lines of a text that is printed, on one Debian release or on any."""
+    lines = [re.fullmatch(r"(?:(\d+)\| )?(.*)", line).groups() for line in text.splitlines()]
+    return [line for debian, line in lines if not debian or release in (None, debian)]
+
+
+def mask(text):
+    """Return a text without what differs from run to run: paths, numbers, colours."""
+    for pattern, stand_in in _MASKS:
+        text = pattern.sub(stand_in, text)
+    return " ".join(text.split())
+
+
+class Index:
+    """All entries, to be searched by the words of a text: SQLite's full-text search ranks them.
+
+    A word counts the more the fewer entries have it, and two words side by side count as one more.
+    """
+
+    def __init__(self, found):
+        self._entries = found
+        self._table = sqlite3.connect(":memory:")
+        self._table.execute("CREATE VIRTUAL TABLE texts USING fts5(words, entry UNINDEXED)")
+        self._words = []
+        for number, one in enumerate(found):
+            for text in (*one.shows, *one.also):
+                words = _words(" ".join(shown_on(text)))
+                self._words.append(words)
+                self._table.execute("INSERT INTO texts VALUES (?, ?)", (" ".join(words), number))
+        self._known = set(itertools.chain(*self._words))
+
+    def nearest(self, text, count=ANSWERS):
+        """Return the entries that are near to a text, the nearest one first."""
+        best = {}
+        for words in _passages(text):
+            for row, number, score in self._search(words):
+                if score > best.get(number, 0) and self._is_near(words, self._words[row - 1]):
+                    best[number] = score
+        ranked = sorted(best, key=lambda number: -best[number])
+        return [self._entries[number] for number in ranked[:count]]
+
+    def _search(self, words):
+        """Yield (row, number of the entry, score) of all texts that have one of the words."""
+        words = [word if word in self._known else "" for word in words]
+        terms = {f'"{one} {two}"' for one, two in itertools.pairwise(words) if one and two}
+        terms |= {f'"{word}"' for word in words if word}
+        if terms:
+            query = (
+                "SELECT rowid, entry, -rank FROM texts WHERE texts MATCH ? ORDER BY rank LIMIT 20"
+            )
+            yield from self._table.execute(query, (" OR ".join(sorted(terms)),))
+
+    def _is_near(self, words, others):
+        shared = set(words) & set(others)
+        enough = len(shared) > 1 or len(set(others)) == 1
+        of_entry, of_text = len(shared) / len(set(others)), len(shared) / len(set(words))
+        return enough and (of_entry >= _OF_ENTRY or of_text >= _OF_TEXT)
+
+
+def _words(text):
+    text = _FOLDERS.sub(lambda match: " optros " if match[1] else " ", text)
+    return [word.lower() for word in _WORD.findall(mask(text))]
+
+
+def _passages(text):
+    """Yield the words of each line of a text, and of lines that follow each other."""
+    lines = [words for words in map(_words, text.splitlines()) if words]
+    seen = set()
+    for length in range(1, _TOGETHER + 1):
+        for begin in range(max(len(lines) - length, 0) + 1):
+            passage = tuple(itertools.chain(*lines[begin : begin + length]))
+            if passage and passage not in seen:
+                seen.add(passage)
+                yield passage
+
+
+def answer(found):
+    """Return what is said to the user of the entries that were found."""
+    if not found:
+        return (
+            "No entry is near this text. Look for the first line that says 'error', and ask for "
+            "that line alone.\nAll texts: " + _link("why")
+        )
+    parts = []
+    for number, one in enumerate(found, 1):
+        shows = shown_on(one.shows[0])
+        lines = [f"{number}. {shows[0]}", *("   " + line for line in shows[1:])]
+        lines += [f"   why:  {one.why}", f"   fix:  {one.fix}", f"   page: {_link(one.address)}"]
+        parts.append("\n".join(lines))
+    return "\n\n".join(parts)
+
+
+def _link(address):
+    """Return where the pages are, or will be, in this folder: `make docs` builds them."""
+    page, _, anchor = address.partition("#")
+    path = SITE / "pages" / f"{page}.html"
+    unbuilt = "" if path.exists() else " (make docs builds it)"
+    return path.as_uri() + ("#" + anchor if anchor else "") + unbuilt
+
+
+def main(arguments):
+    text = " ".join(arguments).strip()
+    if not text and not sys.stdin.isatty():
+        text = sys.stdin.buffer.read().decode(errors="replace")
+    if not text.strip():
+        usage = 'error: expected make why TEXT="...", or a text that is piped into it'
+        print(usage, file=sys.stderr)
+        return 2
+    found = Index(entries()).nearest(text)
+    print(answer(found))
+    return 0 if found else 1
+
+
+if __name__ == "__main__":
+    os.environ.setdefault("PYTHONDONTWRITEBYTECODE", "1")
+    sys.exit(main(sys.argv[1:]))
