@@ -23,7 +23,7 @@ from mrp_check.rules import (
     swapped_sources,
 )
 from mrp_check.sources import facts, node, python_facts, python_read, uses
-from mrp_check.student import cmake
+from mrp_check.student import cmake, manifest
 from mrp_check.student.package import Package
 
 MANIFEST = """<?xml version="1.0"?>
@@ -80,6 +80,16 @@ def model_of(package):
     model = cmake.Model(package.root, calls, complete=True)
     uses.is_ros_package.cache_clear()
     return model
+
+
+def file_findings(rule, package, **known):
+    """Return what a rule says of a package of which only the files are known.
+
+    known: what is to be known besides, such as started
+    """
+    given = {"manifest": manifest.parse(package), "model": model_of(package), "launch": None}
+    given.update({"spec": PUB_SUB, "started": {}, **known})
+    return [*rule.RULE.findings(types.SimpleNamespace(package=package, **given))]
 
 
 def python_findings(folder, source):

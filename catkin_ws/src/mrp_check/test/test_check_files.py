@@ -3,12 +3,11 @@
 
 import check_rules
 import pytest
-from check_rules import CMAKE, MANIFEST, PUB_SUB, told
+from check_rules import CMAKE, MANIFEST, file_findings, told
 from mrp_check.building import compiler, configuring, cpp_words
 from mrp_check.rules import cmake as cmake_rule
-from mrp_check.rules import dependencies, messages, package_name, scripts, targets, text
-from mrp_check.rules import manifest as manifest_rule
-from mrp_check.student import cmake, manifest
+from mrp_check.rules import dependencies, manifest, messages, package_name, scripts, targets, text
+from mrp_check.student import cmake
 
 pytestmark = pytest.mark.quick
 
@@ -31,20 +30,20 @@ NODE = (
     ids=range(7),
 )
 def test_text(content, expected, tmp_path):
-    package = check_rules.make(tmp_path, src__odd_DOT_py=content)
-    assert told(text.findings(package, set())) == expected
+    package = check_rules.make(tmp_path, CMakeLists_DOT_txt="", src__odd_DOT_py=content)
+    assert told(file_findings(text, package)) == expected
 
 
 def test_declared_latin1_breaks_what_catkin_install_python_makes(tmp_path):
     content = b"#!/usr/bin/env python\n# coding: latin-1\n# \xe4\n"
     package = check_rules.make(tmp_path, src__odd_DOT_py=content)
-    assert told(text.findings(package, {"src/odd.py"})) == [("text", 3)]
+    assert told(file_findings(text, package)) == [("text", 3)]
 
 
 def test_windows_line_ends_of_cpp_are_a_note(tmp_path):
     package = check_rules.make(tmp_path, src__a_DOT_cpp="int main()\r\n{\r\n}\r\n")
-    assert told(text.findings(package, set())) == []
-    assert told(text.findings(package, set()), "note") == [("text", 1)]
+    assert told(file_findings(text, package)) == []
+    assert told(file_findings(text, package), "note") == [("text", 1)]
 
 
 @pytest.mark.parametrize(
@@ -64,16 +63,14 @@ def test_windows_line_ends_of_cpp_are_a_note(tmp_path):
 def test_broken_manifest(old, new, line, says, tmp_path):
     assert MANIFEST.count(old) == 1
     package = check_rules.make(tmp_path, **{"package_DOT_xml": MANIFEST.replace(old, new)})
-    parsed, problem = manifest.parse(package)
-    findings = [problem] if problem else list(manifest_rule.findings(package, parsed))
+    findings = file_findings(manifest, package)
     assert told(findings) == [("manifest", line)]
     assert says in findings[0].message
 
 
 def test_good_manifest(tmp_path):
     package = check_rules.make(tmp_path)
-    parsed, problem = manifest.parse(package)
-    assert (problem, told(manifest_rule.findings(package, parsed))) == (None, [])
+    assert told(file_findings(manifest, package)) == []
 
 
 def dependency_findings(folder, manifest_text=MANIFEST, cmake_text=CMAKE, **files):
@@ -82,8 +79,7 @@ def dependency_findings(folder, manifest_text=MANIFEST, cmake_text=CMAKE, **file
     package = check_rules.make(
         folder, **{"package_DOT_xml": manifest_text, "CMakeLists_DOT_txt": cmake_text}, **files
     )
-    parsed, _ = manifest.parse(package)
-    return list(dependencies.findings(package, PUB_SUB, parsed, check_rules.model_of(package)))
+    return file_findings(dependencies, package)
 
 
 def test_what_is_declared_is_no_finding(tmp_path):
@@ -143,8 +139,7 @@ def test_broken_cmake(old, new, line, says, tmp_path):
     package = check_rules.make(
         tmp_path, CMakeLists_DOT_txt=CMAKE.replace(old, new), src__a_DOT_cpp="int main() {}\n"
     )
-    model = check_rules.model_of(package)
-    (finding,) = [*cmake_rule.findings(package, model), *targets.findings(package, model)]
+    (finding,) = [*file_findings(cmake_rule, package), *file_findings(targets, package)]
     assert (finding.file, finding.line) == ("CMakeLists.txt", line)
     assert says in finding.message
 
@@ -164,14 +159,13 @@ def test_cmake_as_text():
 
 def test_who_is_wrong_about_the_name_is_decided_by_the_others(tmp_path):
     package = check_rules.make(tmp_path / "some_pkg")
-    model = check_rules.model_of(package)
-    assert list(package_name.findings(package, model, None)) == []
+    assert file_findings(package_name, package) == []
     text_ = CMAKE.replace("project(some_pkg)", "project(other)")
     package = check_rules.make(tmp_path / "some_pkg", CMakeLists_DOT_txt=text_)
-    (finding,) = package_name.findings(package, check_rules.model_of(package), None)
+    (finding,) = file_findings(package_name, package)
     assert (finding.file, finding.line) == ("CMakeLists.txt", 2)
     package = check_rules.make(tmp_path / "other", CMakeLists_DOT_txt=text_)
-    (finding,) = package_name.findings(package, check_rules.model_of(package), None)
+    (finding,) = file_findings(package_name, package)
     assert (finding.file, finding.line) == ("package.xml", 3)
 
 
@@ -195,8 +189,8 @@ def test_first_line(first, cmake_text, expected, tmp_path):
     text_ = CMAKE if cmake_text else CMAKE.replace("catkin_install_python", "# ")
     source = first + NODE[NODE.index("\n") :]
     package = check_rules.make(tmp_path, src__odd_DOT_py=source, CMakeLists_DOT_txt=text_)
-    model = check_rules.model_of(package)
-    assert told(scripts.findings(package, model, {"src/odd.py": None})) == expected
+    found = file_findings(scripts, package, started={"src/odd.py": None})
+    assert told(found) == expected
 
 
 @pytest.mark.parametrize(("by", "severity"), [("catkin_install_python", "note"), ("# ", "error")])
@@ -205,15 +199,14 @@ def test_script_that_is_not_executable(by, severity, tmp_path):
     source = NODE.replace("env python", "env python3")
     package = check_rules.make(tmp_path, src__odd_DOT_py=source, CMakeLists_DOT_txt=text_)
     (tmp_path / "src" / "odd.py").chmod(0o644)
-    model = check_rules.model_of(package)
-    assert told(scripts.findings(package, model, {}), severity) == [("scripts", 1)]
+    assert told(file_findings(scripts, package), severity) == [("scripts", 1)]
 
 
 def test_script_that_is_not_there(tmp_path):
     text_ = CMAKE.replace("src/odd.py", "src/od.py")
     source = NODE.replace("env python", "env python3")
     package = check_rules.make(tmp_path, src__odd_DOT_py=source, CMakeLists_DOT_txt=text_)
-    (finding,) = scripts.findings(package, check_rules.model_of(package), {})
+    (finding,) = file_findings(scripts, package)
     assert (finding.file, finding.line) == ("CMakeLists.txt", 5)
     assert "src/odd.py" in finding.fix
 
@@ -221,7 +214,7 @@ def test_script_that_is_not_there(tmp_path):
 def test_script_that_hides_a_module_of_rospys(tmp_path):
     source = NODE.replace("env python", "env python3")
     package = check_rules.make(tmp_path, src__logging_DOT_py=source, src__odd_DOT_py=source)
-    findings = list(scripts.findings(package, check_rules.model_of(package), {}))
+    findings = file_findings(scripts, package)
     assert [(f.file, f.severity) for f in findings] == [("src/logging.py", "error")]
 
 
@@ -313,10 +306,7 @@ def test_what_makes_messages(generator, severities, tmp_path):
         CMakeLists_DOT_txt=text_.replace("roscpp rospy", f"{generator} roscpp rospy"),
         msg__A_DOT_msg="int32 a\n",
     )
-    parsed, _ = manifest.parse(package)
-    model = check_rules.model_of(package)
-    found = messages.findings(package, PUB_SUB, model, parsed)
-    assert [finding.severity for finding in found] == severities
+    assert [finding.severity for finding in file_findings(messages, package)] == severities
 
 
 def test_package_that_this_machine_has_not_is_not_the_students_fault(tmp_path):

@@ -20,6 +20,7 @@ _PACE = 1.0  # seconds after which the next value is sent, though the last one w
 _ENDING = 90.0  # seconds after which not even a busy node is waited for
 _STACK_SECONDS = 1.0  # that a stuck node gets to print where it stands
 _AFTER = 4  # messages that the hook tells of after the counter was set
+_SENDING = 100  # messages that may wait to be sent
 _RECENT = 100  # lines in which one that was just logged is looked for
 # What a node subscribes to by itself.
 _OF_ROS = ("/clock", "/tf", "/tf_static")
@@ -111,7 +112,9 @@ class _Node:
             if self.message_class is None:
                 self.sent = [None]
                 return
-            self.publisher = self.observer.publisher(topics[0].topic, self.message_class)
+            self.publisher = rospy.Publisher(
+                topics[0].topic, self.message_class, queue_size=_SENDING
+            )
         if self.publisher.get_num_connections() == 0:
             return
         for value in self.plan.values:

@@ -87,7 +87,7 @@ class Observer:
         os.environ[variables.MASTER] = self.uri
         rospy.impl.masterslave.ROSHandler.shutdown = _refuse
         rospy.init_node(NAME[1:], anonymous=False, disable_signals=True, disable_rosout=True)
-        self._subscribe("/rosout")
+        self.subscribe("/rosout")
         threading.Thread(target=self._measure_lag, daemon=True).start()
 
     def __enter__(self) -> "Observer":
@@ -100,20 +100,8 @@ class Observer:
 
     # --- What the master hears
 
-    def registered_publisher(self, node: str, topic: str, type_: str) -> None:
-        """Called by the master before it answers: returns when this observer is connected."""
-        if node == NAME:
-            return
-        self.seen.publications.append(Registration(node, topic, type_, time.monotonic()))
-
-    def subscribe_before(self, node: str, topic: str) -> None:
-        if node != NAME:
-            self._subscribe(topic)
-
     def hold(self, node: str, topic: str) -> None:
         """Wait until this observer is connected to a publisher, or for _HOLD seconds."""
-        if node == NAME:
-            return
         end = time.monotonic() + _HOLD
         while not self._is_connected(node, topic) and time.monotonic() < end:
             time.sleep(0.002)
@@ -160,7 +148,7 @@ class Observer:
 
     # --- What is published
 
-    def _subscribe(self, topic: str) -> None:
+    def subscribe(self, topic: str) -> None:
         with self._lock:
             if topic in self._subscribers:
                 return
@@ -231,12 +219,6 @@ class Observer:
     def _publisher_names(self, topic: str) -> List[str]:
         return list(dict(self._handler.publishers.get_state()).get(topic, []))
 
-    # --- Taking part
-
-    def publisher(self, topic: str, message_class: Any) -> rospy.Publisher:
-        """Return a publisher to nodes under observation."""
-        return rospy.Publisher(topic, message_class, queue_size=100)
-
     # --- How busy the machine is
 
     def _measure_lag(self) -> None:
@@ -269,10 +251,13 @@ class _Master(rosmaster.master_api.ROSMasterHandler):  # type: ignore[misc]  # i
     def registerPublisher(  # noqa: N802
         self, caller_id: str, topic: str, topic_type: str, caller_api: str
     ) -> Answer:
-        self._observer.subscribe_before(caller_id, topic)
+        is_other = caller_id != NAME
+        if is_other:
+            self._observer.subscribe(topic)
         answer: Answer = super().registerPublisher(caller_id, topic, topic_type, caller_api)
-        if answer[0] == 1:
-            self._observer.registered_publisher(caller_id, topic, topic_type)
+        if answer[0] == 1 and is_other:
+            registration = Registration(caller_id, topic, topic_type, time.monotonic())
+            self._observer.seen.publications.append(registration)
             self._observer.hold(caller_id, topic)
         return answer
 

@@ -3,52 +3,56 @@
 
 from __future__ import annotations
 
-from typing import Iterable, Iterator
+from typing import Iterator
 
 from mrp_check import evidence
 from mrp_check.case import Case
 from mrp_check.contract.finding import Finding
 from mrp_check.contract.requirements import Requirement, Rule
 from mrp_check.student.cmake import Model
-from mrp_check.student.package import Package
 
 FILE = "CMakeLists.txt"
 
 
-def _missing() -> Finding:
-    return Finding(
-        "cmake",
-        "The package has no CMakeLists.txt: catkin_make cannot build it.",
-        expected="a file CMakeLists.txt beside package.xml",
-        seen="none",
-        fix="Write one, as the page on building shows.",
-    )
+def _findings(case: Case) -> Iterator[Finding]:
+    if FILE in case.package.files:
+        yield from _missing_calls(case.model)
+        yield from _too_late(case.model)
+    else:
+        yield Finding(
+            "cmake",
+            "The package has no CMakeLists.txt: catkin_make cannot build it.",
+            expected="a file CMakeLists.txt beside package.xml",
+            seen="none",
+            fix="Write one, as the page on building shows.",
+        )
 
 
-def findings(package: Package, model: Model) -> Iterator[Finding]:
-    """Yield findings about CMakeLists.txt, from a cmake.Model."""
-    if model.project is None or model.catkin is None or model.catkin_package is None:
-        for needed, found, why in (
-            ("project(NAME)", model.project, "CMake needs it first of all"),
-            ("find_package(catkin REQUIRED ...)", model.catkin, "without it there is no catkin"),
-            (
-                "catkin_package()",
-                model.catkin_package,
-                "without it catkin does not know the package, and its executables are put where"
-                " roslaunch and rosrun do not look",
-            ),
-        ):
-            if found is None:
-                before = model.catkin or (model.project and model.project[1])
-                yield Finding(
-                    "cmake",
-                    f"CMakeLists.txt does not call {needed}: {why}.",
-                    FILE,
-                    before.line if before else 1,
-                    expected=needed,
-                    seen="no such call",
-                    fix=f"Add {needed} after this line." if before else f"Add {needed}.",
-                )
+def _missing_calls(model: Model) -> Iterator[Finding]:
+    before = model.catkin or (model.project and model.project[1])
+    for needed, found, why in (
+        ("project(NAME)", model.project, "CMake needs it first of all"),
+        ("find_package(catkin REQUIRED ...)", model.catkin, "without it there is no catkin"),
+        (
+            "catkin_package()",
+            model.catkin_package,
+            "without it catkin does not know the package, and its executables are put where"
+            " roslaunch and rosrun do not look",
+        ),
+    ):
+        if found is None:
+            yield Finding(
+                "cmake",
+                f"CMakeLists.txt does not call {needed}: {why}.",
+                FILE,
+                before.line if before else 1,
+                expected=needed,
+                seen="no such call",
+                fix=f"Add {needed} after this line." if before else f"Add {needed}.",
+            )
+
+
+def _too_late(model: Model) -> Iterator[Finding]:
     call = model.catkin_package
     if model.late is not None and call is not None:
         yield Finding(
@@ -62,11 +66,6 @@ def findings(package: Package, model: Model) -> Iterator[Finding]:
             f" catkin_package() in line {call.line}",
             fix="Move catkin_package() up, to before the first target.",
         )
-
-
-def _findings(case: Case) -> Iterable[Finding]:
-    there = FILE in case.package.files
-    return findings(case.package, case.model) if there else [_missing()]
 
 
 RULE = Rule(

@@ -8,9 +8,9 @@ from typing import Collection, Iterable, Iterator, Mapping
 from catkin_pkg.package import Package as Manifest
 
 from mrp_check import evidence
+from mrp_check.case import Case
 from mrp_check.contract.finding import NOTE, WARNING, Finding
 from mrp_check.contract.requirements import Requirement, Rule
-from mrp_check.contract.spec import Spec
 from mrp_check.contract.words import nearest
 from mrp_check.sources import uses
 from mrp_check.sources.uses import Use
@@ -19,14 +19,12 @@ from mrp_check.student.manifest import FILE, declared, last_dependency
 from mrp_check.student.package import Package
 
 
-def findings(
-    package: Package, spec: Spec, manifest: Manifest | None, model: Model
-) -> Iterator[Finding]:
-    """Yield findings; manifest is catkin_pkg's, or None if it cannot be read."""
+def _findings(case: Case) -> Iterator[Finding]:
+    package, model, (manifest, _) = case.package, case.model, case.manifest
     used = uses.of(package, model)
     # Which packages the exercise is about: to leave one of them out is the manifest's fault. Any
     # other is the fault of the line that uses it.
-    own = {"roscpp", "rospy"} | {topic.type.split("/")[0] for topic in spec.topics.values()}
+    own = {"roscpp", "rospy"} | {topic.type.split("/")[0] for topic in case.spec.topics.values()}
     for name, use in sorted(used.items()):
         in_manifest = manifest is None or name in _all(manifest, tests=not use.firm)
         in_cmake = model.catkin is None or name in model.components
@@ -159,7 +157,7 @@ RULE = Rule(
     stage="files",
     order=20,
     needs=("manifest", "model"),
-    findings=lambda case: findings(case.package, case.spec, case.manifest[0], case.model),
+    findings=_findings,
     requirements={
         "dependencies": Requirement(
             "Each package that the code uses is declared in package.xml and CMakeLists.txt",

@@ -12,17 +12,16 @@ from mrp_check.contract.finding import WARNING, Finding, Line
 from mrp_check.contract.requirements import Requirement, Rule
 from mrp_check.contract.words import nearest
 from mrp_check.student.launch import Launch
-from mrp_check.student.package import Package
 from mrp_check.student.xml_file import Element
 
 _TAGS = ("launch node group arg param rosparam remap include env machine test master").split()
 
 
-def findings(package: Package, launch: Launch) -> Iterator[Finding]:
-    """Yield findings about a launch file that is XML, from a launch.Launch."""
-    tags = launch.elements(package)
-    if launch.error:
-        yield _error(launch, tags)
+def _findings(case: Case) -> Iterator[Finding]:
+    yield from case.launch_file[1]
+    tags = case.launch.elements(case.package) if case.launch else []
+    if case.launch and case.launch.error:
+        yield _error(case.launch, tags)
     else:
         yield from _unknown(tags)
 
@@ -123,12 +122,6 @@ def _error(launch: Launch, tags: Sequence[tuple[str, Element]]) -> Finding:
         fix=fix
         or "Correct this line, and try again: roslaunch --nodes says whether it can be read.",
     )
-
-
-def _findings(case: Case) -> Iterator[Finding]:
-    yield from case.launch_file[1]
-    if case.launch:
-        yield from findings(case.package, case.launch)
 
 
 RULE = Rule(

@@ -11,19 +11,17 @@ from mrp_check.case import Case
 from mrp_check.confined.launch_dump import Started
 from mrp_check.contract.finding import WARNING, Finding
 from mrp_check.contract.requirements import Requirement, Rule
-from mrp_check.contract.spec import Spec
-from mrp_check.student.launch import Launch
 from mrp_check.student.xml_file import Element
 
 
-def findings(spec: Spec, launch: Launch, tags: Sequence[tuple[str, Element]]) -> Iterator[Finding]:
-    """Yield findings about the namespace of the spec's nodes."""
-    group = spec.launch.group
-    if not group:
+def _findings(case: Case) -> Iterator[Finding]:
+    launch, group = case.launch, case.spec.launch.group
+    if not group or not launch or launch.error:
         return
+    tags = launch.elements(case.package)
     wrong: dict[str, list[Started]] = {}
     for node in launch.nodes:
-        if node.name in spec.nodes and node.namespace.strip("/") != group:
+        if node.name in case.spec.nodes and node.namespace.strip("/") != group:
             wrong.setdefault(node.namespace, []).append(node)
     for namespace, nodes in wrong.items():
         yield _elsewhere(group, namespace, nodes, tags)
@@ -89,12 +87,6 @@ def _line(nodes: Sequence[Started], elements: Sequence[Element], has_groups: boo
     if has_groups or len(nodes) == 1:
         return line
     return next(e.line for tag in ("group", "launch") for e in elements if e.tag == tag)
-
-
-def _findings(case: Case) -> Iterator[Finding]:
-    launch = case.launch
-    if launch and not launch.error:
-        yield from findings(case.spec, launch, launch.elements(case.package))
 
 
 RULE = Rule(

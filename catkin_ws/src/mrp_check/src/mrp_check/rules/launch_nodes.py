@@ -11,7 +11,6 @@ from mrp_check.case import Case
 from mrp_check.confined.launch_dump import Started
 from mrp_check.contract.finding import Finding
 from mrp_check.contract.requirements import Requirement, Rule
-from mrp_check.contract.spec import Spec
 from mrp_check.contract.words import nearest
 from mrp_check.sources import uses
 from mrp_check.student.cmake import Model
@@ -20,22 +19,27 @@ from mrp_check.student.package import Package
 from mrp_check.student.xml_file import elements
 
 
-def findings(package: Package, spec: Spec, model: Model, launch: Launch) -> Iterator[Finding]:
-    """Yield findings about the <node>s of a launch.Launch that roslaunch has read."""
-    for name in spec.nodes:
+def _findings(case: Case) -> Iterator[Finding]:
+    launch = case.launch
+    if not launch or launch.error:
+        return
+    others = [n for n in launch.nodes if n.name not in case.spec.nodes]
+    others = [n for n in others if n.package == case.package.name]
+    for name in case.spec.nodes:
         found = [node for node in launch.nodes if node.name == name]
         if not found:
-            yield _missing(package, spec, model, launch, name)
+            yield _missing(case.package, launch, name, others)
         for node in found[:1]:
-            yield from _can_start(package, model, node, name)
-    for node in launch.nodes:
-        if node.name not in spec.nodes and node.package == package.name:
-            yield from _can_start(package, model, node)
+            yield from _can_start(case, node, name)
+    for node in others:
+        yield from _can_start(case, node)
 
 
-def _missing(package: Package, spec: Spec, model: Model, launch: Launch, name: str) -> Finding:
-    """Return the Finding about a node that the launch file does not start."""
-    spare = [n for n in launch.nodes if n.name not in spec.nodes and n.package == package.name]
+def _missing(package: Package, launch: Launch, name: str, spare: list[Started]) -> Finding:
+    """Return the Finding about a node that the launch file does not start.
+
+    spare: what it starts of the package, and is no node of the spec
+    """
     # What is started by another name has, most of all, the executable of that name.
     near = [n for n in spare if os.path.splitext(n.type)[0] == name]
     near = near or [n for n in spare if nearest(name, [n.name], 0.8)]
@@ -78,10 +82,9 @@ def _executables(package: Package, model: Model) -> set[str]:
     return names
 
 
-def _can_start(
-    package: Package, model: Model, node: Started, spec_node: str | None = None
-) -> Iterator[Finding]:
+def _can_start(case: Case, node: Started, spec_node: str | None = None) -> Iterator[Finding]:
     """Yield a finding if roslaunch cannot find what a <node> names."""
+    package, model = case.package, case.model
     if node.package != package.name:
         if spec_node and not uses.is_ros_package(node.package):
             yield _other_package(package, model, node, spec_node)
@@ -154,11 +157,6 @@ def _source_of(package: Package, model: Model, name: str) -> str | None:
 def _targets_line(model: Model) -> int:
     lines = [target.line for target in model.targets.values() if target.file == "CMakeLists.txt"]
     return max(lines) if lines else model.catkin_package.line if model.catkin_package else 1
-
-
-def _findings(case: Case) -> Iterator[Finding]:
-    if case.launch and not case.launch.error:
-        yield from findings(case.package, case.spec, case.model, case.launch)
 
 
 RULE = Rule(

@@ -3,21 +3,20 @@
 
 from __future__ import annotations
 
-from typing import Iterable, Iterator
-
-from catkin_pkg.package import Package as Manifest
+from typing import Iterator
 
 from mrp_check import evidence
 from mrp_check.case import Case
 from mrp_check.contract.finding import Finding
 from mrp_check.contract.requirements import Requirement, Rule
 from mrp_check.student.manifest import FILE
-from mrp_check.student.package import Package
 
 
-def findings(package: Package, manifest: Manifest) -> Iterator[Finding]:
-    """Yield findings about a manifest that catkin_pkg can read."""
-    if "catkin" not in {d.name for d in manifest.buildtool_depends}:
+def _findings(case: Case) -> Iterator[Finding]:
+    package, (manifest, problem) = case.package, case.manifest
+    if problem:
+        yield problem
+    if manifest and "catkin" not in {d.name for d in manifest.buildtool_depends}:
         yield Finding(
             "manifest",
             "package.xml does not say that the package is built with catkin.",
@@ -28,11 +27,6 @@ def findings(package: Package, manifest: Manifest) -> Iterator[Finding]:
             seen=", ".join(d.name for d in manifest.buildtool_depends) or "no buildtool_depend",
             fix="Add the line <buildtool_depend>catkin</buildtool_depend>.",
         )
-
-
-def _findings(case: Case) -> Iterable[Finding]:
-    parsed, problem = case.manifest
-    return [problem] if problem else findings(case.package, parsed)
 
 
 RULE = Rule(

@@ -21,12 +21,8 @@ class Messages(PythonRule):
 
     def unknown_fields(self) -> Iterator[Finding]:
         for key, class_ in self._messages().items():
-            for node in ast.walk(self.source.tree):
-                if (
-                    isinstance(node, ast.Attribute)
-                    and self.source.key(node.value) == key
-                    and not hasattr(class_, node.attr)
-                ):
+            for node in self.source.nodes(ast.Attribute):
+                if self.source.key(node.value) == key and not hasattr(class_, node.attr):
                     near = nearest(node.attr, class_.__slots__)
                     hint = perhaps(near)
                     if not near and len(class_.__slots__) == 1:
@@ -68,22 +64,14 @@ class Messages(PythonRule):
     def _called(self, function: Function) -> bool:
         """Return whether a function is called, or handed over, in more than one place."""
         name = getattr(function, "name", None)
-        uses_ = [
-            n
-            for n in ast.walk(self.source.tree)
-            if isinstance(n, ast.Name)
-            and n.id == name
-            and isinstance(n.ctx, ast.Load)
-            or isinstance(n, ast.Attribute)
-            and n.attr == name
-        ]
-        return name is not None and len(uses_) > 1
+        loaded = (n for n in self.source.nodes(ast.Name) if isinstance(n.ctx, ast.Load))
+        names = [n.id for n in loaded] + [n.attr for n in self.source.nodes(ast.Attribute)]
+        return name is not None and names.count(name) > 1
 
     def unknown_arguments(self) -> Iterator[Finding]:
-        for node in ast.walk(self.source.tree):
-            if isinstance(node, ast.Call):
-                class_ = self.message_class(node.func)
-                yield from self._arguments(node, class_) if class_ is not None else ()
+        for node in self.source.nodes(ast.Call):
+            class_ = self.message_class(node.func)
+            yield from self._arguments(node, class_) if class_ is not None else ()
 
     def _arguments(self, node: ast.Call, class_: MessageClass) -> Iterator[Finding]:
         for keyword in node.keywords:

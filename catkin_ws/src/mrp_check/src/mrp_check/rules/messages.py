@@ -3,14 +3,15 @@
 
 from __future__ import annotations
 
-from typing import Iterator, Mapping, Sequence
+from typing import Iterator, Mapping
 
 from catkin_pkg.package import Package as Manifest
 
 from mrp_check import evidence
+from mrp_check.case import Case
 from mrp_check.contract.finding import ERROR, WARNING, Finding
 from mrp_check.contract.requirements import Requirement, Rule
-from mrp_check.contract.spec import PACKAGE, Spec
+from mrp_check.contract.spec import PACKAGE
 from mrp_check.contract.words import nearest
 from mrp_check.sources import uses
 from mrp_check.student.cmake import Model, Target
@@ -20,23 +21,22 @@ from mrp_check.student.package import Package
 FILE = "CMakeLists.txt"
 
 
-def findings(
-    package: Package, spec: Spec, model: Model, manifest: Manifest | None
-) -> Iterator[Finding]:
-    """Yield findings about the messages of the package itself."""
-    files = [path for path in package.of_kind("message") if path.count("/") <= 1]
-    for name, fields in spec.messages.items():
+def _findings(case: Case) -> Iterator[Finding]:
+    package, model, (manifest, _) = case.package, case.model, case.manifest
+    for name, fields in case.spec.messages.items():
         yield from _definition(package, name, fields)
+    files = [path for path in package.of_kind("message") if path.count("/") <= 1]
     if not files and not model.message_files or not model.complete and model.catkin is None:
         return
-    yield from _in_cmake(spec, model, files)
-    if manifest is not None:
+    yield from _in_cmake(case, files)
+    if manifest:
         yield from _in_manifest(package, manifest)
     yield from _order(package, model)
 
 
-def _in_cmake(spec: Spec, model: Model, files: Sequence[str]) -> Iterator[Finding]:
+def _in_cmake(case: Case, files: list[str]) -> Iterator[Finding]:
     """Yield a finding for each call of CMakeLists.txt that lacks, or lacks something."""
+    model, own = case.model, case.spec.messages
     catkin_line, call = model.catkin.line if model.catkin else 1, model.add_message_files
     brings = {"message_generation", "genmsg"}  # the first is all of it; the second builds, too
     if not brings & {*model.components} and files and model.catkin:
@@ -49,7 +49,7 @@ def _in_cmake(spec: Spec, model: Model, files: Sequence[str]) -> Iterator[Findin
         )
     for path in files:
         file = path.rsplit("/", 1)[-1]
-        if path not in model.message_files and (not spec.messages or file[:-4] in spec.messages):
+        if path not in model.message_files and (not own or file[:-4] in own):
             yield _message_finding(
                 f"{path} is not named in add_message_files(): no code is made of it.",
                 call.line if call else catkin_line,
@@ -174,7 +174,7 @@ RULE = Rule(
     stage="files",
     order=60,
     needs=("manifest", "model"),
-    findings=lambda case: findings(case.package, case.spec, case.model, case.manifest[0]),
+    findings=_findings,
     requirements={
         "messages": Requirement(
             "The package's own messages are generated", "message_types", evidence.cmake

@@ -14,10 +14,8 @@ from mrp_check.sources.python_rule import PythonRule, ast_text, of_sources
 
 class NotCalled(PythonRule):
     def findings(self) -> Iterator[Finding]:
-        for node in ast.walk(self.source.tree):
-            if not isinstance(node, ast.Expr) or not isinstance(
-                node.value, (ast.Attribute, ast.Name)
-            ):
+        for node in self.source.nodes(ast.Expr):
+            if not isinstance(node.value, (ast.Attribute, ast.Name)):
                 continue
             name = self.source.dotted(node.value)
             own = self.source.definition(node.value)

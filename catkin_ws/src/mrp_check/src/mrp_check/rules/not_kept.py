@@ -13,19 +13,19 @@ from mrp_check.sources.python_rule import PythonRule, of_sources
 
 class NotKept(PythonRule):
     def findings(self) -> Iterator[Finding]:
-        for node in ast.walk(self.source.tree):
-            if isinstance(node, ast.Expr) and isinstance(node.value, ast.Call):
-                name = self.source.dotted(node.value.func)
-                if name in ("rospy.Timer", "rospy.Subscriber"):
-                    yield self.finding(
-                        "lifetime",
-                        f"What {name}() returns is not kept. rospy keeps it going all the same; but"
-                        " nothing can stop it.",
-                        node,
-                        severity=NOTE,
-                        expected="a member, such as self.timer or self.subscriber",
-                        fix="Keep it as a member.",
-                    )
+        for node in self.source.nodes(ast.Expr):
+            call = node.value
+            name = self.source.dotted(call.func) if isinstance(call, ast.Call) else None
+            if name in ("rospy.Timer", "rospy.Subscriber"):
+                yield self.finding(
+                    "lifetime",
+                    f"What {name}() returns is not kept. rospy keeps it going all the same; but"
+                    " nothing can stop it.",
+                    node,
+                    severity=NOTE,
+                    expected="a member, such as self.timer or self.subscriber",
+                    fix="Keep it as a member.",
+                )
 
 
 RULE = Rule("static", 25, ("facts",), of_sources(NotKept), also=("lifetime",))

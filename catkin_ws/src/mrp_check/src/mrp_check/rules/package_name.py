@@ -4,22 +4,20 @@
 from __future__ import annotations
 
 import collections
-from typing import Iterable, Iterator
+from typing import Iterator
 
 from mrp_check import evidence
 from mrp_check.case import Case
 from mrp_check.contract.finding import Finding
 from mrp_check.contract.requirements import Requirement, Rule
-from mrp_check.student.cmake import Model
-from mrp_check.student.launch import Launch
-from mrp_check.student.package import Package
 
 
-def findings(package: Package, model: Model, launch: Launch | None) -> Iterator[Finding]:
+def _findings(case: Case) -> Iterator[Finding]:
     """Yield a finding if package.xml and CMakeLists.txt disagree; the others say who is right."""
-    if model.project is None:
+    package, launch = case.package, case.launch
+    if case.manifest[0] is None or case.model.project is None:
         return
-    project, call = model.project
+    project, call = case.model.project
     if project == package.name or "$" in project:
         return
     votes = collections.Counter([package.root.resolve().name])
@@ -42,10 +40,6 @@ def findings(package: Package, model: Model, launch: Launch | None) -> Iterator[
         fix=f"Write {expected}.",
         change=(wrong, right),
     )
-
-
-def _findings(case: Case) -> Iterable[Finding]:
-    return findings(case.package, case.model, case.launch) if case.manifest[0] else ()
 
 
 RULE = Rule(

@@ -159,13 +159,9 @@ class Names(PythonRule):
 
     def _members(self) -> set[str]:
         """Return the names that stand behind self, and those of methods."""
-        source, found = self.source, set()
-        for node in ast.walk(source.tree):
-            if isinstance(node, ast.Attribute) and getattr(node.value, "id", None) == "self":
-                found.add(node.attr)
-            elif isinstance(node, ast.FunctionDef) and source.class_(node):
-                found.add(node.name)
-        return found
+        source = self.source
+        behind = {n.attr for n in source.nodes(ast.Attribute) if _is_self(n.value)}
+        return behind | {n.name for n in source.nodes(ast.FunctionDef) if source.class_(n)}
 
     def _meant(self, name: str, members: Collection[str]) -> tuple[str, str]:
         """Return what may be meant by a name that nothing has, and what to do."""
@@ -177,21 +173,15 @@ class Names(PythonRule):
             line = f"from std_msgs.msg import {name}"
             return f" The import of {name} is missing.", f"Add the line: {line}"
         names = {*self.source.imports, "print", "range", "str", "int", "len", "True", "False"}
-        for node in ast.walk(self.source.tree):
-            if isinstance(node, ast.Name) and node.id != name:
-                names.add(node.id)
-            elif isinstance(node, (ast.FunctionDef, ast.ClassDef)):
-                names.add(node.name)
+        names |= {node.id for node in self.source.nodes(ast.Name)} - {name}
+        names |= {node.name for node in self.source.nodes(ast.FunctionDef)}
+        names |= {node.name for node in self.source.nodes(ast.ClassDef)}
         return perhaps(nearest(name, names)), "Correct the name, or define it before it is used."
 
     def _no_self(self, message: messages.Message) -> Finding:
         """Return the finding about a method without self: its def line is to blame."""
-        around = [
-            node
-            for node in ast.walk(self.source.tree)
-            if isinstance(node, ast.FunctionDef)
-            and node.lineno <= message.lineno <= last_line(node)
-        ]
+        methods = self.source.nodes(ast.FunctionDef)
+        around = [one for one in methods if one.lineno <= message.lineno <= last_line(one)]
         method = max(around, key=lambda node: node.lineno, default=None)
         return self.finding(
             "python-names",
@@ -204,10 +194,8 @@ class Names(PythonRule):
 
     def attributes(self) -> Iterator[Finding]:
         """Names of ROS's own modules that do not exist, such as rospy.spln."""
-        for node in ast.walk(self.source.tree):
-            if not isinstance(node, ast.Attribute) or isinstance(
-                self.source.parents.get(node), ast.Attribute
-            ):
+        for node in self.source.nodes(ast.Attribute):
+            if isinstance(self.source.parents.get(node), ast.Attribute):
                 continue
             name = self.source.dotted(node)
             if not name or not is_ros(name) or self.is_own(name):
@@ -230,10 +218,12 @@ class Names(PythonRule):
 
     def own_attributes(self) -> Iterator[Finding]:
         """self.NAME that no method ever sets."""
-        for class_ in ast.walk(self.source.tree):
-            if not isinstance(class_, ast.ClassDef) or class_.keywords or class_.decorator_list:
-                continue
-            if any(not isinstance(b, ast.Name) or b.id != "object" for b in class_.bases):
+        for class_ in self.source.nodes(ast.ClassDef):
+            if (
+                class_.keywords
+                or class_.decorator_list
+                or any(not isinstance(b, ast.Name) or b.id != "object" for b in class_.bases)
+            ):
                 continue
             inside = list(ast.walk(class_))
             if any(
@@ -251,11 +241,8 @@ class Names(PythonRule):
     def _of_class(self, class_: ast.ClassDef, inside: Sequence[ast.AST]) -> Iterator[Finding]:
         known = set(dir(object)) | {"__dict__", "__class__", "__name__", "__module__"}
         # Whoever sets an attribute of any object may set it of this one.
-        known |= {
-            n.attr
-            for n in ast.walk(self.source.tree)
-            if isinstance(n, ast.Attribute) and isinstance(n.ctx, ast.Store)
-        }
+        given = (n for n in self.source.nodes(ast.Attribute) if isinstance(n.ctx, ast.Store))
+        known |= {n.attr for n in given}
         for statement in class_.body:
             if isinstance(statement, (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)):
                 known.add(statement.name)
@@ -264,14 +251,14 @@ class Names(PythonRule):
                     known.add(one.id)
         said = set()
         for node in inside:
-            if not (
-                isinstance(node, ast.Attribute)
-                and isinstance(node.value, ast.Name)
-                and node.value.id == "self"
-                and isinstance(node.ctx, ast.Load)
-            ):
+            if not isinstance(node, ast.Attribute) or not isinstance(node.ctx, ast.Load):
                 continue
-            if node.attr in known or node.attr in said or self.source.class_(node) is not class_:
+            if (
+                not _is_self(node.value)
+                or node.attr in known
+                or node.attr in said
+                or self.source.class_(node) is not class_
+            ):
                 continue
             if self.source.is_guarded(node, "AttributeError"):
                 continue
@@ -285,6 +272,10 @@ class Names(PythonRule):
                 expected="a member that is set, or a method that is defined",
                 fix=f"Write {near}." if near else f"Set self.{node.attr} in __init__.",
             )
+
+
+def _is_self(node: ast.expr) -> bool:
+    return isinstance(node, ast.Name) and node.id == "self"
 
 
 def _self_first(method: ast.FunctionDef) -> Change:

@@ -20,9 +20,7 @@ from mrp_check.sources.python_text import UNKNOWN
 
 class Calls(PythonRule):
     def findings(self) -> Iterator[Finding]:
-        for node in ast.walk(self.source.tree):
-            if not isinstance(node, ast.Call):
-                continue
+        for node in self.source.nodes(ast.Call):
             name = self.source.dotted(node.func)
             if name and name.startswith("rospy.") and not self.is_own("rospy"):
                 yield from self._call(node, name)
@@ -116,7 +114,7 @@ class Calls(PythonRule):
                 )
 
     def _callback_added(self, parent: ast.AST | None) -> bool:
-        names = {n.attr for n in ast.walk(self.source.tree) if isinstance(n, ast.Attribute)}
+        names = {n.attr for n in self.source.nodes(ast.Attribute)}
         return bool(names & {"add_callback", "registerCallback"}) or not isinstance(
             parent, (ast.Assign, ast.Expr)
         )

@@ -9,11 +9,11 @@ import functools
 import os
 import shutil
 import subprocess
-from typing import Iterator, Mapping
+from typing import Iterator
 
 from mrp_check import evidence
 from mrp_check.building.catkin import search_path
-from mrp_check.confined.launch_dump import Started
+from mrp_check.case import Case
 from mrp_check.contract.finding import ERROR, NOTE, Finding
 from mrp_check.contract.requirements import Requirement, Rule
 from mrp_check.contract.words import nearest, perhaps
@@ -37,18 +37,15 @@ def names_no_program(shebang: str) -> str | None:
     return None if os.access(words[0], os.X_OK) and os.path.isfile(words[0]) else words[0]
 
 
-def findings(package: Package, model: Model, started: Mapping[str, Started]) -> Iterator[Finding]:
-    """Yield findings about the scripts.
-
-    started: file -> the launch.Started node that it is, for the scripts that the launch file starts
-    """
+def _findings(case: Case) -> Iterator[Finding]:
+    package, model = case.package, case.model
     relayed = {s.path for s in model.scripts if s.by == "catkin_install_python"}
     yield from _listed(package, model)
     for path in package.of_kind("python"):
         if is_test(path) or path == "setup.py":
             continue
         shebang = package.shebang(path) or ""
-        is_node = path in started or path in {s.path for s in model.scripts}
+        is_node = path in case.started or path in {s.path for s in model.scripts}
         if is_node or shebang and _is_node(package, path):
             yield from _of(package, model, path, shebang, path in relayed)
             yield from _shadowing(path)
@@ -206,7 +203,7 @@ RULE = Rule(
     stage="files",
     order=70,
     needs=("model", "launch"),
-    findings=lambda case: findings(case.package, case.model, case.started),
+    findings=_findings,
     requirements={
         "scripts": Requirement(
             "Each script is there, executable, and can be started",

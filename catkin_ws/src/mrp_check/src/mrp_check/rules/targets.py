@@ -6,18 +6,16 @@ from __future__ import annotations
 from typing import Iterator
 
 from mrp_check import evidence
+from mrp_check.case import Case
 from mrp_check.contract.finding import Finding
 from mrp_check.contract.requirements import Requirement, Rule
 from mrp_check.contract.words import nearest, perhaps
-from mrp_check.student.cmake import Model
-from mrp_check.student.package import Package
 
 
-def findings(package: Package, model: Model) -> Iterator[Finding]:
-    """Yield a finding for each source that CMakeLists.txt names and that is not there."""
-    for target in model.targets.values():
+def _findings(case: Case) -> Iterator[Finding]:
+    for target in case.model.targets.values():
         for source, file, line in target.missing:
-            near = nearest(source, package.of_kind("cpp"))
+            near = nearest(source, case.package.of_kind("cpp"))
             yield Finding(
                 "targets",
                 f"The target {target.name} is made of {source}, and there is no such file."
@@ -34,7 +32,7 @@ RULE = Rule(
     stage="files",
     order=50,
     needs=("model",),
-    findings=lambda case: findings(case.package, case.model),
+    findings=_findings,
     requirements={
         "targets": Requirement(
             "Each executable is built of its own sources",

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import codecs
 import re
-from typing import Collection, Iterator
+from typing import Iterator
 
 from mrp_check import evidence
 from mrp_check.case import Case
@@ -17,8 +17,9 @@ _TEXT = ("python", "cpp", "header", "launch", "message", "cmake")
 _CODING = re.compile(rb"^[ \t\f]*#.*?coding[:=][ \t]*([-\w.]+)")
 
 
-def findings(package: Package, relayed: Collection[str]) -> Iterator[Finding]:
-    """Yield findings about bytes; relayed: the scripts that catkin_install_python starts."""
+def _findings(case: Case) -> Iterator[Finding]:
+    package = case.package
+    relayed = {s.path for s in case.model.scripts if s.by == "catkin_install_python"}
     for path in package.files:
         kind = package.kind(path)
         if kind in _TEXT or path == "package.xml":
@@ -105,11 +106,6 @@ def _encoding(data: bytes, path: str, kind: str, relayed: bool) -> Iterator[Find
         seen=f"the byte {byte:02X}, perhaps of a letter such as ä or é in Latin-1",
         fix="Save the file with the encoding UTF-8.",
     )
-
-
-def _findings(case: Case) -> Iterator[Finding]:
-    relayed = {s.path for s in case.model.scripts if s.by == "catkin_install_python"}
-    return findings(case.package, relayed)
 
 
 RULE = Rule(

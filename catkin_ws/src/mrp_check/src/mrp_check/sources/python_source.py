@@ -4,10 +4,11 @@
 from __future__ import annotations
 
 import ast
+import functools
 import importlib
 import operator
 import warnings
-from typing import Any, Callable, Iterator, Optional, Tuple, Union
+from typing import Any, Callable, Iterator, Optional, Tuple, TypeVar, Union
 
 from mrp_check.contract.finding import Finding
 from mrp_check.sources import uses
@@ -25,8 +26,9 @@ _OPERATORS: dict[type[ast.operator], Callable[[Any, Any], object]] = {
     ast.Pow: operator.pow,
     ast.LShift: operator.lshift,
 }
+_FUNCTIONS = (ast.FunctionDef, ast.AsyncFunctionDef, ast.Lambda)
 
-
+T = TypeVar("T", bound=ast.AST)
 Function = Union[ast.FunctionDef, ast.Lambda]
 Defined = Union[Function, ast.ClassDef]
 Stored = Optional[ast.AST]  # what is given to a variable; None if that is not plain
@@ -135,6 +137,10 @@ class Source:
 
     # Where something stands.
 
+    def nodes(self, kind: type[T]) -> Iterator[T]:
+        """Yield all nodes of a kind, those on top first."""
+        return (node for node in ast.walk(self.tree) if isinstance(node, kind))
+
     def above(self, node: ast.AST) -> Iterator[ast.AST]:
         """Yield the node's parents, the nearest first."""
         while node in self.parents:
@@ -143,42 +149,25 @@ class Source:
 
     def scope(self, node: ast.AST) -> ast.AST:
         """Return the function, lambda, class or module in which the node stands."""
-        for parent in self.above(node):
-            if isinstance(
-                parent,
-                (ast.FunctionDef, ast.AsyncFunctionDef, ast.Lambda, ast.ClassDef, ast.Module),
-            ):
-                return parent
-        return self.tree
+        kinds = (*_FUNCTIONS, ast.ClassDef)
+        return next((one for one in self.above(node) if isinstance(one, kinds)), self.tree)
 
     def function(self, node: ast.AST) -> ast.AST:
         """Return the function in which the node stands, or the module."""
-        for parent in self.above(node):
-            if isinstance(parent, (ast.FunctionDef, ast.AsyncFunctionDef, ast.Lambda, ast.Module)):
-                return parent
-        return self.tree
+        return next((one for one in self.above(node) if isinstance(one, _FUNCTIONS)), self.tree)
 
     def class_(self, node: ast.AST) -> ast.ClassDef | None:
         """Return the class of the method in which the node stands, or None."""
-        for parent in self.above(node):
-            if isinstance(parent, ast.ClassDef):
-                return parent
-        return None
+        return next((one for one in self.above(node) if isinstance(one, ast.ClassDef)), None)
 
     def is_guarded(self, node: ast.AST, *errors: str) -> bool:
         """Return whether the node stands in the body of a `try` that catches one of the errors."""
-        child = node
+        caught, child = {"Exception", "BaseException", *errors}, node
         for parent in self.above(node):
             if isinstance(parent, ast.Try) and child in parent.body:
                 for handler in parent.handlers:
-                    names = (
-                        []
-                        if handler.type is None
-                        else [
-                            name.id for name in ast.walk(handler.type) if isinstance(name, ast.Name)
-                        ]
-                    )
-                    if handler.type is None or {"Exception", "BaseException", *errors} & {*names}:
+                    named = ast.walk(handler.type) if handler.type else ()
+                    if handler.type is None or caught & {getattr(one, "id", "") for one in named}:
                         return True
             child = parent
         return False
@@ -206,22 +195,20 @@ class Source:
             function = self.function(function)
         return self.tree
 
-    @property
+    @functools.cached_property
     def _bindings(self) -> set[Variable]:
-        if not hasattr(self, "_bound"):
-            self._bound: set[Variable] = set()
-            for node in ast.walk(self.tree):
-                if isinstance(node, ast.Name) and isinstance(node.ctx, (ast.Store, ast.Del)):
-                    self._bound.add((self.function(node), node.id))
-                elif isinstance(node, ast.arg):
-                    self._bound.add((self.function(node), node.arg))
-                elif isinstance(node, (ast.FunctionDef, ast.ClassDef)):
-                    self._bound.add((self.function(node), node.name))
-            for node in ast.walk(self.tree):
-                if isinstance(node, (ast.Global, ast.Nonlocal)):
-                    for name in node.names:
-                        self._bound.discard((self.function(node), name))
-        return self._bound
+        bound: set[Variable] = set()
+        declared: set[Variable] = set()
+        for node in ast.walk(self.tree):
+            if isinstance(node, ast.Name) and isinstance(node.ctx, (ast.Store, ast.Del)):
+                bound.add((self.function(node), node.id))
+            elif isinstance(node, ast.arg):
+                bound.add((self.function(node), node.arg))
+            elif isinstance(node, (ast.FunctionDef, ast.ClassDef)):
+                bound.add((self.function(node), node.name))
+            elif isinstance(node, (ast.Global, ast.Nonlocal)):
+                declared |= {(self.function(node), name) for name in node.names}
+        return bound - declared
 
     def stored(self, key: Variable | None) -> list[Stored]:
         """Return all values that are given to a variable; None stands for one that is not plain."""

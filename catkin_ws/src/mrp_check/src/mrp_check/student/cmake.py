@@ -13,7 +13,7 @@ import os
 import pathlib
 import re
 import typing
-from typing import Collection, Iterable, Mapping, Sequence, Tuple
+from typing import Collection, Iterable, Mapping
 
 from mrp_check.confined import written
 
@@ -77,75 +77,49 @@ def relative(path: str | pathlib.Path, folder: pathlib.Path) -> str | None:
         return None
 
 
-_Token = Tuple[str, int, bool]  # its text, its line, whether it is a parenthesis
+# Each part of a CMake file, by the group that it matches: a call begins with its name.
 _TOKEN = re.compile(
-    r"#\[(?P<eq>=*)\[.*?\](?P=eq)\]|#[^\n]*|\[(?P<eq2>=*)\[(?P<bracket>.*?)\](?P=eq2)\]"
-    r'|"(?P<quoted>(?:[^"\\]|\\.)*)"|(?P<paren>[()])|(?P<word>[^\s()"#]+)',
+    r"#\[(?P<comment>=*)\[.*?\](?P=comment)\]|#[^\n]*|\[(?P<eq>=*)\[(?P<bracket>.*?)\](?P=eq)\]"
+    r'|"(?P<quoted>(?:[^"\\]|\\.)*)"|(?P<call>\w+)\s*\(|(?P<paren>[()])|(?P<word>[^\s()"#]+)',
     re.DOTALL,
 )
 
 
 def parsed(text: str, file: str) -> list[Call]:
-    """Return the Calls in a CMake file's text, as far as it can be read, with set() alone."""
-    calls, tokens = [], []
+    """Return the Calls in a CMake file's text, as far as it can be read, with set() alone.
+
+    catkin_lint's own reader says nothing at all of a file in which a parenthesis is missing.
+    """
+    calls: list[Call] = []
     variables: dict[str, str] = {}
-    for match in _TOKEN.finditer(text):
-        line = text.count("\n", 0, match.start()) + 1
-        if match.group("paren"):
-            tokens.append((match.group("paren"), line, True))
-        elif match.group("word") is not None:
-            tokens.append((match.group("word"), line, False))
-        elif match.group("quoted") is not None or match.group("bracket") is not None:
-            tokens.append((match.group("quoted") or match.group("bracket") or "", line, False))
-    index = 0
-    while index + 1 < len(tokens):
-        (name, line, is_paren), (after, _, _) = tokens[index], tokens[index + 1]
-        if is_paren or after != "(" or not re.fullmatch(r"\w+", name):
-            index += 1
+    depth = 0
+    for token in _TOKEN.finditer(text):
+        kind, line = token.lastgroup, text.count("\n", 0, token.start()) + 1
+        if kind in (None, "comment"):
             continue
-        index, depth, arguments = index + 2, 1, []
-        while index < len(tokens) and depth:
-            word, _, paren = tokens[index]
-            # A call whose parenthesis is missing ends where the next line begins with a call.
-            if not paren and _begins_call(tokens, index, line):
-                break
-            depth += {"(": 1, ")": -1}.get(word, 0) if paren else 0
-            if not paren:
-                arguments.append(word)
-            index += 1
-        arguments = [part for a in arguments for part in _expanded(a, variables).split(";") if part]
-        calls.append(Call(name.lower(), arguments, file, line))
-        if name.lower() == "set" and arguments:
+        word = token[kind]
+        # A call whose parenthesis is missing ends where a line below it begins with a call.
+        if kind == "call" and (not depth or line > calls[-1].line and word.lower() in _CALLS):
+            calls.append(Call(word.lower(), [], file, line))
+            depth = 1
+        elif depth:
+            depth += {"call": 1, "paren": 1 if word == "(" else -1}.get(kind, 0)
+            calls[-1].arguments.extend([word] if kind != "paren" else [])
+    for command, arguments, *_ in calls:
+        words = [_expanded(word, variables) for word in arguments]
+        arguments[:] = [part for word in words for part in word.split(";") if part]
+        if command == "set" and arguments:
             variables[arguments[0]] = ";".join(arguments[1:])
-        if name.lower() == "project" and arguments:
+        if command == "project" and arguments:
             variables["PROJECT_NAME"] = arguments[0]
     return calls
 
 
-START = ""
-_KNOWN = {
-    "add_executable",
-    "target_link_libraries",
-    "catkin_package",
-    "find_package",
-    "install",
-    "project",
-    "catkin_install_python",
-    "include_directories",
-    "add_dependencies",
-    "add_message_files",
-    "generate_messages",
-}
-
-
-def _begins_call(tokens: Sequence[_Token], index: int, line: int) -> bool:
-    word, number, _ = tokens[index]
-    after = tokens[index + 1] if index + 1 < len(tokens) else ("", 0, False)
-    return number > line and after[2] and after[0] == "(" and word.lower() in _KNOWN
-
-
 def _expanded(text: str, variables: Mapping[str, str]) -> str:
     return re.sub(r"\$\{(\w+)\}", lambda m: variables.get(m.group(1), m.group(0)), text)
+
+
+START = ""
 
 
 def sections(arguments: Iterable[str], names: Collection[str]) -> dict[str, list[str]]:
@@ -160,6 +134,14 @@ def sections(arguments: Iterable[str], names: Collection[str]) -> dict[str, list
         else:
             result[current].append(argument)
     return result
+
+
+# What stands among the sources of a target, and is none.
+_NO_SOURCES = set(
+    (
+        "WIN32 MACOSX_BUNDLE EXCLUDE_FROM_ALL STATIC SHARED MODULE OBJECT INTERFACE PUBLIC PRIVATE"
+    ).split()
+)
 
 
 class Model:
@@ -260,23 +242,11 @@ class Model:
             return
         target = Target(name, call.file, call.line, is_library)
         self.targets[name] = target
-        words = {
-            "WIN32",
-            "MACOSX_BUNDLE",
-            "EXCLUDE_FROM_ALL",
-            "STATIC",
-            "SHARED",
-            "MODULE",
-            "OBJECT",
-            "INTERFACE",
-            "PUBLIC",
-            "PRIVATE",
-        }
-        self._sources(target, [source for source in sources if source not in words], call)
+        self._sources(target, sources, call)
 
     def _sources(self, target: Target, sources: Iterable[str], call: Call) -> None:
         for source in sources:
-            if "$" in source:
+            if "$" in source or source in _NO_SOURCES:
                 continue
             path = self.path(source, call)
             if path is None or not (self.folder / path).exists():
@@ -290,8 +260,7 @@ class Model:
     def _target_sources(self, call: Call) -> None:
         target = self.targets.get(call.arguments[0])
         if target:
-            rest = [a for a in call.arguments[1:] if a not in ("PUBLIC", "PRIVATE", "INTERFACE")]
-            self._sources(target, rest, call)
+            self._sources(target, call.arguments[1:], call)
 
     def _target_link_libraries(self, call: Call) -> None:
         target = self.targets.get(call.arguments[0])
@@ -312,20 +281,18 @@ class Model:
                     self.targets[name].output = output
 
     def _catkin_install_python(self, call: Call) -> None:
-        programs = sections(call.arguments, {"PROGRAMS", "DESTINATION", "OPTIONAL"})
-        for path in programs.get("PROGRAMS", []):
-            self.scripts.append(
-                Script(self.path(path, call) or path, call.file, call.line, "catkin_install_python")
-            )
+        self._scripts(call, {"PROGRAMS", "DESTINATION", "OPTIONAL"})
 
     def _install(self, call: Call) -> None:
         self.installs.append(call)
         if call.arguments[0] == "PROGRAMS":
             names = {"PROGRAMS", "DESTINATION", "OPTIONAL", "PERMISSIONS", "RENAME", "COMPONENT"}
-            for path in sections(call.arguments, names)["PROGRAMS"]:
-                self.scripts.append(
-                    Script(self.path(path, call) or path, call.file, call.line, "install")
-                )
+            self._scripts(call, names)
+
+    def _scripts(self, call: Call, names: Collection[str]) -> None:
+        for path in sections(call.arguments, names).get("PROGRAMS", []):
+            script = self.path(path, call) or path
+            self.scripts.append(Script(script, call.file, call.line, call.command))
 
     def _add_message_files(self, call: Call) -> None:
         self.add_message_files = self.add_message_files or call
@@ -357,3 +324,4 @@ _UNDERSTOOD = {
     "generate_messages": Model._generate_messages,
 }
 _MAY_BE_EMPTY = {"catkin_package", "generate_messages"}
+_CALLS = {*_UNDERSTOOD, "include_directories"}

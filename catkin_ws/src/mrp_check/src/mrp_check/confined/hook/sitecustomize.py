@@ -19,6 +19,7 @@ On SIGUSR1 it prints where each thread stands.
 import ctypes
 import faulthandler
 import fractions
+import functools
 import importlib.abc
 import importlib.util
 import itertools
@@ -316,7 +317,7 @@ def _slots(frames: List[types.FrameType]) -> Iterator["_Slot"]:
         seen.add(id(frame.f_globals))
         for name, held in list(frame.f_globals.items()):
             if not name.startswith("__"):
-                put = _item_setter(frame.f_globals, name)
+                put = functools.partial(frame.f_globals.__setitem__, name)
                 yield from _slots_of(held, ("global", name), name, put, seen, 0)
 
 
@@ -337,7 +338,7 @@ def _slots_of(
             seen.add(id(held))
             items = list(held.items() if isinstance(held, dict) else enumerate(held))
             for index, one in items:
-                setter = _item_setter(held, index)
+                setter = functools.partial(held.__setitem__, index)
                 yield from _slots_of(one, (*key, index), name, setter, seen, depth + 1)
         return
     names = list(getattr(held, "__dict__", None) or ()) if _is_of_package(held) else []
@@ -358,7 +359,7 @@ def _slots_of(
             continue
         # An attribute of the class is set there: all its objects share it.
         owner = held if isinstance(held, type) or attribute in _own_names(held) else type(held)
-        setter = _attribute_setter(owner, attribute)
+        setter = functools.partial(setattr, owner, attribute)
         yield from _slots_of(one, (*key, attribute), attribute, setter, seen, depth + 1)
 
 
@@ -373,14 +374,6 @@ def _is_of_package(held: Any) -> bool:
     path = os.path.realpath(getattr(module, "__file__", None) or "")
     # What catkin's relay runs calls itself __main__, but lies elsewhere.
     return path.startswith(_SOURCES) or kind.__module__ in ("__main__", "builtins.__main__")
-
-
-def _item_setter(container: Any, index: object) -> Callable[[Any], None]:
-    return lambda value: container.__setitem__(index, value)
-
-
-def _attribute_setter(owner: Any, name: str) -> Callable[[Any], None]:
-    return lambda value: setattr(owner, name, value)
 
 
 def _local_setter(frame: types.FrameType, name: str) -> Callable[[Any], None]:
