@@ -171,6 +171,7 @@ docs-record: packages-test-all  ## do what the pages say, and record what they s
 
 .PHONY: test-browser
 test-browser: packages-test-browser $(BUILT_WHOLE) docs  ## open every page in Chromium and in Firefox
+	@catkin_ws/tools/install_others.sh
 	@rm -rf $(SCREENSHOTS)
 	@$(IN_WORKSPACE) $(ALONE) source devel/setup.bash; \
 	/usr/bin/python3 -m pytest --junit-xml=$(RESULTS)/browser.xml browser_tests

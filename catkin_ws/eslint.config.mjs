@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What `make lint` asks of the JavaScript; tools/lint.sh installs eslint into build/lint.
+// What `make lint` asks of the JavaScript; tools/install_others.sh installs eslint into build/lint.
 
 import { createRequire } from "node:module";
 
@@ -11,9 +11,12 @@ export default [
   js.configs.recommended,
   { languageOptions: { globals: browser } },
   {
-    // Sphinx makes this object; its pages load the file as a script.
+    // Sphinx makes the object, and its theme loads jQuery; its pages load the file as a script.
     files: ["**/doc/static/page.js"],
-    languageOptions: { sourceType: "script", globals: { DOCUMENTATION_OPTIONS: "readonly" } },
+    languageOptions: {
+      sourceType: "script",
+      globals: { DOCUMENTATION_OPTIONS: "readonly", jQuery: "readonly" },
+    },
   },
   {
     // Selenium runs the file as the body of a function.

@@ -5,7 +5,9 @@ import contextlib
 import pathlib
 
 from browser import SIZES
+from mrp_testing.workspace import WORKSPACE
 
+_AXE = WORKSPACE / "build" / "lint" / "node_modules" / "axe-core" / "axe.min.js"
 _CONTRAST = pathlib.Path(__file__).with_name("contrast.js").read_text()
 
 
@@ -80,3 +82,23 @@ def contrast(browser):
     """All visible text has a contrast of at least 4.5 to what is behind it, as WCAG asks."""
     with _all_shown(browser):
         return browser.run(_CONTRAST)
+
+
+def axe(browser):
+    """axe-core finds nothing. It need not measure contrasts: `contrast` does, in pictures too."""
+    with _all_shown(browser):
+        browser.run("if (!window.axe) {" + _AXE.read_text() + "}")
+        return browser.run(
+            """
+            // The page may answer first to all of it being shown.
+            const frame = () => new Promise(requestAnimationFrame);
+            const options = {
+              resultTypes: ["violations"],
+              rules: { "color-contrast": { enabled: false } },
+            };
+            return frame().then(frame).then(() => axe.run(options)).then(({ violations }) =>
+              violations.flatMap(({ id, nodes }) =>
+                nodes.map(({ html, failureSummary }) =>
+                  `${id}: ${html.slice(0, 200)}: ${failureSummary}`)));
+            """
+        )

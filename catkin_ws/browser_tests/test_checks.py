@@ -4,12 +4,17 @@
 import checks
 import pytest
 
-FINE = '<h1>A page</h1><p>With <a href="other.html">a link</a>.</p><img src="p.svg" alt="A line">'
+FINE = (
+    '<!DOCTYPE html><html lang="en"><meta name="viewport" content="width=device-width">'
+    '<title>A page</title><main><h1>A page</h1><p>With <a href="other.html">a link</a>.</p>'
+    '<img src="p.svg" alt="A line">'
+)
 TEXT = '<p style="color: {}; background: {}">Some text</p>'
 PROOF = (
     '<a class="proof" href="#a" aria-label="{}" '
     'style="display: block; width: {}px; height: 24px">&#10003;</a>'
 )
+SCROLLS = '<pre style="overflow: auto" {}>' + "long" * 50 + "</pre>"
 
 FAULTS = {
     "a script that throws": ("<script>undefinedFunction()</script>", "console"),
@@ -31,20 +36,26 @@ FAULTS = {
     ),
     "a word that is too long": ("<p>" + "long" * 50 + "</p>", "width"),
     "a table that is too wide": ('<table style="width: 600px"><tr><td>1</table>', "width"),
-    "an image without alt": ('<img src="p.svg">', "pictures"),
+    "an image without alt": ('<img src="p.svg">', "pictures axe"),
     "an image with an empty alt": ('<img src="p.svg" alt="">', "pictures"),
     "an image whose alt is its path": ('<img src="p.svg" alt="p.svg">', "pictures"),
     "an svg that says nothing": ("<svg><circle r='9'/></svg>", "pictures"),
     "an object that says nothing": (
         '<object data="p.svg" type="image/svg+xml"></object>',
-        "pictures",
+        "pictures axe",
     ),
-    "an empty label": ('<svg role="img" aria-label=""></svg>', "pictures"),
+    "an empty label": ('<svg role="img" aria-label=""></svg>', "pictures axe"),
     "a mark that is too small": (PROOF.format("Proof by the test test_a: It is.", 8), "proofs"),
     "a mark without a label": (PROOF.format("", 24), "proofs"),
     "grey on white": (TEXT.format("#777", "#fff"), "contrast"),
     "white on a light blue": (TEXT.format("#fff", "#2980b9"), "contrast"),
     "half transparent black on white": (TEXT.format("rgba(0, 0, 0, 0.5)", "#fff"), "contrast"),
+    "code that only a mouse can scroll": (SCROLLS.format(""), "axe"),
+    "a button that says nothing": ("<button></button>", "axe"),
+    "a link that only its colour shows": (
+        '<p>Some text, <a style="text-decoration: none" href="other.html">a link</a>, more.</p>',
+        "axe",
+    ),
     "the text of an svg": (
         '<svg role="img" aria-label="One"><text y="20" fill="#999">Text</text></svg>',
         "contrast",
@@ -53,7 +64,7 @@ FAULTS = {
 
 HARMLESS = {
     "nothing else": "",
-    "code that scrolls in itself": '<pre style="overflow: auto">' + "long" * 50 + "</pre>",
+    "code that scrolls in itself": SCROLLS.format('tabindex="0"'),
     "a mark of a proof": PROOF.format("Proof by the test test_a: It is.", 24),
     "black on white": TEXT.format("#000", "#fff"),
     "the least contrast": TEXT.format("#767676", "#fff"),
@@ -69,9 +80,7 @@ def failed(browser, tmp_path):
     (tmp_path / "p.svg").write_text(svg)
 
     def check(elements):
-        (tmp_path / "page.html").write_text(
-            "<!DOCTYPE html><meta name='viewport' content='width=device-width'>" + FINE + elements
-        )
+        (tmp_path / "page.html").write_text(FINE + elements)
         address = tmp_path.as_uri() + "/"
         browser.open(address + "page.html", "phone")
         browser.prefer("light")
@@ -82,6 +91,7 @@ def failed(browser, tmp_path):
             "pictures": checks.pictures(browser),
             "proofs": checks.proofs(browser),
             "contrast": checks.contrast(browser),
+            "axe": checks.axe(browser),
         }
         return " ".join(name for name in faults if faults[name])
 

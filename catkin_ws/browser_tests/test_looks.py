@@ -53,6 +53,15 @@ def test_screenshot(browser, view, mode):
     path.write_bytes(base64.b64decode(shot["data"]))
 
 
+@pytest.mark.parametrize("page", PAGES)
+def test_axe_finds_nothing(browser, addresses, page):
+    """On a phone most boxes scroll, and its menu is one more thing that can be wrong."""
+    browser.open(addresses["file"] + page, "phone")
+    for mode in ("light", "dark"):
+        browser.prefer(mode)
+        checks.assert_none(checks.axe(browser))
+
+
 @pytest.mark.parametrize(
     ("kind", "colour"), [("original", "rgb(176, 58, 46)"), ("ours", "rgb(39, 118, 47)")]
 )

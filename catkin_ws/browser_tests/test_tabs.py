@@ -53,6 +53,32 @@ def test_the_arrow_keys_show_the_next_tab_everywhere(page, browser):
             assert_chosen_everywhere(browser, tabs[(chosen + step) % len(tabs)][0])
 
 
+def test_the_choice_is_remembered_on_the_next_page(browser, addresses):
+    for name in ("C++", "Python"):
+        browser.open(addresses["served"] + "pages/publisher.html")
+        label = next(one for one in browser.find(".tab-label") if one.text == name)
+        label.click()
+        browser.open(addresses["served"] + "pages/subscriber.html")
+        assert_chosen_everywhere(browser, name)
+
+
+def test_paper_has_all_tabs_one_below_the_other(page, browser):
+    browser.command("Emulation.setEmulatedMedia", media="print")
+    missing = browser.run(
+        "return [...document.querySelectorAll('.tab-content')]"
+        ".filter((one) => !one.checkVisibility()).length"
+    )
+    heights = browser.run(
+        """
+        const parts = document.querySelectorAll(".tab-set > :is(.tab-label, .tab-content)");
+        return [...parts].map((one) => one.getBoundingClientRect().top);
+        """
+    )
+    browser.command("Emulation.setEmulatedMedia", media="")
+    assert missing == 0
+    assert heights == sorted(heights)
+
+
 def focus(browser, number):
     """Go to a set of tabs by the Tab key, from where the page before it ends."""
     browser.run(

