@@ -1,0 +1,72 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Which lines a node shows, where it shows them, and when the log files are too many."""
+
+import os
+import re
+import tempfile
+import unittest
+
+import rostest
+from mrp_testing import log_line
+from mrp_testing.lab import PACKAGE, Lab
+from mrp_testing.process import Process
+
+DECIMALS = {"py": 6, "cpp": 9}  # of the time in a line: so each shows its language
+LOGGERS = {"py": "rosout", "cpp": "ros.mrp_labs"}
+ALWAYS = {"INFO", "WARN", "ERROR", "FATAL"}
+GIGABYTE = 2**30
+
+
+def levels(lines, language):
+    """Return the levels of what the node of a language has logged."""
+    of_language = re.compile(rf"\[[ A-Z]+\] \[\d+\.\d{{{DECIMALS[language]}}}\]: ")
+    return {log_line.parse(line).level for line in list(lines) if of_language.match(line)}
+
+
+def run(*command, env=None):
+    with Process(*command, extra_env=env) as process:
+        return process.wait()
+
+
+class TestLog(unittest.TestCase):
+    def check(self, language):
+        node = f"/log_levels/levels_{language}"
+        with Lab("log_levels.launch") as lab:
+            lab.wait_for(lambda: levels(lab.lines, language) >= ALWAYS, "each level but one")
+            self.assertEqual(levels(lab.lines, language), ALWAYS)
+            self.assertEqual(levels(lab.errors, language), ALWAYS - {"INFO"})
+            setting = (f"{node}/set_logger_level", LOGGERS[language], "debug")
+            self.assertEqual(run("rosservice", "call", *setting), 0)
+            lab.wait_for(lambda: "DEBUG" in levels(lab.lines, language), "a debug line")
+            self.assertNotIn("DEBUG", levels(lab.errors, language))
+            count = sum("a debug line" in line for line in list(lab.lines))
+            lab.wait_for(
+                lambda: sum("a debug line" in line for line in list(lab.lines)) > count, "another"
+            )
+            for text in ("once", "at most once an hour"):
+                found = [one for one in log_line.texts(lab.lines) if one == text]
+                self.assertEqual(len(found), len(LOGGERS), str(lab))
+
+    def test_levels_py(self):
+        self.check("py")
+
+    def test_levels_cpp(self):
+        self.check("cpp")
+
+    def test_log_files(self):
+        with tempfile.TemporaryDirectory() as folder:
+            env = {"ROS_LOG_DIR": folder}
+            with open(os.path.join(folder, "old.log"), "w") as file:
+                file.truncate(2 * GIGABYTE)  # it takes no space
+            with Lab("log_levels.launch", extra_env=env) as lab:
+                warning = f"WARNING: disk usage in log directory [{folder}] is over 1GB."
+                lab.wait_for(lambda: warning in lab.lines, warning)
+                for language in LOGGERS:
+                    lab.wait_for(lambda: levels(lab.lines, language), "the nodes run")
+            self.assertEqual(run("rosclean", "purge", "-y", env=env), 0)
+            self.assertFalse(os.path.exists(os.path.join(folder, "old.log")))
+
+
+if __name__ == "__main__":
+    rostest.rosrun(PACKAGE, "log", TestLog)
