@@ -23,9 +23,11 @@ pytestmark = pytest.mark.slow
 def test_all_well(patient):
     patient.env["PATH"] = REAL_PATH
     report = patient.examine()
-    well = {title: text.format(port=patient.port) for title, text in WELL.items()}
+    well = {
+        title: text.format(port=patient.port, home=patient.folder) for title, text in WELL.items()
+    }
     assert list(report.checks.items()) == [(t, Check("OK", well[t], [])) for t in well]
-    assert (report.summary, report.code) == ("10 checks, 0 failed", 0)
+    assert (report.summary, report.code) == ("12 checks, 0 failed", 0)
 
 
 @pytest.mark.quick
@@ -34,7 +36,7 @@ def test_every_failure_is_counted(patient):
     patient.env.update(ROS_HOSTNAME="192.0.2.1", ROS_MASTER_URI="http://localhost")
     report = patient.examine()
     assert list(report.of("FAIL")) == ["ROS_HOSTNAME and ROS_IP", "ROS_MASTER_URI", "scripts"]
-    assert (report.summary, report.code) == ("10 checks, 3 failed", 1)
+    assert (report.summary, report.code) == ("12 checks, 3 failed", 1)
 
 
 # packages
@@ -88,7 +90,7 @@ def test_packages_do_not_matter_with_noetic(patient):
     report = patient.examine(**patient.noetic())
     assert report.of("--") == {"packages": f"skipped: ROS comes from {patient.folder}/ros/noetic"}
     assert report.checks["installation"].text == f"ROS comes from {patient.folder}/ros/noetic"
-    assert (report.summary, report.code) == ("10 checks, 0 failed", 0)
+    assert (report.summary, report.code) == ("12 checks, 0 failed", 0)
 
 
 # python3
@@ -175,7 +177,7 @@ def test_noetic_not_sourced(patient):
     report = patient.examine(**patient.noetic())
     mend = f"source {patient.folder}/ros/noetic/setup.bash"
     assert report.checks["python3"] == Check("FAIL", HIDDEN_ROSPY, [mend])
-    assert (report.summary, report.code) == ("10 checks, 1 failed", 1)
+    assert (report.summary, report.code) == ("12 checks, 1 failed", 1)
 
 
 # installation
@@ -309,7 +311,70 @@ def test_not_built(patient, name):
     )
 
 
+# build spaces
+
+
+def check_spaces(patient, found):
+    patient.examine().assert_only_failure(
+        "build spaces",
+        "expected catkin_make to have built build and devel, over workspaces that exist; found "
+        + found,
+        "make clean build",
+    )
+
+
+def test_workspace_that_is_gone_is_remembered(patient):
+    gone = patient.folder / "gone_ws/devel"
+    line = f"            CMAKE_PREFIX_PATH = r'{patient.folder};{gone}'.split(';')\n"
+    patient.write("devel/_setup_util.py", line)
+    check_spaces(patient, f"that devel remembers {gone}, which does not exist")
+    gone.mkdir(parents=True)
+    assert patient.examine().code == 0
+
+
+@pytest.mark.parametrize("space", ["build", "devel"])
+def test_catkin_build_and_catkin_make_mixed(patient, space):
+    patient.write(f"{space}/.built_by", "catkin build")
+    check_spaces(patient, f"that 'catkin build' built {space}")
+    patient.write(f"{space}/.built_by", "catkin_make")
+    assert patient.examine().code == 0
+
+
+# log files
+
+
+@pytest.mark.parametrize("place", ["", "ROS_LOG_DIR", "ROS_HOME"])
+def test_log_files_fill_the_disk(patient, place):
+    folder = patient.folder / ".ros/log"
+    if place:
+        patient.env[place] = str(patient.folder / "elsewhere")
+        folder = patient.folder / ("elsewhere" if place == "ROS_LOG_DIR" else "elsewhere/log")
+    (folder / "run").mkdir(parents=True)
+    with open(folder / "run" / "node.log", "w") as file:
+        file.truncate(3 * 2**29)  # it takes no space
+    patient.examine().assert_only_failure(
+        "log files",
+        f"expected less than 1 GB of logs; found 1.5 GB in {folder}",
+        "rosclean purge",
+    )
+
+
 # shell
+
+
+def test_other_workspace_sourced_after_this_one(patient):
+    other = patient.folder / "other_ws/src"
+    for src in (other, patient.workspace / "src"):
+        patient.write(src / "robot/package.xml", "")
+    patient.env["ROS_PACKAGE_PATH"] += f":{other}"
+    assert patient.examine().code == 0
+    patient.env["ROS_PACKAGE_PATH"] = f"{other}:{patient.workspace}/src"
+    patient.examine().assert_only_failure(
+        "shell",
+        "expected this workspace to be sourced after those with packages of the same names; "
+        f"found before it {other}",
+        f"source {patient.workspace}/devel/setup.bash",
+    )
 
 
 def test_not_sourced(patient):
@@ -321,7 +386,7 @@ def test_not_sourced(patient):
         "not sourced: make does not need it, but rosrun and roslaunch do",
         [f"source {patient.workspace}/devel/setup.bash"],
     )
-    assert (report.summary, report.code) == ("10 checks, 0 failed", 0)
+    assert (report.summary, report.code) == ("12 checks, 0 failed", 0)
 
 
 @pytest.mark.parametrize(

@@ -7,6 +7,7 @@ It changes nothing and needs no ROS. The exit code is 0 if no check failed, else
 
 import argparse
 import collections
+import contextlib
 import functools
 import glob
 import os
@@ -210,18 +211,52 @@ def check_build(machine):
     return ok("setup.bash and both C++ nodes are there")
 
 
+def check_spaces(machine):
+    """catkin_make alone built build and devel, over workspaces, which catkin remembers, that exist."""
+    wrong = []
+    for space in ("build", "devel"):
+        builder = text_of(os.path.join(machine.workspace, space, ".built_by")).strip()
+        if builder not in ("", "catkin_make"):
+            wrong.append(f"that '{builder}' built {space}")
+    setup = text_of(os.path.join(machine.workspace, "devel", "_setup_util.py"))
+    for paths in re.findall(r"CMAKE_PREFIX_PATH = r?'([^']+)'", setup):
+        gone = [path for path in paths.split(";") if not os.path.isdir(path)]
+        wrong += [f"that devel remembers {path}, which does not exist" for path in gone]
+    if wrong:
+        expected = "catkin_make to have built build and devel, over workspaces that exist"
+        return fail(expected, "; ".join(wrong), "make clean build")
+    return ok("build and devel are of catkin_make, over workspaces that exist")
+
+
+def check_logs(machine):
+    """The log files, which ROS never deletes, are less than 1 GB: from there on roslaunch warns."""
+    home = machine.env.get("ROS_HOME") or os.path.expanduser("~/.ros")
+    folder = machine.env.get("ROS_LOG_DIR") or os.path.join(home, "log")
+    size = 0
+    for path, _, files in os.walk(folder):
+        with contextlib.suppress(OSError):  # a node may just have renamed one
+            size += sum(os.lstat(os.path.join(path, name)).st_size for name in files)
+    found = f"{size / 2**30:.1f} GB in {folder}"
+    return ok(found) if size < 2**30 else fail("less than 1 GB of logs", found, "rosclean purge")
+
+
 def check_shell(machine):
-    """The workspace is sourced in this shell.
+    """The workspace is sourced in this shell, and its packages come first.
 
     Not sourced at all is no failure: make sources it by itself, and who is told of a failure in
     every new terminal soon reads none. But rosrun and roslaunch need it, so the line says how.
     Half sourced is a failure: a line after it in ~/.bashrc, say, has set one of the two anew.
     """
-    devel, src = (os.path.join(machine.workspace, name) for name in ("devel", "src"))
+    devel, src = machine.workspace + "/devel", machine.workspace + "/src"
     mend = "source " + shlex.quote(os.path.join(devel, "setup.bash"))
     has_devel = devel in map(os.path.realpath, folders(machine.env, "CMAKE_PREFIX_PATH"))
-    has_src = src in map(os.path.realpath, folders(machine.env, "ROS_PACKAGE_PATH"))
+    paths = list(map(os.path.realpath, folders(machine.env, "ROS_PACKAGE_PATH")))
+    has_src = src in paths
     if has_devel and has_src:
+        later = [path for path in paths[: paths.index(src)] if packages(path) & packages(src)]
+        if later:
+            expected = "this workspace to be sourced after those with packages of the same names"
+            return fail(expected, "before it " + ", ".join(later), mend)
         return ok("devel/setup.bash is sourced")
     if not has_devel and not has_src:
         return note("not sourced: make does not need it, but rosrun and roslaunch do", mend)
@@ -240,8 +275,21 @@ CHECKS = [
     ("master's port", check_master_port, "ROS_MASTER_URI"),
     ("scripts", check_scripts, None),
     ("build", check_build, "packages"),
+    ("build spaces", check_spaces, None),
+    ("log files", check_logs, None),
     ("shell", check_shell, "build"),
 ]
+
+
+def packages(path):
+    return {os.path.dirname(xml)[len(path) + 1 :] for xml in glob.glob(path + "/*/package.xml")}
+
+
+def text_of(path):
+    """Return the text of a file, or "" if there is none."""
+    with contextlib.suppress(OSError), open(path, errors="replace") as file:
+        return file.read()
+    return ""
 
 
 def noetic(machine):
@@ -307,11 +355,7 @@ def master_pid(uri):
 
 
 def this_machine():
-    try:
-        with open("/etc/debian_version", errors="replace") as file:
-            debian = file.read().strip()
-    except OSError:
-        debian = "none"
+    debian = text_of("/etc/debian_version").strip() or "none"
     workspace = os.path.dirname(os.path.dirname(os.path.realpath(__file__)))
     host_name = socket.gethostname()
     return Machine(os.environ, workspace, host_name, debian, "/usr/bin/dpkg-query", "/opt/ros")
