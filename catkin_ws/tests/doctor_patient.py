@@ -38,7 +38,7 @@ WELL = {
     "scripts": "every script is executable",
     "build": "setup.bash and both C++ nodes are there",
     "build spaces": "build and devel are of catkin_make, over workspaces that exist",
-    "log files": "0.0 GB in {home}/.ros/log",
+    "log files": "0.0 GB in ~/.ros/log",
     "shell": "devel/setup.bash is sourced",
 }
 NEEDING_PACKAGES = {

@@ -212,7 +212,7 @@ def check_build(machine):
 
 
 def check_spaces(machine):
-    """catkin_make alone built build and devel, over workspaces, which catkin remembers, that exist."""
+    """catkin_make alone built build and devel, and each workspace that devel remembers exists."""
     wrong = []
     for space in ("build", "devel"):
         builder = text_of(os.path.join(machine.workspace, space, ".built_by")).strip()
@@ -230,10 +230,9 @@ def check_spaces(machine):
 
 def check_logs(machine):
     """The log files, which ROS never deletes, are less than 1 GB: from there on roslaunch warns."""
-    home = machine.env.get("ROS_HOME") or os.path.expanduser("~/.ros")
-    folder = machine.env.get("ROS_LOG_DIR") or os.path.join(home, "log")
+    folder = machine.env.get("ROS_LOG_DIR", machine.env.get("ROS_HOME", "~/.ros") + "/log")
     size = 0
-    for path, _, files in os.walk(folder):
+    for path, _, files in os.walk(os.path.expanduser(folder)):
         with contextlib.suppress(OSError):  # a node may just have renamed one
             size += sum(os.lstat(os.path.join(path, name)).st_size for name in files)
     found = f"{size / 2**30:.1f} GB in {folder}"

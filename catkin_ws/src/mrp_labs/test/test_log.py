@@ -11,6 +11,7 @@ import rostest
 from mrp_testing import log_line
 from mrp_testing.lab import PACKAGE, Lab
 from mrp_testing.process import Process
+from mrp_testing.proves import proves
 
 DECIMALS = {"py": 6, "cpp": 9}  # of the time in a line: so each shows its language
 LOGGERS = {"py": "rosout", "cpp": "ros.mrp_labs"}
@@ -48,12 +49,41 @@ class TestLog(unittest.TestCase):
                 found = [one for one in log_line.texts(lab.lines) if one == text]
                 self.assertEqual(len(found), len(LOGGERS), str(lab))
 
+    @proves(
+        "No level ends the node.",
+        "Debug and info lines go to the standard output, all others to the standard error output.",
+        "A line with once or throttle in its call is not repeated at each turn.",
+        "Symptom: of the five levels, the console lacks one: debug.",
+        "Cause: each logger has a level, and drops what is below it.",
+        "A node starts with the level info.",
+        "Fix: while the node runs, set its logger's level:",
+        "The logger of a Python node is rosout, and that of a C++ node is ros. and its package's "
+        "name.",
+        "Debug lines need a level: the logger's name is rosout in Python, and ros.PACKAGE in C++.",
+        "rosout is the logger of Python nodes.",
+    )
     def test_levels_py(self):
         self.check("py")
 
+    @proves(
+        "No level ends the node.",
+        "Debug and info lines go to the standard output, all others to the standard error output.",
+        "A line with once or throttle in its call is not repeated at each turn.",
+        "Symptom: of the five levels, the console lacks one: debug.",
+        "Cause: each logger has a level, and drops what is below it.",
+        "A node starts with the level info.",
+        "Fix: while the node runs, set its logger's level:",
+        "The logger of a Python node is rosout, and that of a C++ node is ros. and its package's "
+        "name.",
+        "Debug lines need a level: the logger's name is rosout in Python, and ros.PACKAGE in C++.",
+    )
     def test_levels_cpp(self):
         self.check("cpp")
 
+    @proves(
+        "Fix: type rosclean purge.",
+        "rosclean purge deletes old log files.",
+    )
     def test_log_files(self):
         with tempfile.TemporaryDirectory() as folder:
             env = {"ROS_LOG_DIR": folder}
