@@ -13,7 +13,7 @@ in defects/. Its fields:
     Fix: Source ...                what to do, in one or two sentences
     Page: wrong#there-is-no-master where the pages say more
     Try: rostopic list             the commands that make ROS print it
-    Needs: master                  what must run, or be installed, for them
+    Needs: master                  what they need: see tests/test_why.py, or docker
 
 There may be several fields Shows and Also. A line of Shows that begins with "12| " or "13| " is
 that of one Debian release. tests/test_why.py runs Try, and holds Shows against what is printed.
@@ -52,7 +52,7 @@ _MASKS = (
 _FOLDERS = re.compile(r"(?<![\w.])~?(/opt/ros/\w+)?/(?:[^\s/:;,'\"()\[\]<>]+/)*")
 _WORD = re.compile(r"[^\W\d_]+|\d+")
 # A text is near an entry if it has this part of the entry's words, or the entry this part of its.
-_OF_ENTRY, _OF_TEXT = 0.5, 0.6
+_OF_ENTRY, _OF_TEXT = 0.5, 0.7
 _TOGETHER = 3  # lines: long messages are broken into that many
 
 
