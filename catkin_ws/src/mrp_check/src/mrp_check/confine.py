@@ -4,10 +4,11 @@
 Always, as any user:
 - the command has a session and a process group, and a HOME, TMPDIR, ROS_HOME and ROS_LOG_DIR of its
   own, in a scratch folder;
-- it is ended when it breaks a limit: see Limits;
+- it is ended when it breaks a limit: see Limits. A watching process and rlimits see to that; where
+  the machine grants a cgroup v2, the kernel does so for all of its processes together;
 - its output is read to the end, and kept up to a limit;
-- every process that it started is killed when it ends, even if it has detached itself: a watching
-  process (confined/warden.py) adopts all orphans.
+- every process that it started is killed when it ends, even if it has detached itself: the watcher
+  (confined/warden.py) adopts all orphans.
 
 With namespaces, which bubblewrap makes where the system lets it (Debian does; Docker's default does
 not), also:
@@ -115,16 +116,23 @@ def run(
         env[variables.APART] = crossing.to_json(apart.Apart(user, namespaces))
     words = [str(word) for word in command]
     task = warden.Task(words, scratch, env, limits or Limits(), user, namespaces, observes)
-    if not namespaces:
-        return _watched([], task, mark if user is None else None)
-    # Its /tmp goes with the run. It lies beside the scratch folder: nothing in that is safe to use.
-    with tempfile.TemporaryDirectory(prefix="tmp_", dir=os.path.dirname(scratch)) as tmp:
-        os.chmod(tmp, 0o1777)
-        binds = [("--bind", tmp, "/tmp")]
-        given = {"--ro-bind": [sandbox.PACKAGE, *readable], "--bind": [scratch, *writable]}
-        for option, paths in given.items():
-            binds += [(option, path, path) for path in map(os.path.realpath, paths)]
-        return _watched(sandbox.bubblewrap(binds), task, mark=None)
+    with contextlib.ExitStack() as stack:
+        group = stack.enter_context(sandbox.cgroup(task.limits))
+        box = sandbox.entering(group)
+        if namespaces:
+            # Its /tmp goes with the run; it lies beside the scratch folder, where nothing is safe.
+            beside = tempfile.TemporaryDirectory(prefix="tmp_", dir=os.path.dirname(scratch))
+            tmp = stack.enter_context(beside)
+            os.chmod(tmp, 0o1777)
+            binds = [("--bind", tmp, "/tmp")]
+            given = {"--ro-bind": [sandbox.PACKAGE, *readable], "--bind": [scratch, *writable]}
+            for option, paths in given.items():
+                binds += [(option, path, path) for path in map(os.path.realpath, paths)]
+            box += sandbox.bubblewrap(binds)
+        result = _watched(box, task, None if namespaces or user is not None else mark)
+        if sandbox.ran_out_of_memory(group):
+            result.code, result.ended_by = None, "memory"
+    return result
 
 
 def stop() -> None:
@@ -136,7 +144,7 @@ def stop() -> None:
 def _watched(box: Sequence[str], task: warden.Task, mark: str | None) -> Result:
     """Have a watcher do its task; return what came of it. Raises ConfineError.
 
-    box: the command that makes the namespaces, if there are any
+    box: the command that enters the cgroup and makes the namespaces, if there are any
     mark: that of what runs, if it could kill its watcher
     """
     watcher, stdin, pipes = _start(box, task)

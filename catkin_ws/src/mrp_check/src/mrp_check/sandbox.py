@@ -13,7 +13,8 @@ import shutil
 import subprocess
 import tempfile
 import threading
-from typing import Iterable
+import time
+from typing import Iterable, Iterator
 
 import psutil
 
@@ -27,6 +28,11 @@ _ETC = (
     " os-release passwd ros"
 ).split()
 _SHARED_MEMORY = 64 * warden.MEGABYTE
+_CGROUPS = pathlib.Path("/sys/fs/cgroup")
+_SPARE = (
+    10  # processes that a cgroup may hold beyond the limit: with them the watcher sees it broken
+)
+_EMPTYING = 5.0  # seconds within which a cgroup is empty after its processes were killed
 # User ids that systemd, too, gives to what runs for a while; no user of a machine has one.
 _IDS = range(61184, 65520)
 _HANDING_OVER = threading.Lock()
@@ -88,6 +94,54 @@ def bubblewrap(binds: Iterable[tuple[str, str, str]]) -> list[str]:
             options += ["--perms", "0755", "--dir", str(parent)]
         options += [option, outside, within]
     return ["bwrap", *options, "--remount-ro", "/", "--"]
+
+
+@contextlib.contextmanager
+def cgroup(limits: warden.Limits) -> Iterator[pathlib.Path | None]:
+    """Make a cgroup v2 with these limits; yield its folder, or None where this user may make none.
+
+    A cgroup that has processes cannot share out what it has: the new one lies beside it, or above.
+    """
+    entries = pathlib.Path("/proc/self/cgroup").read_text().splitlines()
+    own = next((entry[4:] for entry in entries if entry.startswith("0::/")), "")
+    here = _CGROUPS / own
+    group = next(filter(None, (_made(one, limits) for one in (here, *here.parents))), None)
+    try:
+        yield group
+    finally:
+        end = time.monotonic() + _EMPTYING
+        while group and group.exists() and time.monotonic() < end:
+            try:
+                (group / "cgroup.kill").write_text("1")
+                group.rmdir()
+            except OSError:
+                time.sleep(0.01)
+
+
+def _made(folder: pathlib.Path, limits: warden.Limits) -> pathlib.Path | None:
+    try:
+        shared = (folder / "cgroup.subtree_control").read_text().split()
+        if not {"memory", "pids"}.issubset(shared):
+            return None
+        group = pathlib.Path(tempfile.mkdtemp(prefix="mrp_check_", dir=folder))
+        # Where /tmp is a tmpfs, the files in it are memory, too.
+        (group / "memory.max").write_text(str(limits.memory + limits.disk))
+        (group / "pids.max").write_text(str(limits.processes + _SPARE))
+        return group
+    except OSError:
+        return None
+
+
+def entering(group: pathlib.Path | None) -> list[str]:
+    """Return what a command begins with that runs in a cgroup, as far as it may enter that."""
+    enter = 'echo $$ 2> /dev/null > "$0"/cgroup.procs; exec "$@"'
+    return ["/bin/sh", "-c", enter, str(group)] if group else []
+
+
+def ran_out_of_memory(group: pathlib.Path | None) -> bool:
+    """Return whether the kernel has ended something in a cgroup, as it had no more memory."""
+    events = (group / "memory.events").read_text().splitlines() if group else []
+    return any(event.startswith("oom_kill ") and event != "oom_kill 0" for event in events)
 
 
 def hand_over(scratch: str) -> int | None:

@@ -1,0 +1,100 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Where the machine grants a cgroup v2, the kernel itself keeps what runs within its limits."""
+
+import pathlib
+import subprocess
+
+import pytest
+from mrp_check import confine, sandbox
+from mrp_testing.proves import proves
+
+pytestmark = pytest.mark.quick
+
+LIMITS = confine.Limits(memory=40 * 2**20, disk=10 * 2**20, processes=5)
+
+
+def is_granted():
+    with sandbox.cgroup(LIMITS) as group:
+        return group is not None
+
+
+where_it_is_granted = pytest.mark.skipif(
+    not is_granted(), reason="this user may make no cgroup v2 on this machine"
+)
+
+
+@pytest.fixture
+def cgroups(tmp_path, monkeypatch):
+    """A folder in place of /sys/fs/cgroup."""
+    monkeypatch.setattr(sandbox, "_CGROUPS", tmp_path)
+    monkeypatch.setattr(sandbox, "_EMPTYING", 0)
+    return tmp_path
+
+
+@proves(
+    "Where you may make a control group (cgroup v2), the kernel limits memory and processes, too.",
+)
+def test_its_limits_are_those_of_the_run(cgroups):
+    """It is made below the nearest cgroup that shares out memory and processes."""
+    entries = pathlib.Path("/proc/self/cgroup").read_text().splitlines()
+    own = next((entry[4:] for entry in entries if entry.startswith("0::/")), "")
+    (cgroups / own).mkdir(parents=True, exist_ok=True)
+    (cgroups / own / "cgroup.subtree_control").write_text("cpu\n")
+    with sandbox.cgroup(LIMITS) as group:
+        assert group is None
+    (cgroups / own / "cgroup.subtree_control").write_text("cpu memory pids\n")
+    with sandbox.cgroup(LIMITS) as group:
+        assert group.parent == cgroups / own
+        bounds = [(group / name).read_text() for name in ("memory.max", "pids.max")]
+    assert bounds == [str(50 * 2**20), "15"]
+
+
+def test_without_one_a_command_runs_as_it_is(cgroups):
+    with sandbox.cgroup(LIMITS) as group:
+        assert (group, sandbox.entering(group), sandbox.ran_out_of_memory(group)) == (
+            None,
+            [],
+            False,
+        )
+
+
+def test_who_cannot_enter_it_runs_all_the_same(tmp_path):
+    command = [*sandbox.entering(tmp_path / "none"), "echo", "It runs."]
+    done = subprocess.run(command, capture_output=True, text=True)
+    assert (done.stdout, done.stderr) == ("It runs.\n", "")
+
+
+def run_in(group, program):
+    command = [*sandbox.entering(group), "/usr/bin/python3", "-c", program]
+    return subprocess.run(command, capture_output=True, text=True)
+
+
+@where_it_is_granted
+def test_the_kernel_ends_what_takes_too_much_memory():
+    with sandbox.cgroup(LIMITS) as group:
+        assert run_in(group, "x = bytearray(20 * 2**20)").returncode == 0
+        assert not sandbox.ran_out_of_memory(group)
+        assert run_in(group, "x = b'x' * (200 * 2**20)").returncode != 0
+        assert sandbox.ran_out_of_memory(group)
+    assert not group.exists()
+
+
+FORKS = """
+import os, signal
+try:
+    while os.fork():
+        pass
+    signal.pause()
+except BlockingIOError:
+    print("No more", flush=True)
+"""
+
+
+@where_it_is_granted
+def test_the_kernel_makes_no_more_processes_and_ends_all_in_the_end():
+    with sandbox.cgroup(LIMITS) as group:
+        command = [*sandbox.entering(group), "/usr/bin/python3", "-c", FORKS]
+        forks = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
+        assert forks.stdout.readline() == "No more\n"
+    with forks:
+        assert (group.exists(), forks.stdout.read()) == (False, "")
