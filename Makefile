@@ -34,6 +34,7 @@ PACKAGES_test-all := $(PACKAGES_test) docs test-all
 PACKAGES_test-browser := $(PACKAGES_view) docs test browser
 PACKAGES_bench := $(PACKAGES_build) bench
 PACKAGES_docs := docs
+PACKAGES_docs-book := docs book
 PACKAGES_lint := $(PACKAGES_test-all) lint
 
 # `make run` builds the tutorial alone. Once the whole workspace has been built, it stays whole.
@@ -164,6 +165,12 @@ prose-score: packages-docs  ## change words of the pages, count which changes th
 .PHONY: docs-serve
 docs-serve: docs  ## build the pages, and serve them to this machine's browsers
 	@exec /usr/bin/python3 catkin_ws/tools/serve.py $(SITE)
+
+# LaTeX takes a minute, and its packages much room: so only the workflow calls it.
+.PHONY: docs-book
+docs-book: packages-docs-book  ## make a book of the pages, as EPUB and as PDF
+	@$(IN_WORKSPACE) tools/make_book.sh
+	@echo "Read $(CURDIR)/catkin_ws/build/book/mrp.pdf, or mrp.epub beside it"
 
 .PHONY: docs-record
 docs-record: packages-test-all  ## do what the pages say, and record what they show; PAGE=latch: of one page

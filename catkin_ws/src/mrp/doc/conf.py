@@ -24,6 +24,7 @@ extensions = [
     "picture",
     "exercises",
     "why",
+    "book",
 ]
 
 html_theme = "sphinx_rtd_theme"
@@ -38,6 +39,16 @@ copybutton_selector = "div:not(.output) > div.highlight pre"
 
 # A link that leads nowhere is an error, as is everything that Sphinx warns of: it is run with -W.
 nitpicky = True
+
+# The book, as EPUB and as PDF: see extension/book.py.
+epub_title = "A publisher and a subscriber, in Python and C++"
+epub_show_urls = "no"
+epub_css_files = []
+epub_exclude_files = ["_static/page.css", "_static/page.js"]
+latex_engine = "xelatex"
+latex_documents = [("index", "mrp.tex", epub_title, author, "howto")]
+latex_elements = {"papersize": "a4paper", "makeindex": "", "printindex": ""}
+latex_show_urls = "no"
 
 # The sentences of these pages need no quote and no place in a list yet (extension/proof.py). Take a
 # page out, and call `make claims`: it says what is missing.
