@@ -215,6 +215,13 @@ IMAGE_OF = COPYFILE_DISABLE=1 tar --create --exclude=.git --exclude=__pycache__ 
   --exclude=catkin_ws/src/CMakeLists.txt . | \
   docker build $(DOCKER_BUILD_OPTIONS) --build-arg DEBIAN=$(DEBIAN) --file docker/Dockerfile
 
+# The image in which the tests run, and with it the checker. What nobody trusts runs in a container of
+# it that has no network, hardly a right, and limits by the engine, too.
+TEST_IMAGE = $(IMAGE_OF) --target test --tag mrp-test:$(DEBIAN) -
+IN_BOUNDS := docker run --rm --init --network none --hostname localhost \
+  --cap-drop ALL $(addprefix --cap-add ,CHOWN DAC_OVERRIDE KILL SETGID SETUID) \
+  --security-opt no-new-privileges --memory 4g --pids-limit 1000
+
 .PHONY: need-docker
 need-docker:
 	@command -v docker > /dev/null || { \
@@ -256,29 +263,34 @@ docker-down: need-docker  ## take away what docker-up or docker-view leaves
 	@$(COMPOSE_MRP) --profile view down
 
 .PHONY: docker-test
-docker-test: docker-suite docker-containers  ## run every test in a container, and test the containers
+docker-test: docker-suite docker-harm docker-containers  ## run every test in a container, and test the containers
 
 # `make test-all`, in a container without a network. Its name is one that it can resolve,
 # which roswtf asks for. Some tests make processes without end: the engine, too, sees to it that they
 # stay few.
 .PHONY: docker-suite
 docker-suite: need-docker
-	$(IMAGE_OF) --target test --tag mrp-test:$(DEBIAN) -
+	$(TEST_IMAGE)
 	@rm -rf $(DOCKER_RESULTS)/suite; mkdir -p $(DOCKER_RESULTS)/suite
 	docker run --rm --init --network none --hostname localhost --pids-limit 4000 \
 	  --user "$$(id -u):$$(id -g)" --volume $(DOCKER_RESULTS)/suite:/results mrp-test:$(DEBIAN)
 
-# What the checker needs is in the image of the tests. The package is read alone; nothing that it does
-# reaches this machine, which the engine's own limits see to, too.
+# The checker's tests with what means harm, where `make docker-check` checks a package: as root, and as
+# another user.
+.PHONY: docker-harm
+docker-harm: need-docker
+	$(TEST_IMAGE)
+	@for user in 0:0 65534:65534; do \
+	  $(IN_BOUNDS) --user $$user mrp-test:$(DEBIAN) env -C catkin_ws /usr/bin/python3 -m pytest \
+	    -p no:cacheprovider src/mrp_check/test/test_check_{confine,reach,harm}.py; done
+
+# The package is read alone, and nothing that it does reaches this machine.
 .PHONY: docker-check
 docker-check: need-docker  ## check the package at PKG in a container without a network
 	@test -e "$(PKG)/package.xml" || { \
 	  echo "error: expected PKG=PATH, the folder of a package; '$(PKG)' has no package.xml" >&2; exit 2; }
-	$(IMAGE_OF) --target test --tag mrp-test:$(DEBIAN) -
-	@docker run --rm --init --network none --hostname localhost \
-	  --cap-drop ALL $(addprefix --cap-add ,CHOWN DAC_OVERRIDE KILL SETGID SETUID) \
-	  --security-opt no-new-privileges --memory 4g --pids-limit 1000 \
-	  --volume "$(abspath $(PKG)):/package:ro" \
+	$(TEST_IMAGE)
+	@$(IN_BOUNDS) --volume "$(abspath $(PKG)):/package:ro" \
 	  --env PYTHONPATH=catkin_ws/src/mrp_check/src mrp-test:$(DEBIAN) \
 	  /usr/bin/python3 catkin_ws/src/mrp_check/scripts/check /package
 

@@ -13,7 +13,7 @@ from mrp_check.student.package import Package
 from mrp_testing.process import processes_with
 from mrp_testing.proves import proves
 
-pytestmark = pytest.mark.slow
+pytestmark = [pytest.mark.slow, pytest.mark.usefixtures("open_folders")]
 
 
 FLOODS = {
@@ -85,7 +85,6 @@ ROOTS = sandbox.isolation() if os.getuid() else sandbox.Isolation.USER
 
 
 @proves("no way to reach the program that observes them, so they cannot change the verdict.")
-@pytest.mark.usefixtures("open_folders")
 @pytest.mark.parametrize("isolation", dict.fromkeys([sandbox.isolation(), ROOTS]))
 def test_a_node_cannot_change_what_is_seen_of_it(tmp_path, monkeypatch, isolation):
     monkeypatch.setattr(sandbox, "isolation", lambda: isolation)
@@ -94,7 +93,9 @@ def test_a_node_cannot_change_what_is_seen_of_it(tmp_path, monkeypatch, isolatio
     script = folder / "scripts" / "publisher_start.py"
     script.write_text(script.read_text().replace("\n\n\nclass Node", f"\n{FORGERY}\n\nclass Node"))
     found = findings_of(folder, spec_of(defects, []), tmp_path / "scratch")
-    assert [f.id for f in found if f.severity == ERROR] == ["values"], found
+    errors = [f.id for f in found if f.severity == ERROR]
+    # Where nothing is promised, it may end the observer: then that is what is found.
+    assert errors == ["values"] or errors and isolation is sandbox.Isolation.NONE, found
 
 
 # Put by a build in the place of what the checker reads and writes next.
@@ -110,7 +111,6 @@ execute_process(COMMAND sh "${CMAKE_BINARY_DIR}/plant.sh")
 """
 
 
-@pytest.mark.usefixtures("open_folders")
 def test_what_a_build_plants_is_not_followed(tmp_path):
     """A pipe for a file would stop the checker for ever, and a link would lead it outside."""
     victim = tmp_path / "victim"
