@@ -24,12 +24,14 @@ CPP = "catkin_ws/src/mrp/test/test_one.cpp"
 PATCH = "catkin_ws/defects/one.patch"
 DOCKER = "docker/test/test_run.py"
 LAUNCH = "catkin_ws/src/mrp/launch/one.launch"
+UNTYPED = f"{DOC}/untyped.txt"
+OUTPUTS = f"{DOC}/recorded/outputs.json"
 
 FILES = {
     f"{DOC}/conf.py": """\
 import pathlib, sys
 sys.path.insert(0, str(pathlib.Path(__file__).parent / "extension"))
-extensions = ["sphinx_inline_tabs", "proof", "listing", "value"]
+extensions = ["sphinx_inline_tabs", "proof", "listing", "value", "terminal", "commands"]
 pages_not_checked_yet = ["index", "pages/tests"]
 """,
     f"{DOC}/index.rst": """\
@@ -65,7 +67,19 @@ It waits for :value:`one.waiter.seconds` s :proof:`docker/test_run/test_it`.
    It blocks :proof:`mrp/one/publisherCpp` :proof:`broken/one`: at once.
 
 See `the API <https://example.org/api>`_.
+
+.. terminal:: 1
+   :output: it
+   :shows: ^data: 1$ ... ^data: 2$
+
+   rostopic echo /it
+
+.. code-block:: bash
+
+   sudo make install
 """,
+    UNTYPED: "[needs root]\nsudo make install\n",
+    OUTPUTS: '{"it": ["data: 1", "data: 2"]}',
     LIST: """\
 # A comment.
 
@@ -247,6 +261,29 @@ CHANGES = {
         LIST,
         ("[definition]", "[because]"),
         ["gives an unknown reason. Expected one of: heading, "],
+    ),
+    "a command in a block": (
+        PAGE,
+        ("sudo make install", "sudo make isntall"),
+        [
+            "one.rst:25: WARNING: no reader types the command 'sudo make isntall'",
+            "untyped.txt:1: WARNING: no page has the command 'sudo make install'",
+        ],
+    ),
+    "a command in a sentence": (
+        PAGE,
+        ("``1.5``", "``rostopic ehco /it``"),
+        ["no reader types the command 'rostopic ehco /it'"],
+    ),
+    "a command that is typed now": (
+        PAGE,
+        (".. code-block:: bash\n", ".. terminal:: 1\n"),
+        ["untyped.txt:1: WARNING: no page has the command 'sudo make install', which is listed"],
+    ),
+    "what a console shows": (
+        OUTPUTS,
+        ('1", "data: 2', '2", "data: 1'),
+        ["expected in it: ['^data"],
     ),
     "a value": (
         LAUNCH,

@@ -122,6 +122,54 @@ def test_one_page_is_read_after_those_that_it_needs(tmp_path, monkeypatch):
     assert shown.outputs == {page: [page] for page in ("message_types", "latch")}
 
 
+@pytest.mark.quick
+def test_the_reader_makes_no_folder(tmp_path):
+    step = {"kind": "file", "path": "a/b.py", "text": "", "page": "pages/publisher", "line": 7}
+    with pytest.raises(run_page.StepError, match="publisher.rst, line 7.*\n.*no page has made the"):
+        run_page.Reader(tmp_path).do(step)
+    (tmp_path / "a").mkdir()
+    run_page.Reader(tmp_path).do(step)
+    assert (tmp_path / "a" / "b.py").exists()
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize(
+    ("text", "is_shown"),
+    [
+        ("a: 4$", True),
+        ("a: 5", False),
+        ("a: (?P<ten>\\d*)4$ ... a: (?P=ten)6$", True),
+        ("a: 6$ ... a: 4$", False),
+        ("a: 4 ... b: 9", True),
+        ("a: 4 ... a: 4", False),
+        ("^4", False),
+        ("in (?P<one>\\d+)$ ... in (?P=one)$", True),
+        ("in (?P<one>\\d+)$ ... in (?!(?P=one)$)", False),
+    ],
+)
+def test_what_a_console_must_show(text, is_shown):
+    lines = ["a: 4", "in 77", "b: 9", "a: 6", "in 77"]
+    assert run_page.meaning.missing([text], lines) == ([] if is_shown else [text])
+
+
+def test_a_reader_waits_for_what_a_console_shows_and_says_what_is_left_out(tmp_path):
+    step = {"page": "pages/latch", "kind": "terminal", "terminal": "1", "line": 7, "output": "a"}
+    going_on = {"commands": ["seq 40; cat"], "until": "3", "only": "4$", "shows": "^4$ ... ^14$"}
+    with run_page.Reader(tmp_path) as reader:
+        reader.do({**step, **going_on})
+        shown = reader.shown.outputs["a"]
+        assert shown[:2] == ["4", "14"] and shown[-1].startswith("... ")
+        with pytest.raises(run_page.StepError, match="expected .*'15'"):
+            reader.do({**step, "commands": ["seq 40"], "only": "4$", "shows": "15"})
+
+
+@pytest.mark.quick
+def test_a_box_says_how_many_lines_it_leaves_out():
+    assert run_page.only("a", ["a", "b", "", "a"]) == ["a", "a", "... 2 more lines"]
+    assert run_page.only("a", ["a", "b"]) == ["a", "... 1 more line"]
+    assert run_page.only("", ["a", "b"]) == ["a", "b"]
+
+
 @pytest.fixture
 def recording():
     """What is recorded of two pages and of one that is no more, and what they show now."""
@@ -137,6 +185,22 @@ def test_a_recording_keeps_its_text_if_only_values_have_changed(recording):
     outputs, graphs = record_pages.renewed(*recording)
     assert outputs == {"latch": ["at 1.5"], "queues": ["none"]}
     assert graphs == {"latch": 2, "queues": 2}
+
+
+@pytest.mark.quick
+def test_a_recording_is_renewed_if_it_does_not_show_what_it_must(recording):
+    recorded, shown, to_do = recording
+    to_do[0]["shows"] = "at 2"
+    assert record_pages.renewed(recorded, shown, to_do)[0]["latch"] == ["at 2.5"]
+
+
+@pytest.mark.quick
+def test_a_recording_is_renewed_if_it_does_not_say_what_it_leaves_out(recording):
+    recorded, shown, to_do = recording
+    shown.outputs = {**shown.outputs, "latch": ["at 2.5", "... 3 more lines"]}
+    assert record_pages.renewed(recorded, shown, to_do)[0]["latch"][-1] == "... 3 more lines"
+    recorded[0]["latch"].append("... 4 more lines")
+    assert record_pages.renewed(recorded, shown, to_do)[0]["latch"][-1] == "... 4 more lines"
 
 
 @pytest.mark.quick

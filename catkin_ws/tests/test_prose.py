@@ -320,3 +320,24 @@ def sources(folder):
     )
     recording.write_text('{"rows": [{"size": 8}]}')
     return value.Sources(folder)
+
+
+@pytest.mark.slow  # the extension needs Sphinx
+def test_a_picture_says_in_words_what_it_draws():
+    import picture
+
+    of = object.__new__
+    graph = {
+        "topics": {"/a": "std_msgs/UInt32", "/b": "std_msgs/String"},
+        "publishers": [["/one", "/a"], ["/two", "/a"]],
+        "subscribers": [["/two", "/b"]],
+    }
+    assert of(picture.Graph).alt(graph) == (
+        "Topic /a, type std_msgs/UInt32: published by /one, /two; subscribed to by no node. "
+        "Topic /b, type std_msgs/String: published by no node; subscribed to by /two."
+    )
+    assert of(picture.Queue).alt(9, {"one": {1, 2, 3, 9}, "two": {4}}) == (
+        "Messages 1 to 9. one received 1 to 3, 9. two received 4."
+    )
+    events = [{"node": "/one", "what": "published", "value": value} for value in "21"]
+    assert of(picture.Timeline).alt(events) == "/one published 2, 1."

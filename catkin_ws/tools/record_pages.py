@@ -14,7 +14,10 @@ import sys
 import tempfile
 
 import run_page
-from run_page import RECORDED, StepError, page_of, pages_of
+from run_page import RECORDED, StepError, meaning, page_of, pages_of
+
+# How many lines are left out differs from run to run.
+_LEFT_OUT = re.compile(r"\.\.\. \d+ more lines?")
 
 
 def masked(lines):
@@ -24,7 +27,8 @@ def masked(lines):
     """
     # Debian 13's env leaves out its folder, and the language decides upon the quotes.
     text = "\n".join(lines).replace("/usr/bin/env:", "env:").translate(str.maketrans("‘’", "''"))
-    return {re.sub(r"(?<![\w.])-?\d+(\.\d+)?(?=s?(?!\w))", "#", line) for line in text.splitlines()}
+    lines = [line for line in text.splitlines() if not _LEFT_OUT.fullmatch(line)]
+    return {re.sub(r"(?<![\w.])-?\d+(\.\d+)?(?=s?(?!\w))", "#", line) for line in lines}
 
 
 def differences(recorded, shown, printed):
@@ -35,6 +39,10 @@ def differences(recorded, shown, printed):
     # A node that is slow to start has a line of each kind, too; perhaps not with the first numbers,
     # to which the page keeps.
     return (masked(shown) - masked(recorded)) | (masked(recorded) - masked(printed))
+
+
+def says_what_is_left_out(lines):
+    return any(map(_LEFT_OUT.fullmatch, lines))
 
 
 def renewed(recorded, shown, to_do, page=None):
@@ -51,10 +59,20 @@ def renewed(recorded, shown, to_do, page=None):
         for kind in ("output", "graph")
         if page in (None, page_of(step))
     }
+    shows = {
+        step["output"]: step.get("shows", "").splitlines() for step in to_do if "output" in step
+    }
+
+    def is_kept(name, lines):
+        old = outputs.get(name, [])
+        return (
+            not differences(old, lines, shown.printed[name])
+            and not meaning.missing(shows[name], old)
+            and says_what_is_left_out(old) == says_what_is_left_out(lines)
+        )
+
     new = {
-        name: outputs[name]
-        if name in outputs and not differences(outputs[name], lines, shown.printed[name])
-        else lines
+        name: outputs[name] if is_kept(name, lines) else lines
         for name, lines in shown.outputs.items()
         if name in names
     }

@@ -29,7 +29,12 @@ from mrp_testing.workspace import WORKSPACE, copy_repository
 
 DOC = WORKSPACE / "src" / "mrp" / "doc"
 RECORDED = DOC / "recorded"
+sys.path.insert(0, str(DOC / "extension"))
+
+import meaning  # noqa: E402
+
 SECONDS = 900  # that a command may take: one builds the whole repository
+SHOWS_SECONDS = 60  # that one may go on until it has shown all that the page says
 
 # Which pages need one another. One reader reads these in their order: they write ~/catkin_ws, build
 # it, run it, and break it.
@@ -187,7 +192,8 @@ class Reader:
                 if page_of(step) not in TUTORIAL:
                     raise StepError("it writes a file: is this page one of TUTORIAL?")
                 path = self.home / step["path"]
-                path.parent.mkdir(parents=True, exist_ok=True)
+                if not path.parent.is_dir():
+                    raise StepError(f"no page has made the folder {path.parent}")
                 path.write_text(step["text"])
             else:
                 self._type(step)
@@ -201,6 +207,7 @@ class Reader:
             terminal = self._terminals[step["terminal"]] = Terminal(self._environment())
             for command in self._begin_with.get(step["terminal"], []):
                 terminal.run(command, 0)
+        shows = step.get("shows", "").splitlines()
         if "stop" in step:
             printed = terminal.stop()
         else:
@@ -208,7 +215,7 @@ class Reader:
             for command in first:
                 terminal.run(command, 0)
             if "until" in step:
-                printed = terminal.run_until(last, step["until"])
+                printed = terminal.run_until(last, step["until"], shows)
             else:
                 printed = terminal.run(last, step.get("exit", 0))
         if "graph" in step:
@@ -216,12 +223,14 @@ class Reader:
         if "until" in step and "keep" not in step:
             terminal.stop()
         if "output" in step:
-            only = re.compile(step.get("only", ""))
-            lines = [line for line in printed if not _CHANCE.match(line)]
-            shown = [line for line in lines if only.search(line)]
-            for outputs, chosen in ((self.shown.outputs, shown), (self.shown.printed, lines)):
-                text = "\n".join(chosen).strip().replace(str(self.home), "/home/you")
-                outputs[step["output"]] = text.split("\n")
+            text = "\n".join(line for line in printed if not _CHANCE.match(line))
+            lines = text.strip().replace(str(self.home), "/home/you").split("\n")
+            shown = only(step.get("only", ""), lines)
+            missing = meaning.missing(shows, shown)
+            if missing:
+                raise StepError(f"expected {missing}; found {shown}")
+            self.shown.outputs[step["output"]] = shown
+            self.shown.printed[step["output"]] = lines
 
     def _whole_graph(self, printed):
         """Return the graph once it has all nodes that roslaunch has started."""
@@ -281,12 +290,18 @@ class Terminal:
             raise StepError(f"{command}: exit code {actual}, expected {code}\n{self._text()}")
         return self._lines()
 
-    def run_until(self, command, pattern):
-        """Run a command until it has printed a line that has the pattern; return all lines."""
+    def run_until(self, command, pattern, shows=()):
+        """Run a command until it has printed a line that has the pattern, and what it shows.
+
+        Returns all lines.
+        """
         self._begin(command)
         pattern = re.compile(f"[^\r\n]*(?:{pattern})[^\r\n]*\r\n")
         if self._shell.expect([pattern, _PROMPT]) == 1:
             raise StepError(f"it ended before it printed {pattern.pattern}:\n{self._text()}")
+        end = time.monotonic() + SHOWS_SECONDS
+        while meaning.missing(shows, self._lines()) and time.monotonic() < end:
+            self._shell.expect("\r\n")
         return self._lines()
 
     def stop(self):
@@ -313,6 +328,15 @@ class Terminal:
 
     def _lines(self):
         return [line.rstrip() for line in self._text().splitlines()]
+
+
+def only(pattern, lines):
+    """Return the lines that have a pattern, and at the end how many others there are."""
+    chosen = [line for line in lines if re.search(pattern, line)]
+    count = len(lines) - len(chosen)
+    while chosen and not chosen[0]:
+        del chosen[0]
+    return chosen + [f"... {count} more line{'s' * (count > 1)}"] * (count > 0)
 
 
 def graph(master_uri):

@@ -17,6 +17,7 @@ extensions = [
     "quote",
     "value",
     "terminal",
+    "commands",
     "proof",
     "listing",
     "answer",

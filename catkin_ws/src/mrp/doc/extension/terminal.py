@@ -18,12 +18,16 @@ exit: the exit code that the last command must have, if it is not 0.
 output: the name in recorded/outputs.json for what the last command printed. It is recorded by
     tools/record_pages.py, and never typed.
 only: a regular expression: of what was printed, only lines that have it are shown, and compared.
+    The last line of the box says how many lines are left out.
+shows: what these lines must show, one text per line: see meaning.py. Times, numbers of processes,
+    ports and values are not compared otherwise.
 graph: the name in recorded/graphs.json for the graph (see picture.py) at this moment.
 """
 
 import json
 import pathlib
 
+import meaning
 from docutils import nodes
 from docutils.parsers.rst import directives
 from sphinx.directives.code import container_wrapper
@@ -41,6 +45,7 @@ class Terminal(SphinxDirective):
         "exit": int,
         "output": directives.unchanged_required,
         "only": directives.unchanged_required,
+        "shows": directives.unchanged_required,
         "graph": directives.unchanged_required,
     }
 
@@ -67,11 +72,18 @@ class Terminal(SphinxDirective):
         if "output" in options:
             lines = recorded(self, "outputs.json", options["output"])
             if lines is not None:
+                self.hold(lines)
                 result.append(self.block("\n".join(lines), "text", "output"))
         if "until" in options and "keep" not in options:
             text = "Ctrl-C ends it."
             result.append(nodes.paragraph(text, text, generated=True))
         return result
+
+    def hold(self, lines):
+        """Raise the directive's error if what is recorded does not show what the page says."""
+        missing = meaning.missing(self.options.get("shows", "").splitlines(), lines)
+        if missing and not self.config.recording:
+            raise self.error(f"expected in {self.options['output']}: {missing}; found {lines}")
 
     def block(self, text, language, css_class):
         block = nodes.literal_block(text, text, language=language, classes=[css_class])
