@@ -17,7 +17,7 @@ from sphinx.util import logging
 LIST = pathlib.Path(__file__).resolve().parents[1] / "untyped.txt"
 PROGRAMS = """
 adduser apt-get catkin_create_pkg catkin_make cd chmod docker export git kill make mkdir nano
-rosbag roscore roslaunch rosmsg rosnode rosparam rosrun rostopic source su sudo
+rosbag roscore roslaunch rosmsg rosnode rosparam rosrun rosservice rostopic source su sudo
 """.split()
 
 logger = logging.getLogger(__name__)
