@@ -41,7 +41,11 @@ def workspaces(tmp_path_factory):
     return folder
 
 
-@proves("A terminal uses that of the workspace whose setup.bash it has sourced last.")
+@proves(
+    "A terminal uses that of the workspace whose setup.bash it has sourced last.",
+    "If two workspaces have a package of the same name, the terminal uses that of the one sourced "
+    "last.",
+)
 @pytest.mark.parametrize("order", [NAMES, NAMES[::-1]], ids=lambda order: f"{order[-1]}_is_last")
 def test_the_one_whose_setup_was_sourced_last_is_used(workspaces, order):
     sources = " && ".join(f"source {workspaces / name}/devel/setup.bash" for name in order)

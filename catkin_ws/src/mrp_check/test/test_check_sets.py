@@ -111,6 +111,8 @@ def test_correct_package_is_met(style, tmp_path, run_check):
 
 @proves(
     "Here they are those of ROS; without them, the linker reports an error.",
+    "The same happens with a script named rospy.py or numbers.py: the checker reports it.",
+    "The checker reports them.",
     "It reports what is wrong, where, and which page explains it.",
     "The exit code is 0 if all requirements are met, 1 if one is not, and 2 if the package could "
     "not be checked.",
