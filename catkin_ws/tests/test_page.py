@@ -59,8 +59,7 @@ def shown(site, tmp_path_factory):
     "Fix: add_dependencies, as above.",
     "Cause: the module src/counts/numbers.py is in no folder in which Python looks.",
     "Fix: the file setup.py, and catkin_python_setup() above generate_messages:",
-    "Cause: Python looks into the script's own folder first, and takes the script for the "
-    "package.",
+    "Cause: Python looks into the script's own folder first, and takes the script for the package.",
     "ROS compares these numbers, and not the names alone.",
     "A new terminal that sources only over_ws knows the first workspace, too:",
     "Cause: devel remembers a folder that does not exist.",
