@@ -44,7 +44,7 @@ def test_second_build_does_nothing(copy):
 
 
 def test_run_builds_the_tutorial_and_a_whole_workspace_stays_whole(copy):
-    """It only says what it would do: one option decides upon what is built."""
+    """It only says what it would do: one option decides what is built."""
     tutorial = "-DCATKIN_WHITELIST_PACKAGES=mrp "
     built = copy / "catkin_ws/devel/.built_whole"
     changed = ("--what-if", "catkin_ws/src/mrp/src/publisher_cpp_node.cpp")

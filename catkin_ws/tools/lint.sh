@@ -47,4 +47,9 @@ check "eslint" $tools/node $lint/node_modules/.bin/eslint --max-warnings 0 \
   --config catkin_ws/eslint.config.mjs "${javascript[@]}"
 check "shellcheck" shellcheck "${shell[@]}"
 check "xmllint" xmllint --noout "${xml[@]}"
+# What shows how something is wrong is spelt wrong on purpose.
+mapfile -t texts < <(files '*.rst' '*.md' '*.py' '*.cpp' '*.h' '*.sh' '*.launch' '*.js' Makefile \
+  ':!*/test/*' ':!catkin_ws/tests' ':!*/errata.rst')
+check "codespell" codespell --ignore-words-list whats,ot,ist "${texts[@]}"
+check "English" /usr/bin/python3 catkin_ws/tools/english.py
 exit $status

@@ -25,7 +25,7 @@ def masked(lines):
 
     Lines of several nodes come in any order, and more or fewer of a kind: so it is a set.
     """
-    # Debian 13's env leaves out its folder, and the language decides upon the quotes.
+    # Debian 13's env leaves out its folder, and the language decides the quotes.
     text = "\n".join(lines).replace("/usr/bin/env:", "env:").translate(str.maketrans("‘’", "''"))
     lines = [line for line in text.splitlines() if not _LEFT_OUT.fullmatch(line)]
     return {re.sub(r"(?<![\w.])-?\d+(\.\d+)?(?=s?(?!\w))", "#", line) for line in lines}

@@ -36,7 +36,7 @@ class TestPublisherQueue(unittest.TestCase):
         "The oldest one in the queue.",
         "The new one takes a place at the end.",
         "A message can wait in two queues, and each has its own size: at the publisher until it "
-        "is sent, and at the subscriber until the callback has time for it.",
+        "is sent, and at the subscriber until the callback is free.",
         "When it is full, it drops the oldest message.",
         "In this lab two publishers send 20 large messages each, from a queue of 5, faster than "
         "their subscriber's callback takes them.",

@@ -23,7 +23,7 @@ class TestSubscriberQueue(unittest.TestCase):
         "In Python, a subscriber has a queue for each publisher of the topic.",
         "In C++, all publishers of the topic share one queue.",
         "A message can wait in two queues, and each has its own size: at the publisher until it "
-        "is sent, and at the subscriber until the callback has time for it.",
+        "is sent, and at the subscriber until the callback is free.",
         "When it is full, it drops the oldest message.",
         "In this lab one message keeps each callback busy while 15 more arrive.",
         "The lab's Python subscribers receive the same numbers.",

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Measures many ways in turns, round after round, and keeps every sample.
 
-What else the machine does from one minute to the next so falls upon all ways alike.
+What else the machine does from one minute to the next so falls on all ways alike.
 """
 
 import collections
