@@ -54,5 +54,10 @@ def faults(browser, address):
     return result
 
 
+def test_it_finds_an_error_text(browser, address):
+    found = search(browser, "mutex lock failed in pthread_mutex_lock")
+    assert any("/pages/why.html" in link for link in found)
+
+
 def test_it_finds_nothing_where_there_is_nothing(browser, address):
     assert search(browser, "xylophone") == []

@@ -143,7 +143,10 @@ def test_names_paths_and_numbers_do_not_count(name, text, index):
     assert name in [one.name for one in index.nearest(text)]
 
 
-@proves("It prints up to three entries, the nearest one first.")
+@proves(
+    "It prints up to three entries, the nearest one first.",
+    'make why TEXT="..." says what an error text means.',
+)
 def test_make_why_answers_a_text():
     done = make("why", "TEXT=RLException: [a.launch] requires the '$(arg x)' arg to be \"set\"")
     assert done.returncode == 0
