@@ -24,7 +24,7 @@ extensions = [
     "bench",
     "picture",
     "exercises",
-    "why",
+    "error_texts",
     "book",
 ]
 
