@@ -9,13 +9,12 @@ import rospy
 from mrp_labs.parameters import Parameters
 from rosgraph_msgs.msg import Clock
 
-PERIOD = 0.01  # seconds between two messages
-
 
 class LabClock:
     def __init__(self, parameters):
         self.begin = parameters.number("begin", 1000, least=1)  # the first time, in seconds
         self.factor = parameters.number("factor", 1, least=1)  # how much faster it goes
+        self.period = parameters.seconds("period", 0.01)  # seconds between two messages
         self.jump = parameters.number("jump", 0)  # seconds: forward, then back, forward, ...
         self.jump_every = parameters.number("jump_every", 5, least=1)  # seconds, not simulated
         parameters.no_others()
@@ -35,7 +34,7 @@ class LabClock:
                 rospy.loginfo(f"{rospy.get_name()} jumps {self.jump} s {direction}")
             now = self.begin + elapsed * self.factor + self.jump * (jumps % 2)
             publisher.publish(Clock(rospy.Time.from_sec(now)))
-            time.sleep(PERIOD)  # rospy.sleep would wait for the clock, which is this one
+            time.sleep(self.period)  # rospy.sleep would wait for the clock, which is this one
 
 
 def main():

@@ -6,9 +6,11 @@
 #include <ros/ros.h>
 #include <rosgraph_msgs/Clock.h>
 #include <std_msgs/UInt32.h>
+#include <boost/make_shared.hpp>
 
 #include <array>
 #include <future>
+#include <vector>
 
 namespace
 {
@@ -208,6 +210,32 @@ TEST(Roscpp, rateSleepsUntilThereIsAClock)
 {
   EXPECT_GT(clocksUntilReturn([] { ros::Rate(1000).sleep(); }), 0);
   EXPECT_EQ(0, clocksUntilReturn([] { ros::WallRate(1000).sleep(); }));
+}
+
+// Proves: What you change later changes nothing, unless you publish a boost::shared_ptr: then a
+//   subscriber in the same process gets the very object that you publish, and sees each change.
+TEST(Roscpp, publishedPointerIsSharedInOneProcess)
+{
+  ros::NodeHandle nh;
+  ros::Publisher publisher = nh.advertise<std_msgs::UInt32>("/changed", 10);
+  std::vector<uint32_t> values;
+  const boost::function<void(const std_msgs::UInt32&)> keep = [&values](const std_msgs::UInt32& msg)
+  { values.push_back(msg.data); };
+  const ros::Subscriber subscriber = nh.subscribe<std_msgs::UInt32>("/changed", 10, keep);
+  ASSERT_TRUE(spinUntil([&publisher] { return publisher.getNumSubscribers() == 1; }));
+
+  std_msgs::UInt32 msg;
+  msg.data = 1;
+  publisher.publish(msg);
+  msg.data = 2;
+  ASSERT_TRUE(spinUntil([&values] { return values.size() == 1; }));
+
+  const auto shared = boost::make_shared<std_msgs::UInt32>();
+  shared->data = 3;
+  publisher.publish(shared);
+  shared->data = 4;
+  ASSERT_TRUE(spinUntil([&values] { return values.size() == 2; }));
+  EXPECT_EQ((std::vector<uint32_t>{1, 4}), values);
 }
 
 int main(int argc, char* argv[])

@@ -53,6 +53,7 @@ class TestThreads(unittest.TestCase):
         "rospy: one thread for each connection, one for each timer.",
         "ros::spin: one thread for all callbacks.",
         "In Python the timer and the connection have different threads.",
+        "Under ros::spin it cannot: one thread calls all callbacks.",
         "rospy calls the callback in a thread of the connection, whatever the loop does.",
         "In Python, the connection's own thread receives the message and calls the callback.",
         "In C++, the callbacks are called meanwhile.",
@@ -99,6 +100,7 @@ class TestThreads(unittest.TestCase):
         "Under ros::spin, a slow callback holds up all callbacks of its node: no two run at the "
         "same time.",
         "With several threads in C++, callbacks of two topics run at the same time.",
+        "With two threads it can, because callbacks of two topics run at the same time.",
         "A timer changes nothing, because its callback works just as long, and ros::spin calls "
         "one callback after the other.",
     )

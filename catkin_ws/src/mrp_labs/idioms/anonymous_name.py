@@ -1,0 +1,23 @@
+#!/usr/bin/env python
+# SPDX-License-Identifier: BSD-3-Clause
+"""A name with a number behind it: use it for a tool of which several run at once, and not for a
+node that has parameters, or that others ask for by its name."""
+
+import rospy
+from std_msgs.msg import UInt32
+
+
+def subscriber_callback(msg):
+    rospy.loginfo("received %d", msg.data)
+
+
+def main():
+    rospy.init_node("anonymous_name", anonymous=True)
+    rospy.loginfo("my name is %s, my rate is %d", rospy.get_name(), rospy.get_param("~rate", 1))
+
+    subscriber = rospy.Subscriber("great_topic", UInt32, subscriber_callback, queue_size=10)
+    rospy.spin()
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,101 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""What one message at a time misses, and when a publisher knows that somebody listens."""
+
+import contextlib
+import unittest
+
+import rospy
+import rostest
+from mrp_testing import log_line
+from mrp_testing.clock import TurnedClock
+from mrp_testing.lab import PACKAGE
+from mrp_testing.nodes import program
+from mrp_testing.process import LIVE, Process
+from mrp_testing.proves import proves
+from std_msgs.msg import UInt32
+
+TURN = 10.0  # seconds of the turned clock: many periods of the idiom's loop
+
+
+@contextlib.contextmanager
+def publisher(latch=False):
+    one = rospy.Publisher("/great_topic", UInt32, queue_size=10, latch=latch)
+    try:
+        yield one
+    finally:
+        one.unregister()
+
+
+def listens(node, one):
+    """Wait until the idiom has a connection to the publisher."""
+    node.wait_for(lambda: one.get_num_connections() == 1, "the idiom listens")
+
+
+def listens_no_more(node, one):
+    node.wait_for(lambda: one.get_num_connections() == 0, "the idiom has unsubscribed")
+
+
+def received(node, *values):
+    """Wait until the idiom has logged these values, and no others."""
+    wanted = [f"received {value}" for value in values]
+    node.wait_for(lambda: len(log_line.texts(node.lines)) >= len(wanted), f"{wanted}")
+    assert log_line.texts(node.lines) == wanted, str(node)
+
+
+class TestWhoListens(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        rospy.init_node("test_who_listens")
+
+    def each_idiom(self):
+        """Yield the idiom in each language, and the clock by which its loop goes."""
+        for executable in ("wait_for_message", "wait_for_message.py"):
+            command = program(PACKAGE, executable)
+            with TurnedClock() as clock, Process(command, extra_env=LIVE) as node:
+                yield node, clock
+
+    @proves(
+        "What is published between two calls is lost.",
+        "In a loop it loses what comes in between.",
+    )
+    def test_what_comes_between_two_waits_is_lost(self):
+        for node, clock in self.each_idiom():
+            with publisher() as one:
+                listens(node, one)
+                one.publish(1)
+                received(node, 1)
+                listens_no_more(node, one)
+                one.publish(2)
+                clock.turn_until(node, TURN, lambda: one.get_num_connections() == 1)
+                one.publish(3)
+                received(node, 1, 3)
+                # Ctrl-C while it waits; not while it logs, when rospy may not end.
+                clock.turn_until(node, TURN, lambda: one.get_num_connections() == 1)
+                self.assertEqual(node.stop(), 0, str(node))
+
+    @proves(
+        "And if the publisher is latched, each call gets the last message once more.",
+        "Each call subscribes anew, and a latched publisher sends its last message to each new "
+        "subscriber.",
+    )
+    def test_what_is_latched_comes_again(self):
+        for node, clock in self.each_idiom():
+            with publisher(latch=True) as one:
+                one.publish(1)
+                received(node, 1)
+                clock.turn_until(node, TURN, lambda: len(log_line.texts(node.lines)) >= 2)
+                received(node, 1, 1)
+                self.assertEqual(node.errors, [], str(node))
+
+    @proves("In Python it raises rospy.ROSException, with this text.")
+    def test_timeout(self):
+        with self.assertRaises(rospy.ROSException) as raised:
+            rospy.wait_for_message("/nobody", UInt32, timeout=0.01)
+        self.assertEqual(
+            str(raised.exception), "timeout exceeded while waiting for message on topic /nobody"
+        )
+
+
+if __name__ == "__main__":
+    rostest.rosrun(PACKAGE, "who_listens", TestWhoListens)
