@@ -159,7 +159,7 @@ class TestParameters(unittest.TestCase):
         self.check_sentence(
             CLOCK,
             {"jmp": 1},
-            "parameter ~jmp is not known, only ~begin, ~factor, ~jump, ~jump_every",
+            "parameter ~jmp is not known, only ~begin, ~factor, ~jump, ~jump_every, ~period",
         )
 
 
