@@ -131,9 +131,9 @@ def test_cut_network_loses_values_only_where_and_while_it_is_cut(nodes, subscrib
 
 
 @proves(
-    "A subscriber whose queue has no limit, such as rostopic echo, loses none.",
+    "Where no queue is full, such as with rostopic echo, none is lost.",
     "When the network is back, TCP delivers everything at once.",
-    "rostopic echo loses nothing, because its queue has no limit.",
+    "rostopic echo loses nothing here, because its own queue has no limit.",
     "TCP delivers all values at once when the network is back.",
     "The node's queue keeps 10 of them, and rostopic echo has a queue without a limit.",
 )

@@ -23,8 +23,8 @@ class TestCoarseClock(unittest.TestCase):
         rospy.init_node("test_coarse_clock")
 
     @proves(
-        "Each message on /clock lets the loop come round twice at once, and no more: it does not "
-        "catch up.",
+        "Where /clock comes only every 10 periods, each message lets the loop come round twice at "
+        "once, and no more.",
     )
     def test_a_loop_faster_than_the_clock(self):
         with TurnedClock() as clock, Lab("loop_coarse_clock.launch", "clock:=false") as lab:

@@ -112,7 +112,7 @@ class TestThreads(unittest.TestCase):
                 self.assertEqual(len(threads(lab, pool, *PUBLISHERS)), 2, pool)
 
     @proves(
-        "Callbacks of one topic still wait for each other.",
+        "Callbacks of one subscriber still wait for each other.",
         "They need not wait if the subscriber sets allow_concurrent_callbacks in its "
         "ros::SubscribeOptions.",
         "In Python, the callback runs for two publishers at the same time, even on one topic.",

@@ -70,6 +70,7 @@ class TestWhoListens(unittest.TestCase):
                 clock.turn_until(node, TURN, lambda: one.get_num_connections() == 1)
                 one.publish(3)
                 received(node, 1, 3)
+                listens_no_more(node, one)
                 # Ctrl-C while it waits; not while it logs, when rospy may not end.
                 clock.turn_until(node, TURN, lambda: one.get_num_connections() == 1)
                 self.assertEqual(node.stop(), 0, str(node))
