@@ -121,8 +121,8 @@ def test_page_says_what_is_in_it(image, image_layers):
         written = {row["what"]: float(row[column]) for row in csv.DictReader(file)}
     assert written.keys() == measured.keys()
     for what, mb in written.items():
-        # An update of Debian's may change a little.
-        assert mb == pytest.approx(measured[what] / 1e6, rel=0.03, abs=0.1), f"{what}: {measured}"
+        # An update of Debian's, or one more lab, may change a little.
+        assert mb == pytest.approx(measured[what] / 1e6, rel=0.03, abs=0.5), f"{what}: {measured}"
     assert sum(written.values()) == pytest.approx(2 * written["all"], abs=1)
     assert inspect(image)["Size"] == pytest.approx(measured["all"], rel=0.001)
 
