@@ -14,7 +14,7 @@ from mrp_testing.master import master, uri_of
 from mrp_testing.ports import free_port
 from mrp_testing.process import LIVE, Process
 from mrp_testing.proves import proves
-from mrp_testing.waiting import wait_until
+from mrp_testing.waiting import wait_until, within
 from mrp_testing.workspace import ROOT, WORKSPACE
 
 pytestmark = pytest.mark.slow
@@ -38,6 +38,7 @@ PACKAGE_XML = """<package format="2">
 <license>BSD-3-Clause</license><buildtool_depend>catkin</buildtool_depend></package>
 """
 RELEASE = pathlib.Path("/etc/debian_version").read_text().split(".")[0]
+ENDING = 10.0  # seconds that a program has to end after Ctrl-C
 
 
 @pytest.fixture(scope="session")
@@ -62,7 +63,8 @@ def headers(tmp_path_factory):
 @pytest.fixture
 def env(request, tmp_path):
     """The environment of a user with a home of its own, and a master if the entry needs one."""
-    env = {k: v for k, v in os.environ.items() if not k.startswith("CCACHE")}
+    # Below make, a make says make[1].
+    env = {k: v for k, v in os.environ.items() if not k.startswith(("CCACHE", "MAKE", "MFLAGS"))}
     needs = request.getfixturevalue("entry").needs.split()
     port = request.getfixturevalue("running_master") if "master" in needs else free_port()
     if "roscpp" in needs:
@@ -118,7 +120,8 @@ def end(process):
     """End a shell and all that it runs: what is in the foreground, as Ctrl-C does."""
     try:
         os.killpg(process.pid, signal.SIGINT)
-        wait_until(lambda: process.code is not None, process.__str__)
+        # roslaunch may stand still for good after an error.
+        within(ENDING, lambda: process.code is not None)
         os.killpg(process.pid, signal.SIGKILL)
     except ProcessLookupError:
         pass

@@ -20,6 +20,10 @@ from run_page import RECORDED, StepError, meaning, page_of, pages_of
 _LEFT_OUT = re.compile(r"\.\.\. \d+ more lines?")
 
 
+# Numbers, and those at the end of a name that is anonymous.
+_NUMBERS = re.compile(r"(?<![\w.])-?\d+(\.\d+)?(?=s?(?!\w))|(?<=_)\d{4,}")
+
+
 def masked(lines):
     """Return the lines, with what differs from run to run as #: times, process ids, ports, values.
 
@@ -28,7 +32,7 @@ def masked(lines):
     # Debian 13's env leaves out its folder, and the language decides the quotes.
     text = "\n".join(lines).replace("/usr/bin/env:", "env:").translate(str.maketrans("‘’", "''"))
     lines = [line for line in text.splitlines() if not _LEFT_OUT.fullmatch(line)]
-    return {re.sub(r"(?<![\w.])-?\d+(\.\d+)?(?=s?(?!\w))", "#", line) for line in lines}
+    return {_NUMBERS.sub("#", line) for line in lines}
 
 
 def differences(recorded, shown, printed):
