@@ -18,6 +18,7 @@ from mrp_testing.workspace import ROOT, WORKSPACE
 pytestmark = pytest.mark.quick
 
 README = (ROOT / "README.md").read_text()
+IDLE = 4.0  # seconds: where a node takes longer to compile, other work slows the machine down
 
 
 def console_block():
@@ -107,10 +108,11 @@ def test_layout_names_folders_that_exist():
     "takes 11 min 16 s.",
 )
 def test_times_are_those_of_the_recording():
-    """The last commit of own_times.csv whose stages were all recorded."""
+    """The last commit of own_times.csv whose stages were all recorded, on idle cores."""
     took = {}
     for row in csv.DictReader((WORKSPACE / "own_times.csv").read_text().splitlines()):
-        took.setdefault(row["commit"], {})[row["stage"]] = float(row["seconds"])
+        if float(row["node"]) < IDLE:
+            took.setdefault(row["commit"], {})[row["stage"]] = float(row["seconds"])
     last = [stages for stages in took.values() if "pytest, slow" in stages][-1]
     quick = sum(last[stage] for stage in ("build", "rostests, quick", "pytest, quick"))
     expected = [divmod(round(seconds), 60) for seconds in (quick, sum(last.values()))]
