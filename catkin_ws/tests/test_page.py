@@ -228,4 +228,5 @@ def test_one_page_alone_is_recorded(recording):
 def test_a_recording_may_have_fewer_lines_of_a_kind():
     assert record_pages.differences(["a 1", "a 2"], ["a 3"], ["a 3", "b"]) == set()
     assert record_pages.differences(["a 1"], ["a 3", "b"], ["a 3", "b"]) == {"b"}
+    assert record_pages.differences(["a 1"], ["a 3", "b 1"], ["a 3", "b 1", "c"]) == set()
     assert record_pages.differences(["a 1", "c"], ["a 3"], ["a 3", "b"]) == {"c"}
