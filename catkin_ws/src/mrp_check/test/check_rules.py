@@ -85,7 +85,7 @@ def model_of(package):
 def file_findings(rule, package, **known):
     """Return what a rule says of a package of which only the files are known.
 
-    known: what is to be known besides, such as started
+    known: what the rule knows in addition, such as started
     """
     given = {"manifest": manifest.parse(package), "model": model_of(package), "launch": None}
     given.update({"spec": PUB_SUB, "started": {}, **known})

@@ -163,8 +163,8 @@ class _Node:
         if silent and self.activity.is_idle(self.program.pid):
             return True
         if self.plan.is_wrap:
-            told = [event.event for event in self.events()]
-            return told.count("after") >= _AFTER or "error" in told or "not_found" in told
+            names = [event.event for event in self.events()]
+            return names.count("after") >= _AFTER or "error" in names or "not_found" in names
         if self.observer.most_of(name) < self.plan.publishes:
             return False
         return not self.plan.values or self._has_heard(name)

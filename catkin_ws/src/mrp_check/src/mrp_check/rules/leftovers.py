@@ -17,16 +17,16 @@ from mrp_check.student.package import Package
 
 def findings(case: Case) -> Iterator[Finding]:
     seen, spec, package, places = case.observed, case.spec, case.package, case.places
-    told: set[object] = set()
+    reported: set[object] = set()
     for left in [one for run in (seen.direct, seen.launch) if run for one in run.left]:
         name = left.node
         if name is None or name not in spec.nodes:
             found = re.search(r"__name:=(\w+)", left.command)
             name = found.group(1) if found and found.group(1) in spec.nodes else None
         alone = seen.alone(name)
-        if {(name, "left"), left.command} & told or alone and alone.killed:
+        if {(name, "left"), left.command} & reported or alone and alone.killed:
             continue
-        told |= {(name, "left"), left.command}
+        reported |= {(name, "left"), left.command}
         file, line = _starts_program(name, package, places)
         name = name or next((node for node in spec.nodes if file in places.sources(node)), None)
         yield Finding(

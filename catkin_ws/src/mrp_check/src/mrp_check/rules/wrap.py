@@ -41,8 +41,8 @@ def _of(node: Node) -> Iterator[Finding]:
             seen=text,
         )
     elif "set" in events:
-        told = [event for event in node.wrap.events if event.event == "after"]
-        after = [event.value for event in told if event.value is not None]
+        values = [event.value for event in node.wrap.events if event.event == "after"]
+        after = [value for value in values if value is not None]
         yield from _at_the_end(node, rule, last, after, expected)
 
 

@@ -159,7 +159,7 @@ def _session(
 ) -> T | None:
     """Have session.py carry out a plan; return the result, which is of that kind.
 
-    Returns None where there is none through the package's fault; `problems` then has the reason.
+    Returns None if the package kept it from giving a result; `problems` then has the reason.
     Raises CannotCheck.
     """
     common, own = plan.common, str(sandbox.PACKAGE.parent)

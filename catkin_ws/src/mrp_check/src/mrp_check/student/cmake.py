@@ -136,7 +136,7 @@ def sections(arguments: Iterable[str], names: Collection[str]) -> dict[str, list
     return result
 
 
-# What stands among the sources of a target, and is none.
+# Words that may stand among the sources of a target, but name no source.
 _NO_SOURCES = set(
     (
         "WIN32 MACOSX_BUNDLE EXCLUDE_FROM_ALL STATIC SHARED MODULE OBJECT INTERFACE PUBLIC PRIVATE"
