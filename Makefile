@@ -181,7 +181,7 @@ test-browser: packages-test-browser $(BUILT_WHOLE) docs  ## open every page in C
 	@catkin_ws/tools/install_others.sh
 	@rm -rf $(SCREENSHOTS)
 	@$(IN_WORKSPACE) $(ALONE) source devel/setup.bash; \
-	/usr/bin/python3 -m pytest --junit-xml=$(RESULTS)/browser.xml browser_tests
+	/usr/bin/python3 -m pytest -n 2 --dist loadgroup --junit-xml=$(RESULTS)/browser.xml browser_tests
 	@echo "Look at the pages: $(SCREENSHOTS)"
 
 .PHONY: doctor

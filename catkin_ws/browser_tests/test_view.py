@@ -23,6 +23,9 @@ from mrp_testing.workspace import WORKSPACE
 from selenium.webdriver.common.keys import Keys
 from std_msgs.msg import String, UInt32
 
+# One worker of pytest: its nodes, its master and its page serve all of these tests.
+pytestmark = pytest.mark.xdist_group("view")
+
 SCREENSHOTS = WORKSPACE / "build" / "screenshots"
 MARKUP = '<img src="x" onerror="document.title=1"><script>document.title=2</script>'
 

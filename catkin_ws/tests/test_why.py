@@ -102,6 +102,7 @@ def lay_out(entry, folder):
 
 
 @proves(
+    "roslaunch says escalating to SIGTERM, and ends it after a while.",
     "Each heading is a text that a tool prints: a test runs the tool and compares.",
 )
 @pytest.mark.parametrize("entry", parameters())

@@ -4,19 +4,29 @@
 
 import os
 import re
+import signal
+import sys
 import tempfile
 import unittest
 
+import rosgraph
 import rostest
 from mrp_testing import log_line
 from mrp_testing.lab import PACKAGE, Lab
-from mrp_testing.process import Process
+from mrp_testing.master import master, uri_of
+from mrp_testing.ports import free_port
+from mrp_testing.process import LIVE, Process
 from mrp_testing.proves import proves
+from mrp_testing.waiting import within
 
 DECIMALS = {"py": 6, "cpp": 9}  # of the time in a line: so each shows its language
 LOGGERS = {"py": "rosout", "cpp": "ros.mrp_labs"}
 ALWAYS = {"INFO", "WARN", "ERROR", "FATAL"}
 GIGABYTE = 2**30
+STILL = 1.0  # seconds
+LOGS = (
+    "import rospy; rospy.init_node('logs')\nwhile not rospy.is_shutdown(): rospy.loginfo('a line')"
+)
 
 
 def levels(lines, language):
@@ -96,6 +106,46 @@ class TestLog(unittest.TestCase):
                     lab.wait_for(lambda: levels(lab.lines, language), "the nodes run")
             self.assertEqual(run("rosclean", "purge", "-y", env=env), 0)
             self.assertFalse(os.path.exists(os.path.join(folder, "old.log")))
+
+    @proves(
+        "What you see: after Ctrl-C the node prints no more lines, and does not end.",
+        "A second Ctrl-C does not end it either.",
+        "Why: rospy asks the master for a parameter at each line of log.",
+        "At Ctrl-C, the same thread must call the master to end the node, and waits for itself.",
+        "So it happens in a node whose main thread logs in a loop.",
+        "Fix: set the parameter in your launch file, and it asks only once:",
+        "A node that logs in its callbacks, and whose main thread spins, ends at Ctrl-C.",
+    )
+    def test_ctrl_c_in_a_log_call(self):
+        self.press_ctrl_c(LOGS, asks_each_time=True, ends=False)
+        self.press_ctrl_c(LOGS, asks_each_time=False, ends=True)
+        in_callbacks = LOGS.replace("while not rospy.is_shutdown(): ", "def log(_): ")
+        in_callbacks += "\nrospy.Timer(rospy.Duration(0.01), log); rospy.spin()"
+        self.press_ctrl_c(in_callbacks, asks_each_time=True, ends=True)
+
+    def press_ctrl_c(self, program, asks_each_time, ends):
+        """Press Ctrl-C while a line of log may wait for the master, and see whether it ends."""
+        port = free_port()
+        env = {**LIVE, "ROS_MASTER_URI": uri_of(port)}
+        with master(port) as core:
+            if not asks_each_time:
+                name = "/rosout_disable_topics_generation"
+                rosgraph.Master("/test", uri_of(port)).setParam(name, False)
+            with Process(sys.executable, "-c", program, extra_env=env) as node:
+                node.wait_for(lambda: len(node.lines) > 2, "lines")
+                os.kill(core.pid, signal.SIGSTOP)
+                count = len(node.lines)
+                waits = not within(STILL, lambda: len(node.lines) > count + 1)
+                self.assertEqual(waits, asks_each_time, "a line waits for the master")
+                os.kill(node.pid, signal.SIGINT)
+                os.kill(core.pid, signal.SIGCONT)
+                if ends:
+                    self.assertEqual(node.wait(), 0)
+                    return
+                for again in (signal.SIGINT, signal.SIGKILL):
+                    self.assertFalse(within(STILL, lambda: node.code is not None), str(node))
+                    os.kill(node.pid, again)
+                node.wait()
 
 
 if __name__ == "__main__":

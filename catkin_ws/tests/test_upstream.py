@@ -1,0 +1,97 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What ROS itself does wrong: with its patch in upstream/, each lab goes as one would expect.
+
+What happens without it is shown by the lab's own test, which the report names.
+"""
+
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+
+import pytest
+import rosgraph
+from mrp_testing.lab import Lab
+from mrp_testing.master import master, uri_of
+from mrp_testing.ports import free_port
+from mrp_testing.process import LIVE, Process
+from mrp_testing.waiting import wait_until
+from mrp_testing.workspace import WORKSPACE
+
+pytestmark = pytest.mark.slow
+
+UPSTREAM = WORKSPACE / "upstream"
+INSTALLED = pathlib.Path(rosgraph.__file__).parent.parent
+# Where Debian's source package of ros_comm has the Python packages that a patch touches.
+SOURCES = {"clients/rospy/src": "rospy", "tools/rosmaster/src": "rosmaster"}
+
+
+@pytest.fixture
+def patched(request, tmp_path, monkeypatch):
+    """Have a master, and nodes whose ROS has the patch of this test's name."""
+    name = request.function.__name__.removeprefix("test_")
+    for folder, package in SOURCES.items():
+        shutil.copytree(INSTALLED / package, tmp_path / folder / package)
+    patch = UPSTREAM / f"{name}.patch"
+    subprocess.run(["patch", "-p1", "--input", patch], cwd=tmp_path, check=True)
+    port = free_port()
+    paths = [*(str(tmp_path / folder) for folder in SOURCES), os.environ["PYTHONPATH"]]
+    monkeypatch.setenv("PYTHONPATH", ":".join(paths))
+    monkeypatch.setenv("ROS_MASTER_URI", uri_of(port))
+    monkeypatch.setenv("ROS_LOG_DIR", str(tmp_path))
+    with master(port):
+        yield tmp_path
+
+
+def node(program):
+    """Run a Python program that begins a node of the name a_node."""
+    begin = "import rospy; rospy.init_node('a_node'); print('up')\n"
+    return Process(sys.executable, "-c", begin + program, extra_env=LIVE)
+
+
+def test_every_report_has_its_patch_and_its_test():
+    reports = {path.stem for path in UPSTREAM.glob("*.md")}
+    assert reports == {path.stem for path in UPSTREAM.glob("*.patch")}
+    assert all(f"test_{name}" in globals() for name in reports)
+
+
+def test_log_line_ends_the_newer_node(patched):
+    program = "rospy.on_shutdown(lambda: rospy.loginfo('goodbye')); rospy.spin()"
+    with node(program) as older:
+        older.wait_for(lambda: "up" in older.lines, "the older one")
+        with node(program) as newer:
+            assert older.wait() == 0
+            newer.wait_for(lambda: "up" in newer.lines, "the newer one")
+            assert newer.stop() == 0
+            assert "new node registered" in "\n".join(older.lines)
+            assert "new node registered" not in "\n".join(newer.lines)
+
+
+def test_ctrl_c_in_a_log_call_never_ends_the_node(patched):
+    for _ in range(4):
+        with node("while not rospy.is_shutdown(): rospy.loginfo('a line')") as logs:
+            logs.wait_for(lambda: len(logs.lines) > 9, "lines")
+            assert logs.stop() == 0
+
+
+def test_refused_value_deafens_subscribers(patched):
+    with Lab("refused_value.launch") as lab:
+        lab.wait_for_count("/refused/subscriber_py", 4)
+        assert lab.values("/refused/subscriber_py")[:4] == ["1", "2", "4", "5"]
+
+
+def test_sleep_without_a_clock_is_silent(patched):
+    rosgraph.Master("/test").setParam("/use_sim_time", True)
+    with node("rospy.sleep(1)") as sleeper:
+        sleeper.wait_for(lambda: "no message has come on /clock" in str(sleeper), "the warning")
+
+
+def test_both_nodes_of_one_name_go_on(patched):
+    arguments = ("one_name.launch", "asked_once:=true")
+    with Lab(*arguments, "hostname:=no-such-host") as older:
+        older.wait_for(lambda: older.logged("/one_name/publisher_py"), "the older node")
+        with Lab(*arguments):
+            warning = "cannot shut down node [/one_name/publisher_py]"
+            log = patched / "master.log"
+            wait_until(lambda: warning in log.read_text(), lambda: log.read_text()[-2000:])
