@@ -169,7 +169,12 @@ def test_what_a_console_must_show(text, is_shown):
 def test_a_reader_waits_for_what_a_console_shows_and_says_what_is_left_out(tmp_path):
     step = {"page": "pages/latch", "kind": "terminal", "terminal": "1", "line": 7, "output": "a"}
     # One job: Ctrl-C between the two of a list may end neither.
-    going_on = {"commands": ["seq 40 | cat - /dev/tty"], "until": "3", "only": "4$", "shows": "^4$ ... ^14$"}
+    going_on = {
+        "commands": ["seq 40 | cat - /dev/tty"],
+        "until": "3",
+        "only": "4$",
+        "shows": "^4$ ... ^14$",
+    }
     with run_page.Reader(tmp_path) as reader:
         reader.do({**step, **going_on})
         shown = reader.shown.outputs["a"]
