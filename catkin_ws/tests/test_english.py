@@ -34,7 +34,7 @@ RIGHT = [
 
 
 def faults(text):
-    habits = {**english._EVERYWHERE, **english._ON_PAGES}
+    habits = {**english.EVERYWHERE, **english.ON_PAGES}
     return list(english.faults_of(text, habits, english.MOST_WORDS))
 
 

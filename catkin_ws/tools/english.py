@@ -3,7 +3,7 @@
 """Holds what people read to plain English: the sentences of the pages and of README.md, and the
 comments and texts in Python files.
 
-A sentence of a page is at most 30 words long, and none has a word of _HABITS. A page's reading
+A sentence of a page is at most 30 words long, and none has a word of ON_PAGES. A page's reading
 grade (Flesch-Kincaid: years at school) is at most 9. Prints the hardest page, and each fault with
 its file, its line, the sentence, and what to do. Exit code: 1 if there is a fault.
 """
@@ -23,7 +23,7 @@ MOST_WORDS = 30
 MOST_GRADE = 9
 
 # Words that are plain nowhere, and what to write in their place.
-_EVERYWHERE = {
+EVERYWHERE = {
     r"\bwithout a word\b": "say what is missing, such as 'and prints nothing'",
     r"\b(hence|thus|whereby|therein|thereof)\b": "write 'so', or begin another sentence",
     r"\bin order to\b": "write 'to'",
@@ -31,7 +31,7 @@ _EVERYWHERE = {
     r"\butili[sz]\w+": "write 'use'",
 }
 # In code they may be names, or short for what stands beside them.
-_ON_PAGES = {
+ON_PAGES = {
     r"^Of [^,]{1,60},": "put the subject first, and then the verb",
     r"(?<!here )\bis none\b": "say what is not so: 'is not', 'does not count'",
     r"\bof which\b": "begin another sentence",
@@ -83,7 +83,7 @@ def grades(sentences):
 def of_pages(sentences):
     """Yield each fault of the pages and of README.md."""
     for one in sentences:
-        for fault in faults_of(one.text, {**_EVERYWHERE, **_ON_PAGES}, MOST_WORDS):
+        for fault in faults_of(one.text, {**EVERYWHERE, **ON_PAGES}, MOST_WORDS):
             yield f"{_file(one.page)}:{one.line}: {fault}\n    {one.text}"
     for page, grade in grades(sentences).items():
         if grade > MOST_GRADE:
@@ -104,7 +104,7 @@ def of_python():
     listed = subprocess.run(command, cwd=evidence.WORKSPACE, check=True, stdout=subprocess.PIPE)
     for name in listed.stdout.decode().split():
         for line, text in python_texts(evidence.WORKSPACE / name):
-            for fault in faults_of(text, _EVERYWHERE):
+            for fault in faults_of(text, EVERYWHERE):
                 yield f"catkin_ws/{name}:{line}: {fault}\n    {text}"
 
 

@@ -19,8 +19,8 @@ LIMITS = confine.Limits(memory=40 * 2**20, disk=10 * 2**20, processes=5)
 @pytest.fixture
 def cgroups(tmp_path, monkeypatch):
     """A folder in place of /sys/fs/cgroup."""
-    monkeypatch.setattr(sandbox, "_CGROUPS", tmp_path)
-    monkeypatch.setattr(sandbox, "_EMPTYING", 0)
+    monkeypatch.setattr(sandbox, "CGROUPS", tmp_path)
+    monkeypatch.setattr(sandbox, "EMPTYING", 0)
     return tmp_path
 
 

@@ -28,11 +28,9 @@ _ETC = (
     " os-release passwd ros"
 ).split()
 _SHARED_MEMORY = 64 * warden.MEGABYTE
-_CGROUPS = pathlib.Path("/sys/fs/cgroup")
-_SPARE = (
-    10  # processes that a cgroup may hold beyond the limit: with them the watcher sees it broken
-)
-_EMPTYING = 5.0  # seconds within which a cgroup is empty after its processes were killed
+CGROUPS = pathlib.Path("/sys/fs/cgroup")
+_SPARE = 10  # processes beyond the limit that a cgroup may hold: the watcher sees it broken first
+EMPTYING = 5.0  # seconds within which a cgroup is empty after its processes were killed
 # User ids that systemd, too, gives to what runs for a while; no user of a machine has one.
 _IDS = range(61184, 65520)
 _HANDING_OVER = threading.Lock()
@@ -104,12 +102,12 @@ def cgroup(limits: warden.Limits) -> Iterator[pathlib.Path | None]:
     """
     entries = pathlib.Path("/proc/self/cgroup").read_text().splitlines()
     own = next((entry[4:] for entry in entries if entry.startswith("0::/")), "")
-    here = _CGROUPS / own
+    here = CGROUPS / own
     group = next(filter(None, (_made(one, limits) for one in (here, *here.parents))), None)
     try:
         yield group
     finally:
-        end = time.monotonic() + _EMPTYING
+        end = time.monotonic() + EMPTYING
         while group and group.exists() and time.monotonic() < end:
             try:
                 (group / "cgroup.kill").write_text("1")
