@@ -392,19 +392,3 @@ def test_a_signal_ends_all(tmp_path, monkeypatch, seconds, what, number):
     assert "Traceback" not in errors
     assert list(scratch.iterdir()) == []
     assert not processes_with(seconds)
-
-
-@pytest.mark.parametrize(
-    ("arguments", "said"),
-    [
-        (("--class", "/no/such/folder"), "There is no folder /no/such/folder"),
-        (("--class", "/", "--json", "x"), "--json goes without --class"),
-        (("/", "--csv", "x"), "--csv goes with --class"),
-    ],
-)
-def test_what_cannot_be_done_is_said(arguments, said):
-    with command(*arguments) as checker:
-        _, errors = checker.communicate()
-    assert checker.returncode == 2
-    assert said in errors
-    assert "Traceback" not in errors

@@ -59,3 +59,19 @@ def test_wrong_option_is_exit_code_2():
     done = run(".", "--only", "valuse")
     assert done.returncode == 2
     assert "valuse" in done.stderr
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (("--class", "/no/such/folder"), "There is no folder /no/such/folder"),
+        (("--class", "/", "--json", "x"), "--json goes without --class"),
+        (("/", "--csv", "x"), "--csv goes with --class"),
+    ],
+    ids=range(3),
+)
+def test_what_cannot_be_done_with_a_class_is_exit_code_2(arguments, said):
+    done = run(*arguments)
+    assert done.returncode == 2
+    assert said in done.stderr
+    assert "Traceback" not in done.stderr

@@ -37,7 +37,7 @@ import subprocess
 import tempfile
 import time
 import uuid
-from typing import IO, Callable, Mapping, Sequence
+from typing import IO, Callable, Iterator, Mapping, Sequence
 
 import psutil
 
@@ -120,19 +120,28 @@ def run(
         group = stack.enter_context(sandbox.cgroup(task.limits))
         box = sandbox.entering(group)
         if namespaces:
-            # Its /tmp goes with the run; it lies beside the scratch folder, where nothing is safe.
-            beside = tempfile.TemporaryDirectory(prefix="tmp_", dir=os.path.dirname(scratch))
-            tmp = stack.enter_context(beside)
-            os.chmod(tmp, 0o1777)
-            binds = [("--bind", tmp, "/tmp")]
-            given = {"--ro-bind": [sandbox.PACKAGE, *readable], "--bind": [scratch, *writable]}
-            for option, paths in given.items():
-                binds += [(option, path, path) for path in map(os.path.realpath, paths)]
-            box += sandbox.bubblewrap(binds)
+            box += stack.enter_context(_namespaces(scratch, readable, writable))
         result = _watched(box, task, None if namespaces or user is not None else mark)
         if sandbox.ran_out_of_memory(group):
             result.code, result.ended_by = None, "memory"
     return result
+
+
+@contextlib.contextmanager
+def _namespaces(
+    scratch: str,
+    readable: Sequence[str | os.PathLike[str]],
+    writable: Sequence[str | os.PathLike[str]],
+) -> Iterator[list[str]]:
+    """Yield the command that makes the namespaces of one run, with a /tmp of their own."""
+    # It lies beside the scratch folder, where nothing is safe.
+    with tempfile.TemporaryDirectory(prefix="tmp_", dir=os.path.dirname(scratch)) as tmp:
+        os.chmod(tmp, 0o1777)
+        binds = [("--bind", tmp, "/tmp")]
+        given = {"--ro-bind": [sandbox.PACKAGE, *readable], "--bind": [scratch, *writable]}
+        for option, paths in given.items():
+            binds += [(option, path, path) for path in map(os.path.realpath, paths)]
+        yield sandbox.bubblewrap(binds)
 
 
 def stop() -> None:
