@@ -51,6 +51,7 @@ TAKE_OUT = "take its line out of ~/.bashrc (grep -n setup ~/.bashrc) and open a 
 
 LINE = re.compile(r"(\[OK\]   |\[FAIL\] |\[--\]   )([^:]+): (.*)")
 MEND = "       mend: "
+WHY = "       why:  pages/why.html#"
 Check = collections.namedtuple("Check", "status text mends")
 
 
@@ -61,10 +62,13 @@ class Report:
         self.code, self.output = code, output
         *lines, self.summary = output.splitlines()
         self.checks = {}  # in the order of printing
+        self.why = {}  # title -> the entry of the page why
         title = None
         for line in lines:
             if line.startswith(MEND):
                 self.checks[title].mends.append(line[len(MEND) :])
+            elif line.startswith(WHY):
+                self.why[title] = line[len(WHY) :]
             else:
                 status, title, text = LINE.fullmatch(line).groups()
                 self.checks[title] = Check(status.strip(" []"), text, [])
@@ -78,6 +82,7 @@ class Report:
         assert self.checks[title] == Check("FAIL", text, list(mends)), self.output
         assert self.of("--") == (skipped or {}), self.output
         assert set(self.of("OK")) == set(WELL) - set(skipped) - {title}, self.output
+        assert list(self.why) == [title], self.output
         assert (self.summary, self.code) == (f"{len(WELL)} checks, 1 failed", 1), self.output
 
 

@@ -1,15 +1,21 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The list of error texts: each is printed by the real tool, and found by what people see of it."""
 
+import itertools
 import os
 import pathlib
+import re
 import signal
 import subprocess
 
 import check_sets
+import doctor
 import pytest
 import why
 from front_door import environment, make
+from mrp_check.building import configuring, cpp_words
+from mrp_check.rules import launch_file
+from mrp_check.sources import python_read
 from mrp_testing.master import master, uri_of
 from mrp_testing.ports import free_port
 from mrp_testing.process import LIVE, Process
@@ -178,6 +184,17 @@ def test_make_why_reads_a_log(tmp_path):
         command = ["make", "-C", str(ROOT), "--no-print-directory", "why"]
         done = subprocess.run(command, env=environment(), stdin=stdin, stdout=subprocess.PIPE)
     assert done.stdout.decode().startswith("1. ERROR: Unable to communicate with master!\n")
+
+
+@proves("The checker's findings and make doctor name the entry of what a tool prints then.")
+def test_what_the_checker_and_the_doctor_name_is_there():
+    checker = WORKSPACE / "src" / "mrp_check" / "src"
+    text = "".join(path.read_text() for path in checker.rglob("*.py"))
+    named = set(itertools.chain(*re.findall(r'why="([\w-]+)"(?: if .+ else "([\w-]*)")?', text)))
+    tables = (configuring._WORDS, cpp_words._WORDS, launch_file._WORDS, python_read._WHY)
+    named |= {row[-1] for table in (*tables, doctor.CHECKS) for row in table}
+    assert {"script-crlf", "bad-callback", "undefined-main", "not-declared", "logs-large"} <= named
+    assert named - {one.name for one in ENTRIES} == {""}
 
 
 def test_names_are_unique_and_pages_are_there():

@@ -263,20 +263,21 @@ def check_shell(machine):
     return fail(expected, "only the " + ("first" if has_devel else "second"), mend)
 
 
-# Title, check, and the title of the check that must be well before this one has more to say.
+# Title, check, the title of the check that must be well before this one has more to say, and the
+# entry of the page why about what a tool prints if it is not well.
 CHECKS = [
-    ("packages", check_packages, None),
-    ("python3", check_python, "packages"),
-    ("installation", check_installation, "packages"),
-    ("host name", check_host_name, None),
-    ("ROS_HOSTNAME and ROS_IP", check_address, None),
-    ("ROS_MASTER_URI", check_master_uri, None),
-    ("master's port", check_master_port, "ROS_MASTER_URI"),
-    ("scripts", check_scripts, None),
-    ("build", check_build, "packages"),
-    ("build spaces", check_spaces, None),
-    ("log files", check_logs, None),
-    ("shell", check_shell, "build"),
+    ("packages", check_packages, None, "command-not-found"),
+    ("python3", check_python, "packages", "no-rospy"),
+    ("installation", check_installation, "packages", "no-opt-ros"),
+    ("host name", check_host_name, None, "own-name-unknown"),
+    ("ROS_HOSTNAME and ROS_IP", check_address, None, "node-unreachable"),
+    ("ROS_MASTER_URI", check_master_uri, None, "no-master"),
+    ("master's port", check_master_port, "ROS_MASTER_URI", "port-in-use"),
+    ("scripts", check_scripts, None, "script-not-executable"),
+    ("build", check_build, "packages", "setup-not-there"),
+    ("build spaces", check_spaces, None, "mixed-builders"),
+    ("log files", check_logs, None, "logs-large"),
+    ("shell", check_shell, "build", "package-not-found"),
 ]
 
 
@@ -365,7 +366,7 @@ def examine(machine):
     sys.stdout.reconfigure(errors="backslashreplace")
     colours = {"OK": 32, "FAIL": 31, "--": 33} if sys.stdout.isatty() else {}
     blocked, failed = set(), 0
-    for title, check, needed in CHECKS:
+    for title, check, needed, why in CHECKS:
         try:
             result = note(f"skipped: needs {needed}") if needed in blocked else check(machine)
         except OSError as error:  # a file of the project is missing or unreadable
@@ -381,12 +382,14 @@ def examine(machine):
         print(f"{tag}{title}: {result.text}")
         for command in result.mend.splitlines():
             print(f"       mend: {command}")
+        if result.status == "FAIL":
+            print(f"       why:  pages/why.html#{why}")
     print(f"{len(CHECKS)} checks, {failed} failed")
     return 1 if failed else 0
 
 
 def main():
-    checks = "".join(f"\n  {title}: {check.__doc__.splitlines()[0]}" for title, check, _ in CHECKS)
+    checks = "".join(f"\n  {title}: {check.__doc__.splitlines()[0]}" for title, check, *_ in CHECKS)
     parser = argparse.ArgumentParser(
         description=__doc__,
         epilog="The checks:" + checks,

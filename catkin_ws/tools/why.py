@@ -45,7 +45,7 @@ _MASKS = (
     (re.compile("[“”]"), '"'),
     (re.compile(r"(?<![\w.])~?/[^\s:;,'\"()\[\]<>]+"), "/#"),
     # An exit code says what happened.
-    (re.compile(r"\b(?:0x[0-9a-f]+|[0-9a-f]{32})\b"), "#"),
+    (re.compile(r"\b(?:0x[0-9a-f]+|[0-9a-f]{32,})\b"), "#"),
     (re.compile(r"(?<!exit code )(?<!exit code -)(?<!\d)(?:(?<=\s)-)?\d+(?:\.\d+)*"), "#"),
 )
 # Of a path, only the last part counts, and whether it is that of ROS's own packages.

@@ -1,11 +1,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The error texts that Docker prints: those of the list in catkin_ws/why that need it."""
 
+import os
 import pathlib
 import subprocess
 import sys
 
 import pytest
+from containers import PREFIX
 
 TOOLS = pathlib.Path(__file__).resolve().parents[2] / "catkin_ws" / "tools"
 sys.path.insert(0, str(TOOLS))
@@ -16,10 +18,15 @@ ENTRIES = [one for one in why.entries() if one.needs == "docker"]
 
 
 @pytest.mark.parametrize("entry", ENTRIES, ids=lambda entry: entry.name)
-def test_text_is_printed(entry):
+def test_text_is_printed(entry, image):
     done = subprocess.run(
-        ["bash", "-c", entry.try_], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
+        ["bash", "-c", entry.try_],
+        env={**os.environ, "IMAGE": image, "NAME": PREFIX + "why"},
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
     )
+    printed = why.mask(done.stdout.replace(PREFIX + "why", "mrp"))
     for text in entry.shows:
         for line in why.shown_on(text):
-            assert why.mask(line) in why.mask(done.stdout)
+            assert why.mask(line) in printed

@@ -146,6 +146,12 @@ def test_console_shows_verdicts_causes_first_and_pages():
     assert text.endswith(f"1 of {count} requirements are not met; 1 could not be checked.")
 
 
+def test_console_and_page_name_the_text_that_a_tool_prints():
+    one = report(Finding("text", "It.", "a.py", 1, why="script-crlf"))
+    assert "\n  why:      pages/why.html#script-crlf\n" in console.text(one)
+    assert "pages/why.html#script-crlf" in Reader(html_report.text(one)).text
+
+
 def test_console_has_colours_only_where_asked():
     assert "\x1b" not in console.text(report(CAUSE))
     assert "\x1b[31m" in console.text(report(CAUSE), colours=True)

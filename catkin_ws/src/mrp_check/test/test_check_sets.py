@@ -155,6 +155,8 @@ def assert_one_defect(findings, defect, folder, severities=("error",)):
         assert not told, "it is found: take its line Missed away"
         return
     assert told, f"expected: {defect}\nfound:\n{shown(findings)}"
+    if defect.why:
+        assert {one["why"] for one in told} == {defect.name.replace("_", "-")}
     others = [one for one in causes if one not in told]
     assert not others, f"besides the defect:\n{shown(others)}"
 

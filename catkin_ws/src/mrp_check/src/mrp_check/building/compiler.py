@@ -84,6 +84,7 @@ def finding(package: Package, problem: Problem) -> Finding:
         seen=f"{lines[line - 1].strip()}  (g++: {problem.text})",
         fix=words.fix,
         change=words.change,
+        why=words.why,
     )
 
 
@@ -100,4 +101,5 @@ def _old_standard(package: Package, needed: str, problem: Problem) -> Finding:
         expected="set(CMAKE_CXX_STANDARD 17), or no such line",
         seen=f"{package.lines(file)[line - 1].strip()}  (g++: {problem.text})",
         fix="Set the standard to 17.",
+        why="old-standard",
     )

@@ -45,7 +45,7 @@ def finding(package: Package, output: str, copy: pathlib.Path, model: Model) -> 
     undeclared = re.search(r"package '(\w+)' which must therefore be listed as a run dep", text)
     if undeclared:
         return _undeclared(package, undeclared.group(1), text)
-    said, fix = _in_words(package, text, command, model)
+    (said, fix), why = _in_words(package, text, command, model)
     # An unknown command stands where it is called: what defines it is missing further up.
     if (
         "Unknown CMake command" in text
@@ -62,6 +62,7 @@ def finding(package: Package, output: str, copy: pathlib.Path, model: Model) -> 
         expected="a CMakeLists.txt that CMake can follow",
         seen=f"{package.lines(file)[line - 1].strip()}  (CMake: {text[:300]})",
         fix=fix,
+        why=why,
     )
 
 
@@ -79,6 +80,7 @@ def _undeclared(package: Package, name: str, text: str) -> Finding:
         if line
         else f"no {name}; CMake: {text}",
         fix=f"Write <depend>{name}</depend>.",
+        why="catkin-package-depends",
     )
 
 
@@ -171,10 +173,10 @@ def _no_script(package: Package, model: Model, match: re.Match[str], text: str) 
 
 
 # (command or None for any, what CMake says) -> what it means and what to do: these words, or a
-# function that says them.
-_WORDS: Sequence[tuple[str | None, str, Callable[..., _Said] | _Said]] = (
-    (None, r'Unknown CMake command "(\w+)"', _unknown_command),
-    *(("find_package", shape, _no_package) for shape in _NOT_FOUND),
+# function that says them; and the entry of the page why.
+_WORDS: Sequence[tuple[str | None, str, Callable[..., _Said] | _Said, str]] = (
+    (None, r'Unknown CMake command "(\w+)"', _unknown_command, "cmake-unknown-command"),
+    *(("find_package", shape, _no_package, "package-config-not-found") for shape in _NOT_FOUND),
     (
         "catkin_package",
         r"catkin_package\(\) .*?'(\w+)'",
@@ -182,28 +184,33 @@ _WORDS: Sequence[tuple[str | None, str, Callable[..., _Said] | _Said]] = (
             given[-1],
             "Let package.xml, find_package() and catkin_package() name the same.",
         ),
+        "catkin-package-depends",
     ),
-    (None, r"Cannot find source file: (\S+)", _no_source),
+    (None, r"Cannot find source file: (\S+)", _no_source, "cmake-no-source"),
     (
         None,
         r'Cannot specify (?:link libraries|include directories|\w+ \w+) for target "(\S+)"',
         _no_target,
+        "cmake-no-target",
     ),
     (
         None,
         r'add_dependencies Cannot add target-level dependencies to non-existent target "(\S+?)"',
         _no_target,
+        "cmake-no-target",
     ),
     (
         None,
         r"because another target with the same name already exists",
         ("a target of this name has been made already, further up.", "Give it its own name."),
+        "cmake-target-twice",
     ),
-    (None, r"non-existing file '([^']+)'", _no_script),
+    (None, r"non-existing file '([^']+)'", _no_script, ""),
     (
         None,
         r"Function missing ending",
         ("the call that begins there has no closing parenthesis.", "Close it with a )."),
+        "cmake-parenthesis",
     ),
     (
         None,
@@ -212,22 +219,25 @@ _WORDS: Sequence[tuple[str | None, str, Callable[..., _Said] | _Said]] = (
             "a bracket or a quotation mark that is opened there is never closed.",
             "Close what was opened.",
         ),
+        "cmake-parenthesis",
     ),
     (
         None,
         r"Parse error",
         ("a bracket or a quotation mark is missing, or too much.", "Correct the call there."),
+        "cmake-parenthesis",
     ),
 )
 
 
-def _in_words(package: Package, text: str, command: str, model: Model) -> _Said:
-    """Return (what it means, what to do)."""
-    for of_command, shape, words in _WORDS:
+def _in_words(package: Package, text: str, command: str, model: Model) -> tuple[_Said, str]:
+    """Return (what it means, what to do), and the entry of the page why."""
+    for of_command, shape, words, why in _WORDS:
         match = re.search(shape, text) if of_command in (None, command) else None
         if match:
-            return words if isinstance(words, tuple) else words(package, model, match, text)
-    return text[:300], "Compare the line with the one on the page."
+            said = words if isinstance(words, tuple) else words(package, model, match, text)
+            return said, why
+    return (text[:300], "Compare the line with the one on the page."), ""
 
 
 def unknown(package: Package, step: Step, id_: str) -> Finding:

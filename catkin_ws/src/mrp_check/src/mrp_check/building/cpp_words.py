@@ -29,12 +29,13 @@ class Problem(typing.NamedTuple):
 
 class Words(typing.NamedTuple):
     """What an error means, and what to do; the line to blame, if it is another than the compiler's;
-    and (old, new) in that line, if that fixes it for certain."""
+    (old, new) in that line, if that fixes it for certain; and the entry of the page why."""
 
     said: str
     fix: str
     line: int | None = None
     change: Change | None = None
+    why: str = ""
 
 
 class Error(typing.NamedTuple):
@@ -60,10 +61,10 @@ def _plain(text: str) -> str:
 def of(package: Package, problem: Problem) -> Words:
     """Return the Words about a Problem."""
     text, lines = _plain(problem.text), package.lines(problem.file)
-    for shape, words in _WORDS:
+    for shape, words, why in _WORDS:
         match = re.search(shape, text)
         if match:
-            return words(Error(package, problem, lines, match))
+            return words(Error(package, problem, lines, match))._replace(why=why)
     return Words(f"{text}.", "Compare the line with the one on the page.")
 
 
@@ -259,38 +260,43 @@ _many_arguments = _in_words(
     "{1} is called with too {0} arguments.",
     "Compare the call with the function's parameters.",
 )
-# What the compiler says -> the function of an _Error that says it in plain words; or these words
-# and what to do, with the groups of the shape.
-_WORDS: Sequence[tuple[str, Callable[[Error], Words]]] = (
+# What the compiler says -> the function of an Error that says it in plain words, and the entry of
+# the page why.
+_WORDS: Sequence[tuple[str, Callable[[Error], Words], str]] = (
     (
         r"reference of type 'ros::ParameterAdapter<([\w:]+(?:_<[^>]*> ?>)?)\s*&>.* discards",
         _not_const,
+        "",
     ),
-    (r"expected ';'(?: before '?([^']+?)'?(?: token)?)?$", _semicolon),
-    (r"expected ',' or ';'(?: before '?([^']+?)'?(?: token)?)?", _semicolon),
-    (r"missing terminating", _text_without_end),
+    (r"expected ';'(?: before '?([^']+?)'?(?: token)?)?$", _semicolon, "expected-semicolon"),
+    (r"expected ',' or ';'(?: before '?([^']+?)'?(?: token)?)?", _semicolon, "expected-semicolon"),
+    (r"missing terminating", _text_without_end, ""),
     (
         r"a function-definition is not allowed here|qualified-id in declaration",
         _function_definition,
+        "",
     ),
-    (r"expected '?([^' ]+)'?", _expected),
-    (r"(\S+): No such file or directory", _missing_header),
+    (r"expected '?([^' ]+)'?", _expected, "expected-semicolon"),
+    (r"(\S+): No such file or directory", _missing_header, "header-not-found"),
     (
         r"'([\w:]+)' (?:was not declared in this scope|has not been declared|does not name a type"
         r"|is not a (?:class|namespace))",
         _undeclared,
+        "not-declared",
     ),
-    (r"'([^']+)' (?:\{aka '[^']*'\} )?has no member named '(\w+)'", _no_member),
+    (r"'([^']+)' (?:\{aka '[^']*'\} )?has no member named '(\w+)'", _no_member, "no-member-named"),
     # What roscpp asks of each message.
-    (r"'__s_get\w+' is not a member of '([^']+)'", _no_message),
+    (r"'__s_get\w+' is not a member of '([^']+)'", _no_message, ""),
     (
         r"'(\w+)' (?:is not a member of|in namespace) '([^']+)'",
         lambda error: _no_member(error, owner_group=2, member_group=1),
+        "not-declared",
     ),
-    (r"no match(?:ing function)? for call to '([^']+)'", _no_match),
-    (r"too (many|few) arguments to function '([^']+)'", _many_arguments),
-    (r"cannot convert '([^']+)'.* to '([^']+)'", _convert),
-    (r"invalid conversion from '([^']+)' to '([^']+)'", _convert),
+    (r"no match(?:ing function)? for call to '([^']+)'", _no_match, "no-matching-function"),
+    (r"too (many|few) arguments to function '([^']+)'", _many_arguments, "no-matching-function"),
+    (r"cannot convert '([^']+)'.* to '([^']+)'", _convert, "cannot-convert"),
+    (r"invalid conversion from '(char\*\*)' to '(int)'", _convert, "cpp-init-arguments"),
+    (r"invalid conversion from '([^']+)' to '([^']+)'", _convert, "cannot-convert"),
 )
 
 

@@ -29,8 +29,8 @@ def findings(package: Package, output: str, model: Model) -> Iterator[Finding]:
                 break
 
 
-def _link(message: str, place: Line, expected: str, seen: str, fix: str) -> Finding:
-    return Finding("link", message, *place, expected=expected, seen=seen, fix=fix)
+def _link(message: str, place: Line, expected: str, seen: str, fix: str, why: str) -> Finding:
+    return Finding("link", message, *place, expected=expected, seen=seen, fix=fix, why=why)
 
 
 def _no_main(package: Package, model: Model, target: Target, match: re.Match[str]) -> Finding:
@@ -42,6 +42,7 @@ def _no_main(package: Package, model: Model, target: Target, match: re.Match[str
         "one source with int main(...)",
         sources,
         "Add the source that has main, or write main.",
+        why="undefined-main",
     )
 
 
@@ -53,6 +54,7 @@ def _duplicate(package: Package, model: Model, target: Target, match: re.Match[s
         f"one definition of {name}",
         ", ".join(target.sources),
         "Give each target its own sources alone.",
+        why="multiple-definition",
     )
 
 
@@ -63,6 +65,7 @@ def _no_library(package: Package, model: Model, target: Target, match: re.Match[
         "${catkin_LIBRARIES}",
         match.group(1),
         f"Correct the name {match.group(1)}.",
+        why="cannot-find-library",
     )
 
 
@@ -83,6 +86,7 @@ def _undefined(package: Package, model: Model, target: Target, match: re.Match[s
                 package.lines(file)[line - 1].strip(),
                 f"Define {function}, or correct its name where it is defined; or add its source to"
                 f" add_executable({target.name} ...).",
+                why="undefined-reference",
             )
     return _link(
         f"The target {target.name} cannot be linked: {name} is defined in none of its sources.",
@@ -90,6 +94,7 @@ def _undefined(package: Package, model: Model, target: Target, match: re.Match[s
         f"a definition of {function}",
         ", ".join(target.sources),
         "Add the source that defines it.",
+        why="undefined-reference",
     )
 
 
@@ -110,6 +115,7 @@ def _of_ros(model: Model, target: Target, name: str) -> Finding:
         call,
         "no such call" if target.link_line is None else f"linked with: {links}",
         f"Add {call}.",
+        why="undefined-reference",
     )
 
 

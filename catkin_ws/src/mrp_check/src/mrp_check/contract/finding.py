@@ -24,6 +24,7 @@ class Finding:
     severity: ERROR breaks the contract; WARNING works, but ...; NOTE is a hint
     expected, seen: what the contract asks for, and what was found; may be empty
     fix: what to do next; below it a unified diff, where the fix is certain
+    why: the entry of the page why about the text that a tool prints then, or empty
     change: (old, new), a part of the line and what to write for it, if that is certain to mend it;
             check.py makes the diff of it
     consequence_of: the id of the finding that is the cause of this one, or None
@@ -39,6 +40,7 @@ class Finding:
     expected: str = ""
     seen: str = ""
     fix: str = ""
+    why: str = ""
     consequence_of: str | None = None
     stage: str = ""
     node: str | None = None

@@ -120,7 +120,13 @@ def finding_lines(finding, report):
     cause = finding.consequence_of
     if cause:
         return [*lines, f"  This follows from: {REQUIREMENTS[cause].title} ({cause})"]
-    return [*lines, f"  page:     {REQUIREMENTS[finding.id].page}"]
+    return [*lines, *(f"  {name + ':':<10}{page}" for name, page in pages(finding))]
+
+
+def pages(finding):
+    """Return (name, address) of the places of the pages that explain a finding."""
+    found = [("page", REQUIREMENTS[finding.id].page)]
+    return [*found, ("why", f"pages/why.html#{finding.why}")] if finding.why else found
 
 
 def detail_lines(finding, names):

@@ -41,6 +41,7 @@ def text(report):
         stages=console.by_stage(report),
         where=console.where,
         why_not=console.why_not,
+        pages=console.pages,
         address_of=_address_of,
     )
 

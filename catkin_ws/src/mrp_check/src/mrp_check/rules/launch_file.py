@@ -40,6 +40,7 @@ def _unknown(tags: Sequence[tuple[str, Element]]) -> Iterator[Finding]:
                 expected=f"<{near}>" if near else "an element of roslaunch",
                 seen=f"<{element.tag}>",
                 fix=f"Write <{near}>." if near else "Take it out.",
+                why="launch-unknown-tag",
             )
 
 
@@ -98,20 +99,30 @@ def _argument(said: _Said, name: str) -> _Words:
     return place, f"roslaunch cannot load the launch file: {said.text}", None
 
 
-# What roslaunch says -> the function of _Said and of its groups that returns (place, message, fix).
+# What roslaunch says -> the function of _Said and of its groups that returns (place, message, fix),
+# and the entry of the page why.
 _WORDS = (
-    (r"multiple nodes named \[(\S+?)\]", _twice),
-    (r"<(\w+)> tag is missing required attribute:? ?'(\w+)'", _attribute),
-    (r"Resource ?[Nn]ot ?[Ff]ound: (\S+)", _not_there),
-    (r"arg (?:to be set|named)? ?\[?'?(\w+)'?\]?|requires the '(\w+)' arg", _argument),
-    (r"unknown .*?'(\w+)'|\[(\w+)\] is not a valid|$", _Said.not_understood),
+    (r"multiple nodes named \[(\S+?)\]", _twice, "launch-name-twice"),
+    (
+        r"<(\w+)> tag is missing required attribute:? ?'(\w+)'",
+        _attribute,
+        "launch-attribute-missing",
+    ),
+    (r"Resource ?[Nn]ot ?[Ff]ound: (\S+)", _not_there, "launch-find-not-found"),
+    (
+        r"arg (?:to be set|named)? ?\[?'?(\w+)'?\]?|requires the '(\w+)' arg",
+        _argument,
+        "launch-arg-not-set",
+    ),
+    (r"unknown .*?'(\w+)'|\[(\w+)\] is not a valid|$", _Said.not_understood, ""),
 )
 
 
 def _error(launch: Launch, tags: Sequence[tuple[str, Element]]) -> Finding:
     """Return the Finding about what roslaunch said instead of loading the file."""
     said = _Said(launch, tags)
-    match, words = next((m, w) for shape, w in _WORDS for m in [re.search(shape, said.text)] if m)
+    found = ((re.search(shape, said.text), *rest) for shape, *rest in _WORDS)
+    match, words, why = next(one for one in found if one[0])
     place, message, fix = words(said, *filter(None, match.groups()))
     return Finding(
         "launch-file",
@@ -121,6 +132,7 @@ def _error(launch: Launch, tags: Sequence[tuple[str, Element]]) -> Finding:
         seen=said.text[:500],
         fix=fix
         or "Correct this line, and try again: roslaunch --nodes says whether it can be read.",
+        why=why,
     )
 
 

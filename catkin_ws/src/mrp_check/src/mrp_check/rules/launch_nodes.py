@@ -109,6 +109,7 @@ def _can_start(case: Case, node: Started, spec_node: str | None = None) -> Itera
         expected=f'type="{near}"' if near else "the name of an executable or a script",
         seen=f'type="{node.type}"',
         fix=f'Write type="{near}".' if near else "Name an executable that is built.",
+        why="launch-node-not-found",
     )
 
 

@@ -26,6 +26,7 @@ def _findings(case: Case) -> Iterator[Finding]:
             expected="<buildtool_depend>catkin</buildtool_depend>",
             seen=", ".join(d.name for d in manifest.buildtool_depends) or "no buildtool_depend",
             fix="Add the line <buildtool_depend>catkin</buildtool_depend>.",
+            why="buildtool-missing",
         )
 
 

@@ -35,6 +35,7 @@ class Messages(PythonRule):
                         node,
                         expected=", ".join(class_.__slots__) or "no field at all",
                         fix=f"Write {near} for {node.attr}." if near else "Correct the name.",
+                        why="no-such-field",
                     )
 
     def _messages(self) -> dict[Variable, MessageClass]:

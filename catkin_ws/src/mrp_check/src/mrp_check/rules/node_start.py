@@ -49,6 +49,7 @@ def _at_file_scope(node: Node) -> Iterator[Finding]:
                 place,
                 expected="no NodeHandle at file scope",
                 fix="Make it in main, after ros::init().",
+                why="init-first",
             )
 
 
@@ -69,6 +70,7 @@ def _too_early(node: Node, init: Place) -> Iterator[Finding]:
             early[0],
             expected="ros::init() before the first ros::NodeHandle",
             fix="Move ros::init() to the beginning of main.",
+            why="init-first",
         )
 
 

@@ -118,6 +118,7 @@ class Names(PythonRule):
                 node,
                 expected=f"a name that {origin} has",
                 fix=f"Write {near} for {alias.name}." if near else "Correct the name.",
+                why="cannot-import-name",
             )
 
     def undefined_names(self) -> Iterator[Finding]:
@@ -144,6 +145,7 @@ class Names(PythonRule):
                 message.lineno,
                 expected=f"self.{name}, or 'global {name}' at the beginning of the function",
                 fix=f"Make it a member of the class (self.{name}), or declare it global.",
+                why="local-before-assignment",
             )
         members = self._members()
         if name == "self" and name not in members:
@@ -155,6 +157,7 @@ class Names(PythonRule):
             message.lineno,
             expected=name,
             fix=fix,
+            why="name-not-defined",
         )
 
     def _members(self) -> set[str]:
@@ -190,6 +193,7 @@ class Names(PythonRule):
             expected=f"def {method.name}(self, ...)" if method else "self as the first parameter",
             fix="Write self as the first parameter of the method.",
             change=_self_first(method) if method else None,
+            why="name-not-defined",
         )
 
     def attributes(self) -> Iterator[Finding]:
@@ -214,6 +218,7 @@ class Names(PythonRule):
                 node,
                 expected=f"a name that {called} has",
                 fix=f"Write {near} for {missing}." if near else "Correct the name.",
+                why="py-spln",
             )
 
     def own_attributes(self) -> Iterator[Finding]:
@@ -271,6 +276,7 @@ class Names(PythonRule):
                 node,
                 expected="a member that is set, or a method that is defined",
                 fix=f"Write {near}." if near else f"Set self.{node.attr} in __init__.",
+                why="no-such-member",
             )
 
 

@@ -34,16 +34,16 @@ def _of(node: Node) -> Iterator[Finding]:
                     severity=WARNING,
                     expected=f"queue_size={asked}",
                     fix=f"Add queue_size={asked}.",
+                    why="queue-size-missing",
                 )
 
 
+_REFUSED = (True, Kind.SUBSCRIBER, 0)
+
+
 def _other_queue(node: Node, place: Place, kind: Kind, queue: int, asked: int) -> Finding:
-    why = {
-        (
-            True,
-            Kind.SUBSCRIBER,
-            0,
-        ): "rospy.Subscriber() takes no queue_size of 0: it raises an error.",
+    words = {
+        _REFUSED: "rospy.Subscriber() takes no queue_size of 0: it raises an error.",
         (True, Kind.SUBSCRIBER, 1): "The subscriber's queue has room for one message. In rospy"
         " each publisher has a queue of its own; a callback that is late loses messages all"
         " the same.",
@@ -54,13 +54,14 @@ def _other_queue(node: Node, place: Place, kind: Kind, queue: int, asked: int) -
     rooms = f"has room for {queue} messages" if queue else "has no limit"
     return node.finding(
         "queue",
-        why.get((node.is_python, kind, queue))
+        words.get((node.is_python, kind, queue))
         or f"The {kind.value}'s queue {rooms}; the contract asks for {asked}.",
         (place.file, place.queue_line or place.line),
         # A longer one loses nothing, and one that is little shorter hardly ever.
-        severity=ERROR if queue == 1 or (node.is_python, kind, queue) in why else WARNING,
+        severity=ERROR if queue == 1 or (node.is_python, kind, queue) in words else WARNING,
         expected=f"queue_size={asked}" if node.is_python else f"a queue of {asked}",
         fix=f"Write {asked} for {queue}.",
+        why="py-queue-0" if (node.is_python, kind, queue) == _REFUSED else "",
         change=(f"queue_size={queue}", f"queue_size={asked}")
         if node.is_python
         else (f", {queue}", f", {asked}"),

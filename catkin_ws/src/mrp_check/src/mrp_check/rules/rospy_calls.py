@@ -171,6 +171,7 @@ class Calls(PythonRule):
             expected=f"{name}, without brackets",
             fix=f"Write {name} for {name}(...).",
             change=(self.written(callback), self.written(callback.func)),
+            why="py-callback-called",
         )
 
     def _bound(self, function: Function, is_attribute: bool) -> int | None:
@@ -199,6 +200,7 @@ class Calls(PythonRule):
                 function,
                 expected=f"{count} parameter{s}" + (" besides self" if bound else ""),
                 fix=f"Give {name} the parameter{s} that it is called with.",
+                why="timer-callback" if taker == "rospy.Timer" else "bad-callback",
             )
 
 

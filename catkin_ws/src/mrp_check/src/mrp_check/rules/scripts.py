@@ -73,6 +73,7 @@ def _shadowing(path: str) -> Iterator[Finding]:
             expected="a name that no module has",
             seen=name,
             fix=f"Rename the script, to {stem}_node.py for example.",
+            why="not-a-package",
         )
 
 
@@ -137,6 +138,7 @@ def _of(
             expected="permission to execute it",
             seen=f"mode {(package.root / path).stat().st_mode & 0o777:o}",
             fix=f"chmod +x {path}",
+            why="script-not-executable",
         )
 
 
@@ -152,6 +154,7 @@ def _no_first_line(package: Package, path: str) -> Finding:
         expected="#!/usr/bin/env python",
         seen=lines[0].strip() or "an empty line",
         fix="Make #!/usr/bin/env python the first line.",
+        why="no-shebang",
     )
 
 
@@ -173,6 +176,7 @@ def _not_relayed(model: Model, path: str, plain: str) -> Finding:
         expected=f"catkin_install_python(PROGRAMS ... {path} ...) in CMakeLists.txt",
         seen=plain,
         fix=add,
+        why="no-python",
     )
 
 
@@ -196,6 +200,7 @@ def _other_program(path: str, plain: str, relayed: bool, absent: str | None) -> 
         seen=plain,
         fix=f"Make {wanted} the first line.",
         change=(plain, wanted),
+        why="no-python",
     )
 
 

@@ -50,6 +50,7 @@ def _of(package: Package, path: str, kind: str, relayed: bool) -> Iterator[Findi
             expected="#! as the first two bytes",
             seen="EF BB BF, then #!",
             fix="Save the file as 'UTF-8', not as 'UTF-8 with BOM'.",
+            why="script-bom",
         )
     if b"\r\n" in data:
         yield from _windows_ends(data, path, kind, is_script)
@@ -71,6 +72,7 @@ def _windows_ends(data: bytes, path: str, kind: str, is_script: bool) -> Iterato
             expected="lines that end with a newline (LF)",
             seen="lines that end with carriage return and newline (CRLF)",
             fix=fix,
+            why="script-crlf",
         )
 
 
@@ -105,6 +107,7 @@ def _encoding(data: bytes, path: str, kind: str, relayed: bool) -> Iterator[Find
         expected="text in UTF-8",
         seen=f"the byte {byte:02X}, perhaps of a letter such as ä or é in Latin-1",
         fix="Save the file with the encoding UTF-8.",
+        why="python-encoding" if kind == "python" else "",
     )
 
 

@@ -34,6 +34,7 @@ def _of(node: Node) -> Iterator[Finding]:
                 WARNING,
                 expected=name.replace("//", "/"),
                 seen=name,
+                why="e09-double-slash",
             )
             return
 

@@ -9,6 +9,7 @@ from mrp_check.contract.finding import Finding
 from mrp_check.sources.python_source import Source
 from mrp_check.student.package import Package
 
+# What Python says -> what it means.
 _SYNTAX = (
     (r"was never closed|unexpected EOF", "A bracket is opened there and never closed."),
     (r"unmatched|does not match opening", "A bracket is closed that is not open, or another one."),
@@ -25,6 +26,14 @@ _SYNTAX = (
         "A character stands there that is no part of Python:"
         " perhaps it was copied from a page or a document.",
     ),
+)
+# What Python says -> the entry of the page why.
+_WHY = (
+    (r"indented block|unindent does not|unexpected indent", "python-indent"),
+    (r"inconsistent use of tabs", "python-tabs"),
+    (r"in call to 'print'", "python2-print"),
+    (r"multiple exception types", "python2-except"),
+    (r"", "python-syntax"),
 )
 
 
@@ -76,6 +85,7 @@ def _syntax(package: Package, file: str, error: SyntaxError) -> Finding:
         expected="valid Python 3",
         seen=lines[line - 1].strip(),
         fix=f"Correct the line; `python3 -m py_compile {file}` says whether Python can read it.",
+        why=next(why for shape, why in _WHY if re.search(shape, text)),
     )
 
 

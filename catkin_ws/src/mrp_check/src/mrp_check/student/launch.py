@@ -78,7 +78,7 @@ def readable(package: Package, spec: Spec) -> tuple[str | None, list[Finding]]:
     try:
         elements(package.bytes(path))
     except xml.parsers.expat.ExpatError as error:
-        return path, [xml_finding("launch-file", package, path, error)]
+        return path, [xml_finding("launch-file", package, path, error, why="launch-xml")]
     return path, []
 
 

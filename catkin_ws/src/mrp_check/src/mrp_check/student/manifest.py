@@ -24,7 +24,7 @@ def parse(package: Package) -> tuple[Manifest | None, Finding | None]:
     try:
         elements(data)
     except xml.parsers.expat.ExpatError as error:
-        return None, xml_finding("manifest", package, FILE, error)
+        return None, xml_finding("manifest", package, FILE, error, why="package-xml-no-xml")
     try:
         return parse_package_string(data.decode("utf-8", "replace").lstrip("\ufeff"), FILE), None
     except (InvalidPackage, AssertionError, ValueError) as error:
@@ -37,6 +37,7 @@ def parse(package: Package) -> tuple[Manifest | None, Finding | None]:
             expected="a manifest as catkin reads it",
             seen=text,
             fix="Compare it with the package.xml of the tutorial's package.",
+            why="package-xml-invalid",
         )
 
 

@@ -39,7 +39,7 @@ def elements(data: bytes) -> list[Element]:
 
 
 def xml_finding(
-    id_: str, package: Package, path: str, error: xml.parsers.expat.ExpatError
+    id_: str, package: Package, path: str, error: xml.parsers.expat.ExpatError, why: str
 ) -> Finding:
     """Return the Finding about a file that is no XML."""
     what = xml.parsers.expat.ErrorString(error.code)
@@ -60,6 +60,7 @@ def xml_finding(
         expected="XML in which each tag that is opened is closed, and each value is in quotes",
         seen=package.lines(path)[min(cause, len(package.lines(path))) - 1].strip(),
         fix="Correct this line; `xmllint --noout` says whether the file is well-formed.",
+        why=why,
     )
 
 
