@@ -191,7 +191,8 @@ def test_what_the_checker_and_the_doctor_name_is_there():
     checker = WORKSPACE / "src" / "mrp_check" / "src"
     text = "".join(path.read_text() for path in checker.rglob("*.py"))
     named = set(itertools.chain(*re.findall(r'why="([\w-]+)"(?: if .+ else "([\w-]*)")?', text)))
-    tables = (configuring._WORDS, cpp_words._WORDS, launch_file._WORDS, python_read._WHY)
+    modules = map(vars, (configuring, cpp_words, launch_file, python_read))
+    tables = (module.get("_WHY") or module["_WORDS"] for module in modules)
     named |= {row[-1] for table in (*tables, doctor.CHECKS) for row in table}
     assert {"script-crlf", "bad-callback", "undefined-main", "not-declared", "logs-large"} <= named
     assert named - {one.name for one in ENTRIES} == {""}

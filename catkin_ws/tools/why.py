@@ -13,7 +13,7 @@ in defects/. Its fields:
     Fix: Source ...                what to do, in one or two sentences
     Page: wrong#there-is-no-master where the pages say more
     Try: rostopic list             the commands that make ROS print it
-    Needs: master                  what they need: see tests/test_why.py, or docker
+    Needs: master                  what they need: see tests/test_why.py, or docker/test/test_why.py
 
 There may be several fields Shows and Also. A line of Shows that begins with "12| " or "13| " is
 that of one Debian release. tests/test_why.py runs Try, and holds Shows against what is printed.
