@@ -197,7 +197,10 @@ def test_files_in_use_are_kept(tmp_path):
 
 
 def test_timeline_says_what_its_colours_are(tmp_path):
-    plots.write(content_of([one_start()]), tmp_path)
+    content = content_of([one_start()])
+    plots.write(content, tmp_path)
+    words = "subscriber_py_node starts at 1.80 s, runs at 2.30 s, has its first message at 4.00 s, "
+    assert words in plots.start_and_stop(content).alt
     root = ElementTree.parse(tmp_path / "start_and_stop.svg").getroot()
     assert set(root.itertext()) >= {
         "roslaunch",

@@ -3,8 +3,7 @@
 
 .. bench-machine::       where it was measured
 .. bench-tables:: NAME   tables; NAME: a key of mrp_bench.tables.TABLES
-.. bench-plot:: NAME     a plot; NAME: a key of mrp_bench.plots.PLOTS. Its option `alt` says what
-                         the plot shows, in words
+.. bench-plot:: NAME     a plot; NAME: a key of mrp_bench.plots.PLOTS
 """
 
 import json
@@ -12,7 +11,6 @@ import pathlib
 import sys
 
 from docutils import nodes
-from docutils.parsers.rst import directives
 from evidence import WORKSPACE
 from picture import Picture
 from sphinx.util.docutils import SphinxDirective
@@ -64,15 +62,12 @@ class Tables(SphinxDirective):
 
 
 class Plot(Picture):
-    option_spec = {"alt": directives.unchanged_required}
-
     def run(self):
         name = self.arguments[0]
-        if "alt" not in self.options or name not in plots.PLOTS:
-            raise self.error(f"expected the option 'alt', and one of {', '.join(plots.PLOTS)}")
+        if name not in plots.PLOTS:
+            raise self.error(f"expected one of {', '.join(plots.PLOTS)}, found {name}")
         plot = plots.PLOTS[name](results(self.env))
-        alt = self.options["alt"]
-        return [self.svg(plot.width, plot.height, plot.parts, alt)] if plot else []
+        return [self.svg(*plot)] if plot else []
 
 
 def setup(app):

@@ -29,9 +29,7 @@ class Picture(SphinxDirective):
         found = recorded(self, self.file, self.arguments[0])
         if found is None:
             return []
-        drawn = self.draw(found)
-        drawn["generated"] = True
-        return [drawn]
+        return [self.draw(found)]
 
     def svg(self, width, height, parts, alt):
         """Return an SVG within the page: so page.css gives it the page's colours, and its width.
@@ -46,7 +44,7 @@ class Picture(SphinxDirective):
                 "</svg></div>",
             ]
         )
-        return nodes.raw(text, text, format="html", alt=alt)
+        return nodes.raw(text, text, format="html", alt=alt, generated=True)
 
 
 class Graph(Picture):

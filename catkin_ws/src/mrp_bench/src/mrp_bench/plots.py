@@ -80,7 +80,8 @@ def _dots(title, rows, spans, notes):
         for words in name:
             parts.append(svg.text(0, y + 4, words))
             y += svg.ROW
-    return svg.Plot(_WIDTH, bottom + 24, parts)
+    first, last = (f"{WAYS[rows[at]['way']].text} {notes[at]}" for at in (0, -1))
+    return svg.Plot(_WIDTH, bottom + 24, parts, f"{title}: from {first} to {last}.")
 
 
 def latency_by_size(content):
@@ -110,8 +111,9 @@ def _by(what, rows, words):
         points = sorted((row[what], row["latency"]["p50"]) for row in rows if row["way"] == way)
         if points:
             series.append(svg.Series(WAYS[way].text, color, mark, points))
-    parts = svg.panel(f"p50 in µs, by {what}", series, 50, 30, 450, 260, ticks)
-    return svg.Plot(520, 400, parts + svg.legend(series, 50, 335, 220))
+    title = f"p50 in µs, by {what}"
+    parts = svg.panel(title, series, 50, 30, 450, 260, ticks) + svg.legend(series, 50, 335, 220)
+    return svg.Plot(520, 400, parts, svg.in_words(title, series, ticks))
 
 
 def scale(content):
@@ -137,8 +139,8 @@ def scale(content):
     ]
     ticks = {one["robots"]: str(one["robots"]) for one in of["figures"]}
     title = "Costs by the number of robots of four nodes each (^ exponent)"
-    parts = svg.panel(title, series, 50, 30, 450, 300, ticks)
-    return svg.Plot(520, 440, parts + svg.legend(series, 50, 375, 240))
+    parts = svg.panel(title, series, 50, 30, 450, 300, ticks) + svg.legend(series, 50, 375, 240)
+    return svg.Plot(520, 440, parts, svg.in_words(title, series, ticks))
 
 
 _FAN_COLORS = {"C++": svg.BLUE, "Python": svg.RED}
@@ -160,11 +162,13 @@ def fans(content):
     top = svg.ROW * (len(found) // 2) + 50
     ticks = {count: str(count) for count in counts}
     parts = svg.legend([_fan_line(of, "up") for of in found], 50, 12, 300)
+    words = []
     for number, (title, names) in enumerate(panels.items()):
         lines = [_fan_line(of, name) for of in found for name in names]
         x, y = 50 + 370 * (number % 2), top + 260 * (number // 2)
         parts += svg.panel(title, lines, x, y, 290, 190, ticks)
-    return svg.Plot(_WIDTH, top + 490, parts)
+        words.append(svg.in_words(title, lines, ticks))
+    return svg.Plot(_WIDTH, top + 490, parts, " ".join(words))
 
 
 def _fan_line(of, name):
@@ -215,7 +219,17 @@ def start_and_stop(content):
         x += 60 + 8 * len(words)
     parts.append(svg.mark("up", x + 10, bottom + 57, svg.TEXT))
     parts.append(svg.text(x + 28, bottom + 61, "has its first message"))
-    return svg.Plot(_WIDTH, bottom + 70, parts)
+    return svg.Plot(_WIDTH, bottom + 70, parts, _start_in_words(start))
+
+
+def _start_in_words(start):
+    said = [f"Start and stop of the four nodes. Ctrl-C comes {start['stop']:.2f} s after the call."]
+    for name, (*spans, end) in start["bars"].items():
+        steps = [f"{what} at {when:.2f} s" for what, when in zip(_BARS, spans)]
+        if name in start["first_message"]:
+            steps.insert(2, f"has its first message at {start['first_message'][name]:.2f} s")
+        said.append(f"{name} {', '.join(steps)}, and has ended at {end:.2f} s.")
+    return " ".join(said)
 
 
 PLOTS = {

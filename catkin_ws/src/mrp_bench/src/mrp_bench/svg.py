@@ -35,11 +35,12 @@ ROW = 20  # the height of a line of text, in px
 
 
 class Plot(NamedTuple):
-    """width, height: in px. parts: what is in the SVG."""
+    """width, height: in px. parts: what is in the SVG. alt: its values, for who does not see it."""
 
     width: int
     height: int
     parts: list
+    alt: str
 
 
 class Series(NamedTuple):
@@ -127,6 +128,15 @@ class Scale:
         steps = (1, 2, 5) if high - low < 3 else (1,)
         ticks = [step * 10**power for power in powers for step in steps]
         return [tick for tick in ticks if self._low <= math.log(tick) <= self._high]
+
+
+def in_words(title, series, ticks):
+    """Say where each line of a panel begins and ends."""
+    lines = []
+    for one in series:
+        ends = [f"{float(f'{y:.3g}'):g} at {ticks[x]}" for x, y in (one.points[0], one.points[-1])]
+        lines.append(f"{one.label}{', thin' if one.thin else ''}: {' to '.join(ends)}")
+    return f"{title}. {'; '.join(lines)}."
 
 
 def panel(title, series, x, y, width, height, ticks):
