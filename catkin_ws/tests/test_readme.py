@@ -5,9 +5,11 @@ import csv
 import os
 import re
 import signal
+import subprocess
 
 import pytest
 import yaml
+from catkin_pkg.package import parse_package
 from front_door import environment, make
 from mrp_testing import contract
 from mrp_testing.console import ROSLAUNCH_LINE
@@ -84,6 +86,20 @@ def test_console_is_what_make_run_prints():
     assert process.lines[-1] == "done", str(process)
 
 
+@proves("So make run sets ROS_HOSTNAME=localhost, unless you set it or ROS_IP.")
+def test_run_listens_on_this_machine_alone_unless_told():
+    (setting,) = set(re.findall(r"if \[ -z .*?; fi;", make("run", "--dry-run").stdout))
+    for given, expected in (
+        ({}, "localhost"),
+        ({"ROS_HOSTNAME": "robot"}, "robot"),
+        ({"ROS_IP": "192.0.2.1"}, ""),
+    ):
+        env = {"PATH": os.environ["PATH"], **given}
+        command = ["bash", "-c", f"{setting} echo $ROS_HOSTNAME"]
+        said = subprocess.run(command, env=env, check=True, stdout=subprocess.PIPE, text=True)
+        assert said.stdout.strip() == expected, given
+
+
 def test_console_values_are_those_of_the_contract():
     values = {(s, p): [] for s in contract.SUBSCRIBERS for p in contract.PUBLISHERS}
     for text in filter(None, map(contract.logged_text, console_block())):
@@ -96,11 +112,48 @@ def test_console_values_are_those_of_the_contract():
         assert contract.first_fault(seen) is None
 
 
-def test_layout_names_folders_that_exist():
-    layout = re.search(r"## Layout\n\n```\n(.*?)```", README, re.DOTALL).group(1)
-    folders = [line.split()[0] for line in layout.splitlines()]
-    assert folders
-    assert [folder for folder in folders if not (ROOT / folder).is_dir()] == []
+@proves(
+    "catkin_ws/src/mrp/: Publishers and subscribers in C++ and Python: the tutorial's four nodes",
+    "catkin_ws/src/mrp_labs/: One lab for each claim about publishers and subscribers: a launch "
+    "file to run and to watch",
+    "catkin_ws/src/mrp_check/: The checker: what is wrong with a student's package, measured by "
+    "the tutorial's contract, and where",
+    "catkin_ws/src/mrp_bench/: How fast publishers and subscribers are on this machine, beside "
+    "plain sockets",
+    "catkin_ws/src/mrp_view/: The graph and the messages of a running system, live in a browser",
+    "catkin_ws/src/mrp_testing/: What the tests of several packages share: programs, waiting, the "
+    "master, console lines, the contract",
+    "catkin_ws/defects/: one patch for each defect, for the tests, the checker and the exercises",
+    "catkin_ws/why/: error texts, each with its cause and the fix",
+    "catkin_ws/upstream/: reports of faults in ROS itself, each with a patch",
+    "catkin_ws/tests/: tests of the pages, of the tools, and of several packages together",
+    "catkin_ws/browser_tests/: tests of the pages in real browsers",
+    "catkin_ws/tools/: programs that the Makefile calls, and what they share",
+    "catkin_ws/apt/: lists of the Debian packages for each purpose",
+    "docker/: Dockerfile, compose files, several hosts, and their tests",
+)
+def test_layout_is_that_of_the_folders():
+    """A package is what its package.xml says. In each other folder are these files alone."""
+    listed = dict(re.findall(r"^- `(\S+)/`: (.+?) <!--", README, re.MULTILINE))
+    packages = {
+        f"catkin_ws/src/{path.parent.name}": parse_package(str(path)).description.rstrip(".")
+        for path in WORKSPACE.glob("src/*/package.xml")
+    }
+    assert {name: text for name, text in listed.items() if name in packages} == packages
+    files = {
+        "catkin_ws/defects": {".patch"},
+        "catkin_ws/why": {".txt"},
+        "catkin_ws/upstream": {".md", ".patch"},
+        "catkin_ws/tests": {".py", ".txt"},
+        "catkin_ws/browser_tests": {".py", ".js", ".ini"},
+        "catkin_ws/tools": {".py", ".sh"},
+        "catkin_ws/apt": {".txt", ".yaml"},
+        "docker": {"", ".yaml", ".sh", ".txt"},
+    }
+    assert set(listed) == {*packages, *files}
+    for folder, endings in files.items():
+        found = [path for path in (ROOT / folder).iterdir() if path.is_file()]
+        assert {path.suffix for path in found} == endings, folder
 
 
 @proves(
