@@ -28,6 +28,7 @@ def copy(tmp_path_factory):
 
 @proves(
     "Its first line names the Python with which catkin was configured.",
+    "After a change in a Python file you need not build again.",
     "Its first line names the right Python, and it runs your file.",
     "Here the line is the same, but CMake knows the script, so catkin writes the right "
     "interpreter into its copy of the script.",
@@ -35,6 +36,8 @@ def copy(tmp_path_factory):
 def test_other_python_first_on_path_does_no_harm(copy):
     script = copy / "catkin_ws/devel/lib/mrp/publisher_py_node.py"
     assert script.read_text().startswith("#!/usr/bin/python3\n")
+    # It runs the very file that the user changes.
+    assert f"'{copy}/catkin_ws/src/mrp/src/publisher_py_node.py'" in script.read_text()
 
 
 @proves("The second call installs nothing, and builds nothing if nothing has changed.")
@@ -87,6 +90,20 @@ def test_a_passing_test_passes_make_test(copy):
     done = replace_tests(copy, "@pytest.mark.quick\ndef test_one():\n    pass\n")
     assert done.returncode == 0, done.stdout
     assert "1 passed, 0 failed\n" in done.stdout
+
+
+@proves(
+    "The container can only read the package, has no network, and has limits of its own.",
+    "The checker is root in it, so the package's programs run as another user.",
+)
+@pytest.mark.quick
+def test_docker_check_is_in_bounds():
+    """It only says what it would do: where there is Docker, `make docker-harm` tests the bounds."""
+    said = make("docker-check", "--dry-run", f"PKG={ROOT}/catkin_ws/src/mrp").stdout
+    command = re.search(r"^docker run (?:.*\\\n)*.*/check /package$", said, re.MULTILINE).group()
+    for bound in ("--network none", "--memory ", "--pids-limit ", "src/mrp:/package:ro"):
+        assert bound in command
+    assert "--user" not in command
 
 
 @pytest.mark.quick

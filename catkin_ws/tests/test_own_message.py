@@ -49,6 +49,7 @@ def check_user(folder):
     "generated before the node is compiled.",
     "From this file, CMake generates a Python class and a C++ header.",
     "A package that uses this type depends on mrp_labs, and on nothing else for it.",
+    "Outside of this package, ${catkin_EXPORTED_TARGETS} alone is enough.",
 )
 def test_beside_mrp_labs(tmp_path):
     scratch.make(tmp_path, LABS, USER)

@@ -43,6 +43,8 @@ def workspaces(tmp_path_factory):
 
 @proves(
     "A terminal uses that of the workspace whose setup.bash it has sourced last.",
+    "A setup.bash replaces what an earlier one has set, unless the one workspace was built over "
+    "the other.",
     "If two workspaces have a package of the same name, the terminal uses that of the one sourced "
     "last.",
 )
@@ -50,9 +52,11 @@ def workspaces(tmp_path_factory):
 def test_the_one_whose_setup_was_sourced_last_is_used(workspaces, order):
     sources = " && ".join(f"source {workspaces / name}/devel/setup.bash" for name in order)
     found = subprocess.run(
-        ["bash", "-c", f"{sources} && rospack find {PACKAGE}"],
+        ["bash", "-c", f"{sources} && rospack find {PACKAGE} && printenv CMAKE_PREFIX_PATH"],
         env=scratch.environment(),
         capture_output=True,
         text=True,
     )
-    assert found.stdout.strip() == str(workspaces / order[-1] / "src" / PACKAGE), found.stderr
+    package, prefixes = found.stdout.splitlines()
+    assert package == str(workspaces / order[-1] / "src" / PACKAGE), found.stderr
+    assert str(workspaces / order[-1]) in prefixes and str(workspaces / order[0]) not in prefixes

@@ -108,7 +108,10 @@ def lay_out(entry, folder):
 
 
 @proves(
+    "If a launch file itself has the same name more than once, roslaunch starts nothing: contains "
+    "multiple nodes named.",
     "roslaunch says escalating to SIGTERM, and ends it after a while.",
+    "Symptom: catkin_make does not find catkin_pkg, or a node does not find rospy.",
     "Each heading is a text that a tool prints: a test runs the tool and compares.",
 )
 @pytest.mark.parametrize("entry", parameters())

@@ -264,6 +264,7 @@ def test_report_is_in_all_files(measurements, tmp_path):
     assert "| C++ to C++ | 25.0 " in (tmp_path / "table.md").read_text()
     assert {"C++ to C++", "25.0", "raw TCP, C++", "10.0"} <= svg_texts(tmp_path / "latency.svg")
     assert {"C++ to C++", "990, 2% lost"} <= svg_texts(tmp_path / "throughput.svg")
+    assert plots.latency(content).alt.endswith(", shared pointers 5.0 to C++ to C++ 25.0.")
 
 
 def svg_texts(path):
@@ -281,8 +282,10 @@ def test_every_way_is_measured_beside_its_limit(plan):
     )
 
 
+@proves("make bench QUICK=1 measures less.")
 def test_full_plan_has_every_way():
     assert {step.way for step in plans.FULL} == set(WAYS)
+    assert len(plans.QUICK) < len(plans.FULL)
 
 
 @pytest.fixture
@@ -594,8 +597,10 @@ def test_plot_of_fans(tmp_path, verdict):
 
 def test_plot_of_robots(tmp_path):
     starts = [start(robots, robots) for robots in (1, 2, 4)]
-    plots.write(content_of(starts=starts), tmp_path)
+    content = content_of(starts=starts)
+    plots.write(content, tmp_path)
     assert {"all nodes ready, s: ^1.00", "cores in use: ^2.00"} <= svg_texts(tmp_path / "scale.svg")
+    assert "; cores in use: ^2.00: 0.01 at 1 to 0.16 at 4; " in plots.scale(content).alt
 
 
 def test_a_scale_is_logarithmic():
@@ -647,7 +652,8 @@ def test_fans_deliver_every_message_and_leave_nothing_behind(master, mark, tmp_p
 
 
 @proves(
-    "ros::spin asks the node's queue for callbacks until the master knows that the node has gone.",
+    "When a C++ node ends, ros::spin asks the node's queue for callbacks until the master knows "
+    "that the node has gone.",
     "By then the queue is disabled and answers at once, so each node takes a whole core.",
     "A node with this function in place of ros::spin waits without work:",
 )

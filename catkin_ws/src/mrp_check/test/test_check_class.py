@@ -181,12 +181,14 @@ def test_links_within_a_submission_lead_nowhere(tmp_path):
 @proves(
     "A second call does not check a submission again that has not changed, so after Ctrl-C the "
     "same command goes on where it stopped.",
+    "The reports are in ~/submissions.checked.",
 )
 def test_what_has_not_changed_is_not_checked_again(tmp_path):
     made = hand_in(tmp_path / "class", "anna")
     hand_in(tmp_path / "class", "berta")
     before = {path: path.stat().st_mtime_ns for path in (tmp_path / "class").rglob("*")}
     assert sorted(run_of(tmp_path)) == ["anna", "berta"]
+    assert any((tmp_path / "class.checked").iterdir())
     assert run_of(tmp_path) == []
     assert before == {path: path.stat().st_mtime_ns for path in (tmp_path / "class").rglob("*")}
 

@@ -283,6 +283,7 @@ confine.run(["/usr/bin/python3", "-uc", {program!r}, "{token}"], {str(tmp_path)!
     "If you are root, the package's programs run as another user, even without namespaces.",
     "If you are not root and the system makes no namespaces, the package's programs can do what "
     "you can do, such as end the checker's own processes.",
+    "The checker is root in it, so the package's programs run as another user.",
 )
 def test_the_watcher_is_killed(confined):
     """Where it runs as the same user, a package can end its watcher; its mark finds what is left.

@@ -8,6 +8,7 @@ from mrp_check.building import compiler, configuring, cpp_words
 from mrp_check.rules import cmake as cmake_rule
 from mrp_check.rules import dependencies, manifest, messages, package_name, scripts, targets, text
 from mrp_check.student import cmake
+from mrp_testing.proves import proves
 
 pytestmark = pytest.mark.quick
 
@@ -290,6 +291,7 @@ def test_what_an_editor_keeps_is_no_script(name, tmp_path):
     assert package.of_kind("python") == []
 
 
+@proves("The checker warns of a genmsg that makes messages, and accepts message_generation.")
 @pytest.mark.parametrize(
     ("generator", "severities"),
     [("message_generation", []), ("genmsg", ["warning"]), ("roslib", ["error", "error"])],

@@ -36,7 +36,11 @@ class TestCallbacks(unittest.TestCase):
         rospy.init_node("test_callbacks")
 
     @proves(
+        "What you see: without a lock, the total stays behind.",
         "With a lock, each message is counted.",
+        "Why: several threads are in the callback at once.",
+        "They read the same total, and the one that writes last overwrites what the others have "
+        "added.",
         "What two threads change needs a lock.",
     )
     def test_shared_without_lock(self):
@@ -54,12 +58,16 @@ class TestCallbacks(unittest.TestCase):
 
             # Each line is of one message, with the number 1.
             lab.wait_for(lambda: unlocked() and unlocked()[-1] < len(unlocked()), "a value is lost")
+            # Two callbacks have read the same total, and so logged the same.
+            self.assertLess(len(set(unlocked())), len(unlocked()))
             lab.wait_for(lambda: len(locked()) >= len(unlocked()), "both have counted")
             self.assertEqual(locked(), list(range(1, len(locked()) + 1)))
 
     @proves(
         "With several threads that works:",
+        "What you see: the node with one thread asks once, and then does nothing any more.",
         "It logs no error.",
+        "Why: the answer comes from a callback, too, and the only thread waits in the first one.",
         "A callback must not wait for another callback of its thread.",
     )
     def test_service_in_callback(self):
@@ -77,6 +85,9 @@ class TestCallbacks(unittest.TestCase):
         "What you see: in Python the number doubles 31 times, and the next one is too large for "
         "the message: bad callback, with a traceback.",
         "In C++ no number is too large: it becomes 0, and the node sends zeros as fast as it can.",
+        "The console says nothing about it.",
+        "Why: what the callback publishes comes back to it as the next message.",
+        "rosnode info shows a topic of this kind under both Publications and Subscriptions.",
         "A callback must not publish on a topic to which it listens.",
     )
     def test_callback_that_answers_itself(self):
@@ -91,9 +102,17 @@ class TestCallbacks(unittest.TestCase):
             self.assertLessEqual(set(py), {2**i for i in range(32)})
             # In C++ it goes on for ever, with zeros: no number is too large.
             wait_until(lambda: cpp.count(0) > MANY, lambda: f"zeros, not only {len(cpp)} values")
+            in_cpp = re.compile(r"\[[ A-Z]+\] \[\d+\.\d{9}\]: ")
+            self.assertEqual([line for line in list(lab.lines) if in_cpp.match(line)], [])
+            with Process("rosnode", "info", "/feedback_cpp/publish_anywhere") as info:
+                self.assertEqual(info.wait(), 0)
+            for heading in ("Publications", "Subscriptions"):
+                topics = rf"^{heading}: *\n( \* .*\n)*? \* /feedback_cpp/number \[std_msgs/UInt32\]"
+                self.assertRegex("\n".join(info.lines), re.compile(topics, re.MULTILINE))
 
     @proves(
         "A late subscriber gets 2, though the node has published 1:",
+        "Why: a latched publisher in Python keeps your object, and not what it was.",
         "A latched message that you change is sent as it is then.",
     )
     def test_changed_message(self):
@@ -106,6 +125,10 @@ class TestCallbacks(unittest.TestCase):
         'publish takes a message, or the values of its fields: publish(String("a")) and '
         'publish("a") send the same.',
         "Each of these fails:",
+        "field data must be unsigned integer type",
+        "field data must be of type bytes or an ascii string",
+        "Invalid number of arguments, args should be ['data']",
+        "expected [uint32] but got [std_msgs/String]",
     )
     def test_what_publish_takes(self):
         """The short forms of publish, and what rospy says of wrong ones."""

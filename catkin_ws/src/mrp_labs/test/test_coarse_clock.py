@@ -23,8 +23,11 @@ class TestCoarseClock(unittest.TestCase):
         rospy.init_node("test_coarse_clock")
 
     @proves(
+        "A simulated clock goes on in steps: with each message on /clock.",
+        "In this lab such a step is longer than the period of the loops:",
         "Where /clock comes only every 10 periods, each message lets the loop come round twice at "
         "once, and no more.",
+        "For the second turn, sleep finds its time over and does not block.",
     )
     def test_a_loop_faster_than_the_clock(self):
         with TurnedClock() as clock, Lab("loop_coarse_clock.launch", "clock:=false") as lab:

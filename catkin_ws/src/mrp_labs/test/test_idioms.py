@@ -205,6 +205,10 @@ class TestIdioms(unittest.TestCase):
                         two.wait_for_values(idiom, 2)
                         one.wait_for_values(idiom, 1)
 
+    @proves(
+        "The number is that of the connections, which rosnode info shows, too.",
+        "get_num_connections and getNumSubscribers say how many listen.",
+    )
     def test_wait_for_subscribers(self):
         for language in LANGUAGES:
             with Idiom("wait_for_subscribers", language) as idiom, LabSubscriber("one") as one:
@@ -295,6 +299,7 @@ class TestIdioms(unittest.TestCase):
         "Neither changes what is sent.",
         "The talker says one text in each period.",
         "Under a simulated clock, sleep raises rospy.ROSInterruptException.",
+        "rate.sleep() raises nothing.",
         "ros::ok() is false from then on, and main returns 0, also under a clock that stands "
         "still.",
     )
@@ -319,7 +324,7 @@ class TestIdioms(unittest.TestCase):
     @proves(
         "The other node needs no loop.",
         "It spins, and ROS calls its callback for each message:",
-        "It tells ROS to end the node, and your loop must ask.",
+        "Ctrl-C tells ROS to end the node, and your loop must ask.",
         "The condition then ends the loop.",
     )
     def test_loop_talker_and_listener(self):

@@ -3,6 +3,7 @@
 """Which lines a node shows, where it shows them, and when the log files are too many."""
 
 import os
+import pathlib
 import re
 import signal
 import sys
@@ -10,6 +11,7 @@ import tempfile
 import unittest
 
 import rosgraph
+import rospkg
 import rostest
 from mrp_testing import log_line
 from mrp_testing.lab import PACKAGE, Lab
@@ -22,6 +24,10 @@ from mrp_testing.waiting import within
 DECIMALS = {"py": 6, "cpp": 9}  # of the time in a line: so each shows its language
 LOGGERS = {"py": "rosout", "cpp": "ros.mrp_labs"}
 ALWAYS = {"INFO", "WARN", "ERROR", "FATAL"}
+PREFIXES = {
+    "py": {"[INFO]", "[WARN]", "[ERROR]", "[FATAL]"},
+    "cpp": {"[ INFO]", "[ WARN]", "[ERROR]", "[FATAL]"},
+}
 GIGABYTE = 2**30
 STILL = 1.0  # seconds
 LOGS = (
@@ -29,10 +35,19 @@ LOGS = (
 )
 
 
+def of_language(lines, language):
+    """Return the lines that the node of a language has logged."""
+    begin = re.compile(rf"\[[ A-Z]+\] \[\d+\.\d{{{DECIMALS[language]}}}\]: ")
+    return [line for line in list(lines) if begin.match(line)]
+
+
 def levels(lines, language):
     """Return the levels of what the node of a language has logged."""
-    of_language = re.compile(rf"\[[ A-Z]+\] \[\d+\.\d{{{DECIMALS[language]}}}\]: ")
-    return {log_line.parse(line).level for line in list(lines) if of_language.match(line)}
+    return {log_line.parse(line).level for line in of_language(lines, language)}
+
+
+def prefixes(lines, language):
+    return {line[: line.index("]") + 1] for line in of_language(lines, language)}
 
 
 def run(*command, env=None):
@@ -46,6 +61,7 @@ class TestLog(unittest.TestCase):
         with Lab("log_levels.launch") as lab:
             lab.wait_for(lambda: levels(lab.lines, language) >= ALWAYS, "each level but one")
             self.assertEqual(levels(lab.lines, language), ALWAYS)
+            self.assertEqual(prefixes(lab.lines, language), PREFIXES[language])
             self.assertEqual(levels(lab.errors, language), ALWAYS - {"INFO"})
             setting = (f"{node}/set_logger_level", LOGGERS[language], "debug")
             self.assertEqual(run("rosservice", "call", *setting), 0)
@@ -61,6 +77,7 @@ class TestLog(unittest.TestCase):
 
     @proves(
         "No level ends the node.",
+        "In these lines, a space stands before INFO and WARN in C++, and none in Python.",
         "Debug and info lines go to the standard output, all others to the standard error output.",
         "A line with once or throttle in its call is not repeated at each turn.",
         "Symptom: of the five levels, the console lacks one: debug.",
@@ -77,6 +94,7 @@ class TestLog(unittest.TestCase):
 
     @proves(
         "No level ends the node.",
+        "In these lines, a space stands before INFO and WARN in C++, and none in Python.",
         "Debug and info lines go to the standard output, all others to the standard error output.",
         "A line with once or throttle in its call is not repeated at each turn.",
         "Symptom: of the five levels, the console lacks one: debug.",
@@ -91,6 +109,9 @@ class TestLog(unittest.TestCase):
         self.check("cpp")
 
     @proves(
+        "Every Python node and every roslaunch writes files into ~/.ros/log, or into the folder "
+        "in ROS_LOG_DIR.",
+        "Cause: roslaunch only warns of old logs: it deletes none.",
         "Fix: type rosclean purge.",
         "rosclean purge deletes old log files.",
     )
@@ -104,6 +125,11 @@ class TestLog(unittest.TestCase):
                 lab.wait_for(lambda: warning in lab.lines, warning)
                 for language in LOGGERS:
                     lab.wait_for(lambda: levels(lab.lines, language), "the nodes run")
+            written = " ".join(path.name for path in pathlib.Path(folder).glob("*/*.log"))
+            self.assertRegex(written, r"\blog_levels-levels_py-.*")
+            self.assertRegex(written, r"\broslaunch-.*")
+            self.assertTrue(os.path.exists(os.path.join(folder, "old.log")))
+            self.assertEqual(rospkg.get_log_dir(env={}), os.path.expanduser("~/.ros/log"))
             self.assertEqual(run("rosclean", "purge", "-y", env=env), 0)
             self.assertFalse(os.path.exists(os.path.join(folder, "old.log")))
 

@@ -8,7 +8,9 @@ import shlex
 import signal
 import tempfile
 import unittest
+import urllib.parse
 
+import rosgraph
 import rostest
 from mrp_testing.lab import PACKAGE, Lab
 from mrp_testing.nodes import connections_of, pid_of
@@ -78,12 +80,15 @@ class TestLook(unittest.TestCase):
         "rostopic info with the name of the topic.",
         "If you do not know that name, rosnode info shows to what the node subscribes.",
         "rosnode list still shows it.",
+        "The number is that of the connections, which rosnode info shows, too.",
         "rosnode ping tests that path.",
         "rostopic info shows the nodes of a topic, and rosnode info shows a node's connections.",
         "It prints about 12: the Python publisher still sends two messages a second, and rostopic "
         "hz counts both publishers.",
         "roslaunch hides it, because it gives each node the name in the launch file.",
         "The commands that look at the graph are on inspecting, and a lab runs them.",
+        "Other machines can still reach the XML-RPC port of each C++ node: use a network that you "
+        "trust.",
     )
     def test_commands(self):
         with Lab("look.launch") as running:
@@ -128,6 +133,12 @@ class TestLook(unittest.TestCase):
             + ["Subscribers:"]
             + [f"* {one}" for one in SUBSCRIBERS],
         )
+        # The port at which a C++ node is called listens to all machines, that of a Python one not.
+        listening = [one.split()[1] for one in open("/proc/net/tcp") if one.split()[3] == "0A"]
+        for one, address in zip(PUBLISHERS, ("00000000", "0100007F")):
+            port = urllib.parse.urlparse(rosgraph.Master("/test_look").lookupNode(one)).port
+            self.assertIn(f"{address}:{port:04X}", listening, one)
+
         # Both counts, each without a gap.
         values = [int(line[len("data: ") :]) for line in echo if line.startswith("data: ")]
         self.assertEqual(len(values), 6)

@@ -72,10 +72,12 @@ class TestLoop(unittest.TestCase):
                     self.assertGreater(after - before, 1.5 - 0.01, node)
 
     @proves(
+        "Here only ros::spinOnce calls the callbacks.",
         "In C++ the loop must come round often.",
         "What arrives between two calls of spinOnce waits in the subscriber's queue.",
         "When the queue is full, the oldest message is dropped.",
         "In this lab a publisher sends four messages a second.",
+        "One C++ subscriber calls spinOnce every 0.1 s, the other one every 2 s.",
         "Each has a queue of 4:",
         "The slow loop gets the four newest messages of each two seconds, late and all at once.",
         "The quick loop misses none, and neither does a subscriber in Python.",

@@ -87,7 +87,9 @@ class TestNames(unittest.TestCase):
             rospy.delete_param(DISABLED)
 
     @proves(
+        "Each node has a name of its own in the graph.",
         "What you see: the nodes of the first start end, and those of the second start go on.",
+        "Why: the master keeps one node under a name.",
         "If another node registers the name, the master asks the node that had it to shut down.",
         "So the exit code is 0, and roslaunch says that all is well.",
         "Or set the parameter: then each node asks for it only once, and the newer node goes on.",
@@ -103,7 +105,10 @@ class TestNames(unittest.TestCase):
                 self.assertEqual(ended_by_name(newer, node), [], str(newer))
 
     @proves(
+        "In Python, the newer node may end as well, with the same reason in its console.",
         "Then none of the name is left:",
+        "Why: the older node still logs while it shuts down.",
+        "So the master asks the newer node to shut down, too.",
         "In Python, start it a third time: the two may have ended each other.",
         "Perhaps the newer one, and perhaps neither.",
     )
@@ -116,8 +121,10 @@ class TestNames(unittest.TestCase):
                     self.assertEqual(len(ended_by_name(node, "/goodbye")), 1, str(node))
 
     @proves(
+        "The master can only end a node that it reaches.",
         "With a wrong ROS_HOSTNAME, the older node goes on beside the newer one, and neither logs "
         "anything about it.",
+        "You see it by messages that come from both.",
     )
     def test_both_go_on_when_the_master_cannot_reach_the_older(self):
         with started_twice("asked_once:=true", first=["hostname:=no-such-host"]) as labs:
@@ -126,7 +133,10 @@ class TestNames(unittest.TestCase):
                     wait_until_published(lab, node, 3)
                     self.assertEqual(ended_by_name(lab, node), [], str(lab))
 
-    @proves("Then the nodes of both starts end each other for ever.")
+    @proves(
+        "With respawn:=true, roslaunch starts each node again that has ended.",
+        "Then the nodes of both starts end each other for ever.",
+    )
     def test_respawned_nodes_end_each_other_for_ever(self):
         # Ctrl-C may find one that is just starting.
         with started_twice("respawn:=true", traceback=True) as labs:
@@ -135,10 +145,12 @@ class TestNames(unittest.TestCase):
                 lab.wait_for(lambda: len(ended_by_name(lab, CPP)) > ends, f"{CPP} ends again")
 
     @proves(
+        "Others find its parameters by that name, and commands such as rosnode kill find the node.",
         "Then ROS puts a number behind the name:",
         "Two such nodes have different names, and so both go on.",
         "What you see: the node does not get its parameter.",
         "rosnode kill says Unknown node(s).",
+        "Why: the parameter is under /anonymous_name, and that is not the node's name.",
         "Or the command line gives the parameter: _rate:=7 reaches the node whatever its name is.",
         "With anonymous=True both go on.",
     )

@@ -145,7 +145,10 @@ class TestParam(unittest.TestCase):
             node.lines,
         )
 
-    @proves("Without a default, rospy.get_param raises a KeyError.")
+    @proves(
+        "Cause: no parameter of this name was set before the node asked for it.",
+        "Without a default, rospy.get_param raises a KeyError.",
+    )
     def test_missing_py(self):
         code = "import rospy; rospy.init_node('reader'); rospy.get_param('~speed')"
         with Process("/usr/bin/python3", "-c", code) as node:

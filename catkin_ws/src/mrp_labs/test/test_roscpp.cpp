@@ -196,6 +196,7 @@ int clocksUntilReturn(const std::function<void()>& sleep)
 }
 }  // namespace
 
+// Proves: time.sleep and ros::WallDuration::sleep go by the machine's clock.
 // Proves: rospy.sleep, rospy.Rate.sleep, ros::Duration::sleep and ros::Rate::sleep do not return,
 //   either.
 TEST(Roscpp, durationSleepsUntilThereIsAClock)

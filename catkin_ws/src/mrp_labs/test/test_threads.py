@@ -100,6 +100,8 @@ class TestThreads(unittest.TestCase):
         "Under ros::spin, a slow callback holds up all callbacks of its node: no two run at the "
         "same time.",
         "With several threads in C++, callbacks of two topics run at the same time.",
+        "A sleep in a callback blocks in the same way, for as long as it takes: threads shows who "
+        "waits.",
         "With two threads it can, because callbacks of two topics run at the same time.",
         "A timer changes nothing, because its callback works just as long, and ros::spin calls "
         "one callback after the other.",

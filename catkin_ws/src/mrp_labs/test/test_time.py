@@ -5,8 +5,10 @@
 import re
 import unittest
 
+import rosgraph
 import rostest
 from mrp_testing import log_line
+from mrp_testing.graph import Graph
 from mrp_testing.lab import PACKAGE, Lab
 from mrp_testing.nodes import pid_of, program
 from mrp_testing.process import Process
@@ -58,9 +60,11 @@ class TestTime(unittest.TestCase):
         "A loop publishes its first message, sleeps for good, and logs nothing about it.",
         "The loops of this lab show it.",
         "rospy.sleep and ros::Duration::sleep stand still as the rates do.",
+        "time.sleep and ros::WallDuration::sleep go by the machine's clock.",
         "Then ROS timers never fire, and the node logs nothing about it.",
         "In this lab five publishers wait for their timers, and nobody publishes /clock.",
         "These three publish all the same, because their timers do not follow it.",
+        "rosparam get /use_sim_time prints true, and rostopic info /clock shows no publisher.",
     )
     def test_no_clock(self):
         with Lab("time_no_clock.launch") as running:
@@ -74,6 +78,8 @@ class TestTime(unittest.TestCase):
                 first, *others = running.logged(publisher, ALL_LEVELS)
                 self.assertIn("publishes std_msgs/UInt32 on /time/great_topic", first)
                 self.assertEqual(others, ["published 1"] if publisher in LOOPS else [], publisher)
+            self.assertIs(rosgraph.Master("/test_time").getParam("/use_sim_time"), True)
+            self.assertNotIn("/clock", Graph().publishers)
             # It is the clock that was missing, and nothing else.
             with Process(program(PACKAGE, "lab_clock_py_node.py")):
                 for subscriber in SUBSCRIBERS:

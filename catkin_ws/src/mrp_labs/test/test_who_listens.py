@@ -57,7 +57,12 @@ class TestWhoListens(unittest.TestCase):
                 yield node, clock
 
     @proves(
+        "rospy.wait_for_message and ros::topic::waitForMessage wait for one message, without a "
+        "callback.",
+        "What you see: numbers are missing.",
         "What is published between two calls is lost.",
+        "Why: each call subscribes, waits for one message, and unsubscribes.",
+        "wait_for_message is for one message.",
         "In a loop it loses what comes in between.",
     )
     def test_what_comes_between_two_waits_is_lost(self):
