@@ -54,6 +54,11 @@ _WORD = re.compile(r"[^\W\d_]+|\d+")
 # A text is near an entry if it has this part of the entry's words, or the entry this part of its.
 _OF_ENTRY, _OF_TEXT = 0.5, 0.7
 _TOGETHER = 3  # lines: long messages are broken into that many
+# Lines around any error, which say nothing of it.
+_EVERYWHERE = re.compile(
+    r'\s*(?:Traceback \(most recent call last\):|File "[^"]*", line \d+, in \S+'
+    r"|The traceback for the exception was written to the log file)\s*"
+)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -186,7 +191,8 @@ def _words(text):
 
 def _passages(text):
     """Yield the words of each line of a text, and of lines that follow each other."""
-    lines = [words for words in map(_words, text.splitlines()) if words]
+    lines = [line for line in text.splitlines() if not _EVERYWHERE.fullmatch(line)]
+    lines = [words for words in map(_words, lines) if words]
     seen = set()
     for length in range(1, _TOGETHER + 1):
         for begin in range(max(len(lines) - length, 0) + 1):
