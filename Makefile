@@ -17,6 +17,9 @@ IN_WORKSPACE := cd catkin_ws; $(IN_ENVIRONMENT)
 # What the tests share serves two tools, too, which run where nothing is built.
 WITH_TESTING := PYTHONPATH=src/mrp_testing/src
 
+# With ccache, the tests' workspaces get what was compiled here.
+CACHE := $(WITH_TESTING) /usr/bin/python3 -m mrp_testing.compiler_cache
+
 # ROS 1 has no authentication: unless the user says otherwise, listen on this machine only.
 LOCAL := if [ -z "$$ROS_IP$$ROS_HOSTNAME" ]; then export ROS_HOSTNAME=localhost; fi;
 
@@ -73,7 +76,7 @@ run: packages-run $(BUILT_TUTORIAL)  ## run the four nodes; end them with Ctrl-C
 	@$(IN_WORKSPACE) $(LOCAL) source devel/setup.bash; exec roslaunch mrp pub_sub.launch
 
 $(BUILT_WHOLE): $(call sources,catkin_ws/src)
-	@$(IN_WORKSPACE) tools/timed.py build $(CATKIN_MAKE) $(WHOLE)
+	@$(IN_WORKSPACE) tools/timed.py build env $$($(CACHE)) $(CATKIN_MAKE) $(WHOLE)
 	@touch $@ $(BUILT_TUTORIAL)
 
 $(BUILT_TUTORIAL): $(call sources,catkin_ws/src/mrp)

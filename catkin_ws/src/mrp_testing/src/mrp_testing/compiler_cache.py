@@ -1,5 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A cache of what the tests compile: what one test has compiled, the next one has at once."""
+"""A cache of what is compiled: what the build or one test has compiled, the next one has at once.
+
+As a program, it prints the variables for `make build`; or nothing, where there is no ccache.
+"""
+
+import shutil
 
 from mrp_testing.workspace import WORKSPACE
 
@@ -16,5 +21,11 @@ def variables(folder):
         "CCACHE_DIR": str(FOLDER),
         "CCACHE_BASEDIR": str(folder),
         "CCACHE_NOHASHDIR": "1",
+        # CI's own, of the first build: what it lets pass has no warning.
+        "CCACHE_IGNOREOPTIONS": "-Werror",
         "CCACHE_MAXSIZE": "500M",
     }
+
+
+if __name__ == "__main__" and shutil.which("ccache"):
+    print(*(f"{name}={value}" for name, value in variables(WORKSPACE).items()))
