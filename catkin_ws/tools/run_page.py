@@ -34,7 +34,7 @@ sys.path.insert(0, str(DOC / "extension"))
 import meaning  # noqa: E402
 
 SECONDS = 900  # that a command may take: one builds the whole repository
-SHOWS_SECONDS = 60  # that one may go on until it has shown all that the page says
+PRINTS_SECONDS = 180  # that one may go on until it has printed what the page says
 
 # Which pages need one another. One reader reads these in their order: they write ~/catkin_ws, build
 # it, run it, and break it.
@@ -44,7 +44,7 @@ CLONE = ("message_types",)
 # Each other page runs what is built in the clone, and writes nothing that another page reads: so it
 # has a reader of its own. Where it names this folder, it needs the tutorial as well.
 OF_TUTORIAL = "~/catkin_ws"
-SIDE_BY_SIDE = 2
+SIDE_BY_SIDE = 3
 
 _PROMPT = re.compile(r"<reader (\d+)> $")
 # rospy prints it, and goes on, where two nodes that start at once both make the link `latest`.
@@ -297,9 +297,9 @@ class Terminal:
         """
         self._begin(command)
         pattern = re.compile(f"[^\r\n]*(?:{pattern})[^\r\n]*\r\n")
-        if self._shell.expect([pattern, _PROMPT]) == 1:
+        end = time.monotonic() + PRINTS_SECONDS
+        if self._shell.expect([pattern, _PROMPT], timeout=PRINTS_SECONDS) == 1:
             raise StepError(f"it ended before it printed {pattern.pattern}:\n{self._text()}")
-        end = time.monotonic() + SHOWS_SECONDS
         while meaning.missing(shows, self._lines()) and time.monotonic() < end:
             self._shell.expect("\r\n")
         return self._lines()
