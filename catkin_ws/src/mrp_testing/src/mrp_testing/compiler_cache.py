@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """A cache of what is compiled: what the build or one test has compiled, the next one has at once.
 
-As a program, it prints the variables for `make build`; or nothing, where there is no ccache.
+As a program, it prints the variables that `make build` lacks; or nothing, where there is no ccache.
 """
 
+import os
 import shutil
 
 from mrp_testing.workspace import WORKSPACE
@@ -28,4 +29,5 @@ def variables(folder):
 
 
 if __name__ == "__main__" and shutil.which("ccache"):
-    print(*(f"{name}={value}" for name, value in variables(WORKSPACE).items()))
+    lacking = [pair for pair in variables(WORKSPACE).items() if pair[0] not in os.environ]
+    print(*(f"{name}={value}" for name, value in lacking))
