@@ -143,11 +143,13 @@ def kill_all(codes: Dict[int, int]) -> bool:
     """
     end = time.monotonic() + _KILLING
     while time.monotonic() < end:
-        alive = descendants()
         _reap(codes)
-        if not alive:
+        # What has ended counts until it is reaped: it may have made another one meanwhile, which is
+        # not in sight yet, and is of its group.
+        found = psutil.Process().children(recursive=True)
+        if not found:
             return True
-        for process in alive:
+        for process in found:
             try:
                 group = os.getpgid(process.pid)
                 if group != os.getpgid(0):
