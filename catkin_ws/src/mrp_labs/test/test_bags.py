@@ -14,11 +14,13 @@ import rosbag
 import rospy
 import rostest
 from mrp_testing import log_line
+from mrp_testing.graph import Graph
 from mrp_testing.lab import PACKAGE, Lab
 from mrp_testing.nodes import program
 from mrp_testing.process import LIVE, Process
 from mrp_testing.proves import proves
 from mrp_testing.waiting import wait_until
+from rosgraph_msgs.msg import Clock
 from std_msgs.msg import UInt32
 
 MAP, COUNT = "/bags/map", "/bags/count"
@@ -163,6 +165,24 @@ class TestBags(unittest.TestCase):
                     self.assertEqual(player.wait(), 0)
                 wait_until(lambda: recorded[-1] in counts, "the last number")
             self.assertEqual(counts, recorded)
+
+    @proves("Ctrl-C does not end it meanwhile, and Ctrl-\\ does.")
+    def test_ctrl_c_does_not_end_it_while_it_waits(self):
+        options = ("--wait-for-subscribers", "__name:=waits")
+        with play(*options, self.path("trip_0.bag")) as player:
+            wait_until_said(player, "Waiting for subscribers.")
+            os.kill(player.pid, signal.SIGINT)
+            player.wait_for(lambda: "/waits" not in Graph().nodes, "roscpp shuts down")
+            self.assertEqual(player.stop(signal.SIGQUIT), -signal.SIGQUIT)
+
+    @proves("In practice the clock jumps back when a bag is played in a loop.")
+    def test_loop_turns_the_clock_back(self):
+        times = []
+        clock = rospy.Subscriber("/clock", Clock, lambda msg: times.append(msg.clock))
+        self.addCleanup(clock.unregister)
+        with play("--clock", "--loop", self.path("trip_0.bag")) as player:
+            wait_until(lambda: times != sorted(times), "an earlier time")
+            self.assertEqual(player.stop(), 0)
 
     @proves(
         "Cause: /use_sim_time is true, and nobody publishes /clock: a simulator has ended, or a "
