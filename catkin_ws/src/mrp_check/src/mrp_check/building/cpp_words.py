@@ -286,7 +286,7 @@ _WORDS: Sequence[tuple[str, Callable[[Error], Words], str]] = (
     ),
     (r"'([^']+)' (?:\{aka '[^']*'\} )?has no member named '(\w+)'", _no_member, "no-member-named"),
     # What roscpp asks of each message.
-    (r"'__s_get\w+' is not a member of '([^']+)'", _no_message, ""),
+    (r"'__s_get\w+' is not a member of '([^']+)'", _no_message, "not-a-message"),
     (
         r"'(\w+)' (?:is not a member of|in namespace) '([^']+)'",
         lambda error: _no_member(error, owner_group=2, member_group=1),

@@ -121,8 +121,12 @@ _WORDS = (
 def _error(launch: Launch, tags: Sequence[tuple[str, Element]]) -> Finding:
     """Return the Finding about what roslaunch said instead of loading the file."""
     said = _Said(launch, tags)
-    found = ((re.search(shape, said.text), *rest) for shape, *rest in _WORDS)
-    match, words, why = next(one for one in found if one[0])
+    match, words, why = next(
+        (match, words, why)
+        for shape, words, why in _WORDS
+        for match in [re.search(shape, said.text)]
+        if match
+    )
     place, message, fix = words(said, *filter(None, match.groups()))
     return Finding(
         "launch-file",
