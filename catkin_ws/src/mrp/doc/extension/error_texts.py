@@ -55,7 +55,7 @@ def _block(lines):
 
 def _plain(text):
     """Return a text in which nothing is mark-up, and no address a link."""
-    return re.sub(r"([\\*`|_]|://|@)", r"\\\1", text)
+    return re.sub(r"([\\*`|_]|:/|@)", r"\\\1", text)
 
 
 def _marked_up(text):
