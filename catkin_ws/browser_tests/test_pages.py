@@ -1,22 +1,21 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Every page, at both widths, as a file and served."""
+"""Every page, as a file on a desktop and served to a phone."""
 
 import itertools
 
 import checks
 import pytest
-from browser import SIZES
 from built_site import PAGES
 
 
 @pytest.fixture(
     scope="module",
-    params=itertools.product(("file", "served"), SIZES, PAGES),
-    ids=" ".join,
+    params=itertools.product((("file", "desktop"), ("served", "phone")), PAGES),
+    ids=lambda param: " ".join((*param[0], param[1])),
 )
 def view(request, browser, addresses):
     """An open page: (address of the site, size)."""
-    where, size, page = request.param
+    (where, size), page = request.param
     browser.open(addresses[where] + page, size)
     return addresses[where], size
 
