@@ -20,12 +20,18 @@ VARIANTS = [defect for defect in defects.read_all() if defect.fails]
 DEADLINE = "10"  # seconds that a test waits for what a broken variant never does
 
 
-def run_rostest(folder, name):
-    """Run one rostest of the scratch workspace; return the message of each failed test case."""
+def run_rostest(folder, name, case):
+    """Run a test case of a rostest of the scratch workspace; return its message if it failed: a
+    dictionary of test cases."""
     package = folder / "src" / "mrp"
     results = folder / "results"
     shutil.rmtree(results, ignore_errors=True)
-    env = {**scratch.environment(), "MRP_TEST_DEADLINE": DEADLINE}
+    env = {
+        **scratch.environment(),
+        "MRP_TEST_DEADLINE": DEADLINE,
+        "MRP_TEST_CASE": case,
+        "GTEST_FILTER": "*." + case,
+    }
     command = scratch.sourced(
         folder / "devel" / "setup.bash",
         "rostest",
@@ -86,7 +92,7 @@ def test_broken_variant_fails(variant, workspace):
     try:
         rostest, case = variant.fails
         rebuild(workspace, rostest)
-        failures = run_rostest(workspace, rostest)
+        failures = run_rostest(workspace, rostest, case)
     finally:
         run_patch("--reverse")
     assert case in failures, f"failed: {failures}"

@@ -117,7 +117,7 @@ def test_forks_without_end(confined):
                 pass
         """,
         processes=50,
-        time=30,
+        time=FEW_SECONDS,
     )
     assert result.ended_by in ("processes", "time")
 
@@ -147,7 +147,7 @@ def test_threads_without_end(confined):
                 pass
         """,
         processes=50,
-        time=30,
+        time=FEW_SECONDS,
     )
     assert result.ended_by in ("processes", "time")
 
