@@ -40,8 +40,9 @@ PACKAGES_docs := docs
 PACKAGES_docs-book := docs book
 PACKAGES_lint := $(PACKAGES_test-all) lint
 
-# `make run` builds the tutorial alone. Once the whole workspace has been built, it stays whole.
-CATKIN_MAKE := catkin_make -DPYTHON_EXECUTABLE=/usr/bin/python3 -DCMAKE_BUILD_TYPE=RelWithDebInfo
+# `make run` builds the tutorial alone. Once the whole workspace has been built, it stays whole. With -j,
+# catkin_make does not add -l: a machine that was busy a minute ago would build one file at a time.
+CATKIN_MAKE := catkin_make -j$(shell nproc) -DPYTHON_EXECUTABLE=/usr/bin/python3 -DCMAKE_BUILD_TYPE=RelWithDebInfo
 TUTORIAL := -DCATKIN_WHITELIST_PACKAGES=mrp -DCATKIN_ENABLE_TESTING=OFF
 WHOLE := -DCATKIN_WHITELIST_PACKAGES= -DCATKIN_ENABLE_TESTING=ON
 BUILT_TUTORIAL := catkin_ws/devel/.built_tutorial
@@ -301,4 +302,4 @@ docker-check: need-docker  ## check the package at PKG in a container without a 
 docker-containers: docker-build-ssh
 	@/usr/bin/python3 -c 'import pytest, xdist' 2> /dev/null || \
 	  catkin_ws/tools/install_packages.sh <(printf '%s\n' '# to test the containers' python3-pytest-xdist)
-	@/usr/bin/python3 -m pytest -n 2 --dist loadfile --junit-xml=$(DOCKER_RESULTS)/containers.xml docker/test
+	@/usr/bin/python3 -m pytest -n 3 --dist loadfile --junit-xml=$(DOCKER_RESULTS)/containers.xml docker/test
