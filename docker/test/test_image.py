@@ -87,11 +87,14 @@ def test_size(image_layers):
     assert sum(map(size, image_layers)) < LARGEST
 
 
+def dpkg_query(image, form):
+    return docker("run", "--rm", "--entrypoint", "dpkg-query", image, "--show", "--showformat", form)
+
+
 def sources(image):
     """Return path -> the source package that a file belongs to."""
-    show = ("--show", "--showformat", "${source:Package}\n${db-fsys:Files}")
     result = {}
-    for line in docker("run", "--rm", "--entrypoint", "dpkg-query", image, *show).splitlines():
+    for line in dpkg_query(image, "${source:Package}\n${db-fsys:Files}").splitlines():
         if not line.startswith(" "):
             source = line
         else:
@@ -135,6 +138,16 @@ def test_opt_mrp_is_the_install_space(files):
         "share/mrp/package.xml",
     ):
         assert "opt/mrp/" + name in files
+
+
+@proves(
+    "It runs on Debian's own ROS 1 packages: you add no other package source.",
+    "Debian 12 and 13 have ROS 1 as ordinary packages.",
+)
+def test_ros_is_debians_own(image):
+    lines = dpkg_query(image, "${source:Package}\t${Maintainer}\n").splitlines()
+    makers = {line.split("\t")[1] for line in lines if re.match(r"ros2?-", line)}
+    assert makers and all(maker.endswith("debian.org>") for maker in makers), makers
 
 
 def test_no_package_is_half_installed(image):
