@@ -43,6 +43,7 @@ def resolved(dependency_type, folder="src"):
 
 
 # They are run by one worker of pytest: what rosdep reads is in one folder for all of them.
+@pytest.mark.slow
 @proves("make deps has installed ROS, and all that building needs, from Debian's packages.")
 @pytest.mark.xdist_group("rosdep")
 @pytest.mark.parametrize(
@@ -52,6 +53,7 @@ def test_lists_have_what_building_and_testing_need(dependency_type, stages):
     assert resolved(dependency_type) - packages(*stages) == set()
 
 
+@pytest.mark.slow
 @pytest.mark.xdist_group("rosdep")
 def test_lists_have_what_running_needs():
     # rosdep names the -dev packages for running, too: what of them runs is in libraries that they
@@ -61,6 +63,7 @@ def test_lists_have_what_running_needs():
     assert needed - packages(*RUN) == set()
 
 
+@pytest.mark.slow
 @proves("From these lines, tools know which Debian packages to install.")
 @pytest.mark.xdist_group("rosdep")
 def test_make_run_installs_what_the_tutorial_needs():

@@ -441,6 +441,7 @@ def start(robots, up):
     }
 
 
+@pytest.mark.slow
 @proves("How the costs grow shows how many robots the machine can hold.")
 def test_growth_with_the_robots():
     starts = [start(robots, up * robots) for robots in (1, 2, 4) for up in (1, 2, 9)]
@@ -538,6 +539,7 @@ def test_two_publishers_may_send_at_the_same_time():
     assert fan_figures.figures(one)["lost"] == 1
 
 
+@pytest.mark.slow
 @proves(
     "For each cost the tables give the exponent with which it grows: with 1 a cost doubles with "
     "the number of nodes, with 0 it stays the same.",
@@ -571,6 +573,7 @@ def test_growth_of_fans():
     assert fan_figures.exponents({1: {}, 2: {}}) == {}
 
 
+@pytest.mark.slow
 def test_table_of_fans_has_no_figures_of_a_noisy_machine():
     fans = [fan(count, 1, lost=[3]) for count in (1, 2, 4)]
     publishers, _ = tables.fans(content_of(fans=fans, verdict="noisy", cores=1))
@@ -580,6 +583,7 @@ def test_table_of_fans_has_no_figures_of_a_noisy_machine():
     assert tables.fans(content_of()) == []
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("verdict", [None, "too noisy"])
 def test_plot_of_fans(tmp_path, verdict):
     measured = [
@@ -595,6 +599,7 @@ def test_plot_of_fans(tmp_path, verdict):
     assert ("too noisy a machine" in texts) == (verdict is not None)
 
 
+@pytest.mark.slow
 def test_plot_of_robots(tmp_path):
     starts = [start(robots, robots) for robots in (1, 2, 4)]
     content = content_of(starts=starts)

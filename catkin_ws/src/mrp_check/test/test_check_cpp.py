@@ -15,7 +15,7 @@ from mrp_check.sources import reading
 from mrp_testing.workspace import WORKSPACE
 
 # One worker of pytest builds for all of these tests.
-pytestmark = [pytest.mark.quick, pytest.mark.xdist_group("check_cpp")]
+pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("check_cpp")]
 
 FOLDER = WORKSPACE / "src" / "mrp" / "src"
 PUBLISHER, SUBSCRIBER = "publisher_cpp_node", "subscriber_cpp_node"
@@ -239,7 +239,6 @@ def test_what_is_correct_is_not_flagged(node, changes, tmp_path, headers):
     assert told(findings(tmp_path, headers, node, replaced(node, *changes))) == []
 
 
-@pytest.mark.slow
 def test_headers_that_do_not_fit_are_read_again(tmp_path, headers):
     check_rules.make(tmp_path, src__a_DOT_cpp=SOURCES[PUBLISHER])
     said = said_of(tmp_path, headers)

@@ -80,6 +80,7 @@ def test_a_rule_reports_no_other_requirement_than_it_says(tmp_path, monkeypatch)
     assert "a rule reports spin, and does not say so" in one.reason
 
 
+@pytest.mark.slow
 def test_what_failed_once_is_not_tried_again(tmp_path, monkeypatch):
     tried = []
 
@@ -128,6 +129,7 @@ def test_what_was_never_seen_is_neither_met_nor_paid(tmp_path, monkeypatch):
     assert submission.points(check_rules.PUB_SUB) == len(met) < 8
 
 
+@pytest.mark.slow
 def test_many_findings_outside_the_exercise_are_one_line(tmp_path, monkeypatch):
     files = {f"scripts__tool{n}_DOT_py": "#!/usr/bin/python3\nfoo()\n" for n in range(9)}
     files["src__publisher_py_node_DOT_py"] = RUNNING + "bar()\n"
