@@ -88,7 +88,9 @@ def test_size(image_layers):
 
 
 def dpkg_query(image, form):
-    return docker("run", "--rm", "--entrypoint", "dpkg-query", image, "--show", "--showformat", form)
+    return docker(
+        "run", "--rm", "--entrypoint", "dpkg-query", image, "--show", "--showformat", form
+    )
 
 
 def sources(image):

@@ -16,8 +16,8 @@ _RECEIVED = re.compile(
     r"(?: in thread (?P<thread>\d+))?"
 )
 
-# How a Python node's traceback ends if Ctrl-C comes before it has started: the test ended the lab, and
-# nothing is wrong with the node.
+# How a Python node's traceback ends if Ctrl-C comes before it has started: the test ended the lab,
+# and nothing is wrong with the node.
 _ENDED_AT_ITS_START = re.compile(r"^KeyboardInterrupt|ROSInitException: init_node interrupted")
 
 # A message that a subscriber has received. value: its text; thread: a number, or None.
