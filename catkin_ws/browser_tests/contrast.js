@@ -23,6 +23,12 @@ function background(element) {
   );
 }
 
+// The part of an element that its own opacity and those of all that it is in let through.
+function opacity(element) {
+  const rest = element.parentElement ? opacity(element.parentElement) : 1;
+  return Number(getComputedStyle(element).opacity) * rest;
+}
+
 function luminance(rgb) {
   const [r, g, b] = rgb.map((value) => {
     const share = value / 255;
@@ -41,7 +47,9 @@ function behind(element) {
   const shape = element.closest("text")?.previousElementSibling;
   const isFilled = shape?.matches("circle, ellipse, polygon, rect")
     && getComputedStyle(shape).fill !== "none";
-  return isFilled ? parse(getComputedStyle(shape).fill).rgb : background(element);
+  if (!isFilled) return background(element);
+  const fill = parse(getComputedStyle(shape).fill);
+  return over({ ...fill, alpha: fill.alpha * opacity(shape) }, background(element));
 }
 
 const faults = new Map();
@@ -52,7 +60,8 @@ while (texts.nextNode()) {
   if (!text || !element.checkVisibility({ visibilityProperty: true, opacityProperty: true })) continue;
   const style = getComputedStyle(element);
   const below = behind(element);
-  const colour = over(parse(element.closest("svg") ? style.fill : style.color), below);
+  const own = parse(element.closest("svg") ? style.fill : style.color);
+  const colour = over({ ...own, alpha: own.alpha * opacity(element) }, below);
   const value = ratio(colour, below);
   if (value < LEAST) {
     const where = `${element.tagName.toLowerCase()}.${element.getAttribute("class") || ""}`;

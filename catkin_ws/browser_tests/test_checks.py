@@ -50,6 +50,10 @@ FAULTS = {
     "grey on white": (TEXT.format("#777", "#fff"), "contrast"),
     "white on a light blue": (TEXT.format("#fff", "#2980b9"), "contrast"),
     "half transparent black on white": (TEXT.format("rgba(0, 0, 0, 0.5)", "#fff"), "contrast"),
+    "black that lets half of the white through": (
+        f'<div style="opacity: 0.5">{TEXT.format("#000", "#fff")}</div>',
+        "contrast",
+    ),
     "code that only a mouse can scroll": (SCROLLS.format(""), "axe"),
     "a button that says nothing": ("<button></button>", "axe"),
     "a link that only its colour shows": (

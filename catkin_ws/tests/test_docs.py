@@ -2,13 +2,14 @@
 """The site that `make docs` builds: its links. What needs a browser is in browser_tests/."""
 
 import html.parser
+import re
 import subprocess
 import sys
 import urllib.parse
 
 import pytest
 from mrp_testing.proves import proves
-from mrp_testing.workspace import WORKSPACE
+from mrp_testing.workspace import ROOT, WORKSPACE
 from mrp_view import findings
 
 # One worker of pytest builds for all of these tests.
@@ -92,3 +93,30 @@ def test_broken_links_are_found(tmp_path):
     )
     links = ["b/there.html#gone", "gone.html", "#gone", "/etc/passwd", "gone.png", "b"]
     assert broken_links(tmp_path) == [f"page.html: {link}" for link in links]
+
+
+SOURCES = ("catkin_ws/src", "catkin_ws/defects", "catkin_ws/tests", "docker", "README.md")
+_CODE = re.compile(r"^ *\.\. (excerpt|file|literalinclude|code-block|original|ours):: (\S+)", re.M)
+
+
+@proves("Every line of code comes from a file that is built or tested.")
+@pytest.mark.quick
+def test_every_line_of_code_comes_from_a_file():
+    """What is typed into a page is a command. The directives check that the files are there."""
+    doc = WORKSPACE / "src" / "mrp" / "doc"
+    kinds = set()
+    for page in (doc / "index.rst", *doc.glob("pages/*.rst")):
+        text = page.read_text()
+        assert not re.search(r"^(?! *\.\.).*::$", text, re.M), f"{page.name}: code in no directive"
+        sources = dict.fromkeys(re.findall(r"^ +:source: (\S+)", text, re.M))
+        for kind, name in _CODE.findall(text):
+            kinds.add(kind)
+            if kind == "code-block":
+                assert name == "bash", f"{page.name}: code that somebody has typed"
+            elif kind in ("excerpt", "literalinclude"):
+                sources[name] = None
+        for name in sources:
+            path = (doc / name.lstrip("/")).resolve().relative_to(ROOT)
+            assert str(path).startswith(SOURCES), f"{page.name}: {path}"
+            assert doc.relative_to(ROOT) not in path.parents, f"{page.name}: {path}"
+    assert {"excerpt", "file", "code-block", "original"} <= kinds

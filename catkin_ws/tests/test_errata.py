@@ -353,9 +353,14 @@ def test_p17_slips_are_not_in_the_code():
         assert not [path for path, text in listings().items() if slip in text]
 
 
-@proves("Here each excerpt is marked as what it is.")
+@proves(
+    "The original marks CMake's lines as bash, and the launch file as HTML.",
+    "Here each excerpt is marked as what it is.",
+)
 @pytest.mark.quick
 def test_p18_excerpts_here_are_marked_as_what_they_are():
+    assert quoted("code-block:: bash add_executable(")
+    assert quoted("code-block:: html <launch>")
     languages = {"CMakeLists.txt": "cmake", ".launch": "xml", ".py": "python", ".cpp": "cpp"}
     directive = re.compile(
         r"^( *)\.\. (?:excerpt|literalinclude|file):: (\S+)\n((?:\1   :.*\n)+)", re.MULTILINE

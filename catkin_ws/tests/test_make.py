@@ -106,6 +106,18 @@ def test_docker_check_is_in_bounds():
     assert "--user" not in command
 
 
+@proves(
+    "make check PKG=PATH, in the folder of the repository, installs what is missing and does the "
+    "same.",
+)
+@pytest.mark.quick
+def test_check_installs_what_is_missing_and_checks():
+    said = make("check", "--dry-run", "PKG=a_package").stdout
+    installs = r"install_packages\.sh [^\n]*catkin_ws/apt/check\.txt\n"
+    checks = r'mrp_check/scripts/check "a_package"'
+    assert re.search(rf"{installs}(.*\n)*.*{checks}", said), said
+
+
 @pytest.mark.quick
 def test_scripts_are_executable():
     first_lines = {

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Holds what people read to plain English: the sentences of the pages and of README.md, and the
-comments and texts in Python files.
+"""Holds what people read to plain English: the sentences of the pages and of README.md, the
+comments and texts in Python files, and the lines of other sources.
 
 A sentence of a page is at most 30 words long, and none has a word of ON_PAGES. A page's reading
 grade (Flesch-Kincaid: years at school) is at most 9. Prints the hardest page, and each fault with
@@ -108,9 +108,21 @@ def of_python():
                 yield f"catkin_ws/{name}:{line}: {fault}\n    {text}"
 
 
+def of_others():
+    """Yield each fault of the lines of launch files, C++ files, scripts, and heads of defects."""
+    kinds = ("*.launch", "*.cpp", "*.h", "*.sh", "*.patch", "*.js")
+    command = ["git", "ls-files", "--", *kinds, *_NOT, ":!src/mrp_check/correct"]
+    listed = subprocess.run(command, cwd=evidence.WORKSPACE, check=True, stdout=subprocess.PIPE)
+    for name in listed.stdout.decode().split():
+        lines = (evidence.WORKSPACE / name).read_text(errors="replace").splitlines()
+        for number, line in enumerate(lines, 1):
+            for fault in faults_of(line, EVERYWHERE):
+                yield f"catkin_ws/{name}:{number}: {fault}\n    {line.strip()}"
+
+
 def main():
     sentences = [one for one in pages.build()[0] if one.typed]
-    faults = [*of_pages(sentences), *of_python()]
+    faults = [*of_pages(sentences), *of_python(), *of_others()]
     print("\n".join(faults), end="\n" if faults else "")
     grade, page = max((grade, page) for page, grade in grades(sentences).items())
     print(f"The hardest page to read: {claims.name_of(page)}, grade {grade:.1f}")

@@ -25,7 +25,7 @@ while read -r status package; do
   [ "$status" != installed ] || installed[$package]=yes
 done < <(dpkg-query --show --showformat '${db:Status-Status} ${Package}\n')
 
-# The lines of which no alternative is installed, and what the lists that have them are for.
+# The lines without an installed alternative, and what the lists that have them are for.
 lines=() purposes=
 for list in "$@"; do
   purpose=

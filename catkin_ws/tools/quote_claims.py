@@ -128,6 +128,8 @@ def first_reason(sentence):
         return "heading"
     if sentence.text.endswith("?"):
         return "question"
+    if sentence.page == "pages/why":
+        return "entry"
     return "source" if sentence.linked else "open"
 
 

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # Usage: with_rosdep.sh COMMAND...
 # Runs a command for which rosdep knows Debian's packages, without a network: python3-rosdep2 ships
-# the list of them, and all that rosdep would fetch besides (other systems, ROS distributions) is
+# the list of them, and all that rosdep would fetch as well (other systems, ROS distributions) is
 # left out.
 set -euo pipefail
 

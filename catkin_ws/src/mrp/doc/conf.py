@@ -2,6 +2,7 @@
 """The site's configuration: `make docs` builds it, without a network."""
 
 import pathlib
+import re
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent / "extension"))
@@ -34,6 +35,8 @@ html_css_files = ["page.css"]
 html_js_files = ["page.js"]
 html_favicon = "static/icon.svg"
 html_show_sourcelink = False
+_manifest = (pathlib.Path(__file__).parents[1] / "package.xml").read_text()
+html_last_updated_fmt = f"%Y-%m-%d, version {re.search('<version>(.*)</version>', _manifest)[1]}"
 html_show_sphinx = False
 # What was printed is there to be read, not to be typed.
 copybutton_selector = "div:not(.output) > div.highlight pre"

@@ -83,6 +83,7 @@ class TestQueue(unittest.TestCase):
         "ROS_INFO_STREAM logs the text and msg.data.",
         "None: all ten find room in the queue.",
         "The callback gets them one after the other, in the order in which they were sent.",
+        "You can publish by hand, too: a subscriber prints what anybody publishes on its topic.",
         "With a queue of 10, ten values that come together all arrive.",
     )
     def test_subscriber_cpp(self):
@@ -97,6 +98,7 @@ class TestQueue(unittest.TestCase):
         "rospy.loginfo logs the text, with msg.data in the place of %d.",
         "None: all ten find room in the queue.",
         "The callback gets them one after the other, in the order in which they were sent.",
+        "You can publish by hand, too: a subscriber prints what anybody publishes on its topic.",
     )
     def test_subscriber_py(self):
         self.check(contract.SUBSCRIBER_PY)

@@ -10,10 +10,12 @@ import pathlib
 import signal
 import subprocess
 import sys
+import threading
 import uuid
 
 import pytest
 from mrp_check import check
+from mrp_check.cli import check as check_command
 from mrp_check.cli import classroom
 from mrp_check.contract import errors, spec
 from mrp_check.contract.verdict import unchecked
@@ -22,7 +24,7 @@ from mrp_check.rules import REQUIREMENTS
 from mrp_check.student import package, submissions
 from mrp_testing.process import processes_with
 from mrp_testing.proves import proves
-from mrp_testing.waiting import wait_until
+from mrp_testing.waiting import DEADLINE, wait_until
 
 pytestmark = pytest.mark.quick
 
@@ -100,6 +102,28 @@ def test_each_folder_is_a_submission(tmp_path):
         "berta: findings",
     ]
     assert {line.split(":")[0] for line in room.said} == {"1 of 2", "2 of 2"}
+
+
+@proves("Several are checked at a time: --jobs says how many.")
+@pytest.mark.parametrize("jobs", [1, 3])
+def test_jobs_says_how_many_are_checked_at_a_time(tmp_path, jobs):
+    """Each check waits until there are so many, and none is one too many."""
+    for name in ("anna", "berta", "carl"):
+        hand_in(tmp_path / "class", name)
+    together, present = threading.Barrier(jobs, timeout=DEADLINE), []
+
+    class Together(Room):
+        def report_of(self, package_folder, name):
+            present.append(name)
+            assert len(present) <= jobs
+            together.wait()
+            present.remove(name)
+            return super().report_of(package_folder, name)
+
+    options = check_command.parser().parse_args(["--class", "class", "--jobs", str(jobs)])
+    assert set(Together(tmp_path / "class", jobs=options.jobs).verdicts().values()) == {
+        check.FINDINGS
+    }
 
 
 def test_the_package_may_be_further_down(tmp_path):

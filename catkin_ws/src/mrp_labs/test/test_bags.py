@@ -101,6 +101,7 @@ class TestBags(unittest.TestCase):
         "Why: a latched publisher sends its last message to a subscriber once, when it connects.",
         "rosbag record connects once for all its bags.",
         "Only the first of split bags has what was latched before.",
+        "A recording gets a latched message once: only the first bag of a split recording has it.",
     )
     def test_split(self):
         self.assertEqual(self.codes, [0, 0])

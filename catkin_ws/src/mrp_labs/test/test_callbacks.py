@@ -42,6 +42,8 @@ class TestCallbacks(unittest.TestCase):
         "They read the same total, and the one that writes last overwrites what the others have "
         "added.",
         "What two threads change needs a lock.",
+        "Two callbacks add up what they receive.",
+        "With a lock all is counted; without one, values get lost.",
     )
     def test_shared_without_lock(self):
         with Lab("shared_without_lock.launch", extra_env=LIVE) as lab:
@@ -69,6 +71,8 @@ class TestCallbacks(unittest.TestCase):
         "It logs no error.",
         "Why: the answer comes from a callback, too, and the only thread waits in the first one.",
         "A callback must not wait for another callback of its thread.",
+        "A callback that calls a service of its own node waits for ever, unless another thread "
+        "answers.",
     )
     def test_service_in_callback(self):
         waits, *answer = (f"/service/{node}" for node in ("one_thread", "two_threads", "in_python"))
@@ -89,6 +93,7 @@ class TestCallbacks(unittest.TestCase):
         "Why: what the callback publishes comes back to it as the next message.",
         "rosnode info shows a topic of this kind under both Publications and Subscriptions.",
         "A callback must not publish on a topic to which it listens.",
+        "A callback that publishes on the topic it listens to calls itself, again and again.",
     )
     def test_callback_that_answers_itself(self):
         error = "rospy.exceptions.ROSSerializationException: field data exceeds specified width"

@@ -28,6 +28,8 @@ class TestCoarseClock(unittest.TestCase):
         "Where /clock comes only every 10 periods, each message lets the loop come round twice at "
         "once, and no more.",
         "For the second turn, sleep finds its time over and does not block.",
+        "A loop that is faster than the clock does not come round as often as its rate says, and "
+        "does not catch up.",
     )
     def test_a_loop_faster_than_the_clock(self):
         with TurnedClock() as clock, Lab("loop_coarse_clock.launch", "clock:=false") as lab:

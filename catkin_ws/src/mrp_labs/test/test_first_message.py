@@ -79,6 +79,14 @@ class TestFirstMessage(unittest.TestCase):
         "Symptom: a subscriber begins with the second value, or with a later one.",
         "Cause: the publisher sent the first value before the subscriber was connected.",
         "The first message can be lost: a subscriber that comes later begins with a later value.",
+        "A publisher that publishes in its connect callback gives a late subscriber that message: "
+        "here the last one.",
+        "A latched publisher gives a late subscriber one old message: the last one.",
+        "A late subscriber misses every message that was published before it came.",
+        "When a publisher waits for all its subscribers, none of them misses a message: each "
+        "begins with 1.",
+        "When a publisher waits for one subscriber, only that one misses nothing: later ones miss "
+        "the first messages.",
         "Sometimes a first value is missing, because a publisher does not wait until its "
         "subscribers have connected.",
     )

@@ -67,6 +67,8 @@ class TestKill(unittest.TestCase):
         "The master's list is out of date.",
         "The other nodes go on and miss nothing.",
         "The master still lists the dead node.",
+        "A node that is killed does not stop the others; with respawn:=true, roslaunch starts it "
+        "again.",
     )
     def test_the_others_go_on(self):
         with Lab("kill.launch") as lab:
@@ -89,6 +91,8 @@ class TestKill(unittest.TestCase):
         "connections come back by themselves.",
         "A publisher that comes back begins to count anew.",
         'respawn="true" brings a node back.',
+        "A node that is killed does not stop the others; with respawn:=true, roslaunch starts it "
+        "again.",
     )
     def test_respawn(self):
         with Lab("kill.launch", "respawn:=true") as lab:
@@ -111,6 +115,8 @@ class TestKill(unittest.TestCase):
     @proves(
         'With required="true", roslaunch ends all its nodes when this one ends.',
         'required="true" ends the others with it.',
+        'When a node with required="true" dies, roslaunch ends all its nodes; when another node '
+        "dies, the rest go on.",
     )
     def test_required(self):
         # Two at a time, each with a master of its own.
@@ -146,6 +152,8 @@ class TestKill(unittest.TestCase):
         "topics.",
         "One master is enough: no message passes through it.",
         "Messages do not go through it.",
+        "When one roscore ends and another starts, connected nodes stay connected, but old and "
+        "new nodes never find each other.",
     )
     def test_master(self):
         port = free_port()

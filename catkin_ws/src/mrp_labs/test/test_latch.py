@@ -38,6 +38,12 @@ class TestLatch(unittest.TestCase):
         "The subscriber then gets the last number of each.",
         "Not the topic keeps a message, but each latched publisher: a late subscriber gets the "
         "last message of each.",
+        "A late subscriber gets the last message of each latched publisher, and no old message of "
+        "the others.",
+        "The publisher keeps its latched message, not the topic: when the publisher ends, the "
+        "message is gone.",
+        "A subscriber that restarts gets the latched messages again; a publisher that restarts "
+        "sends its new one to all subscribers.",
     )
     def test_latch(self):
         with Lab(

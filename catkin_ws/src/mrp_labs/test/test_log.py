@@ -88,6 +88,8 @@ class TestLog(unittest.TestCase):
         "name.",
         "Debug lines need a level: the logger's name is rosout in Python, and ros.PACKAGE in C++.",
         "rosout is the logger of Python nodes.",
+        "A node shows no debug line until somebody sets the level of its logger, which has "
+        "another name in C++ than in Python.",
     )
     def test_levels_py(self):
         self.check("py")
@@ -104,6 +106,8 @@ class TestLog(unittest.TestCase):
         "The logger of a Python node is rosout, and that of a C++ node is ros. and its package's "
         "name.",
         "Debug lines need a level: the logger's name is rosout in Python, and ros.PACKAGE in C++.",
+        "A node shows no debug line until somebody sets the level of its logger, which has "
+        "another name in C++ than in Python.",
     )
     def test_levels_cpp(self):
         self.check("cpp")

@@ -87,6 +87,8 @@ class TestLook(unittest.TestCase):
         "hz counts both publishers.",
         "roslaunch hides it, because it gives each node the name in the launch file.",
         "The commands that look at the graph are on inspecting, and a lab runs them.",
+        "Four nodes to look at with rosnode, rostopic, rosgraph, roswtf and rosbag: C++ sends "
+        "even numbers, Python odd ones.",
         "Other machines can still reach the XML-RPC port of each C++ node: use a network that you "
         "trust.",
     )
@@ -183,6 +185,9 @@ class TestLook(unittest.TestCase):
         # It is dead, and still on the list.
         self.assertIn("/look/publisher_py", nodes)
 
+    @proves(
+        "rosbag play is a publisher like any other: both subscribers get every message of the bag.",
+    )
     def test_bag(self):
         with tempfile.TemporaryDirectory() as folder:
             bag = os.path.join(folder, "counts.bag")

@@ -37,6 +37,8 @@ class TestLoop(unittest.TestCase):
         "the period.",
         "After 60 seconds it has published 40 messages.",
         "A rate does not drift, and a plain sleep does.",
+        "When a timer and a loop with a rate have come round 60 times, a loop that sleeps a "
+        "period has come round 40 times.",
     )
     def test_drift(self):
         keep, drift = (
@@ -83,6 +85,8 @@ class TestLoop(unittest.TestCase):
         "The quick loop misses none, and neither does a subscriber in Python.",
         "The publisher of the lab with spinOnce sends four messages a second.",
         "It receives the four newest messages of each two seconds.",
+        "A loop that calls spinOnce too seldom loses messages: its queue keeps the newest of "
+        "them, and no more.",
     )
     def test_spin_once_too_seldom(self):
         publisher, often, seldom, python = (

@@ -147,6 +147,12 @@ class TestMessageTypes(unittest.TestCase):
         "std_msgs has types for single values, and they work in both languages.",
         "A UInt32 ends at 4294967295.",
         "A Char is a number from 0 to 255.",
+        "Float32 and Float64 carry NaN, the infinities, and the smallest and largest numbers, "
+        "from C++ to Python and back.",
+        "Bool, Byte, Char and every Int and UInt carry both ends of their range, from C++ to "
+        "Python and back.",
+        "Empty, String, Time, Duration, Header, ColorRGBA and an array arrive as they were "
+        'sent; not all have a field "data".',
     )
     def test_extremes(self):
         groups = {"integers": INTEGERS, "floats": FLOATS, "structures": STRUCTURES}
@@ -165,6 +171,8 @@ class TestMessageTypes(unittest.TestCase):
         "exception.",
         "In C++ a value that does not fit becomes another value when you assign it to the field, "
         "and that other value is sent without an error.",
+        "When a value is out of range, C++ sends another value and logs nothing; rospy refuses it "
+        "and logs an error.",
     )
     def test_out_of_range(self):
         with Lab("message_types_out_of_range.launch") as lab:

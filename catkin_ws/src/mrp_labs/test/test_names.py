@@ -94,6 +94,7 @@ class TestNames(unittest.TestCase):
         "So the exit code is 0, and roslaunch says that all is well.",
         "Or set the parameter: then each node asks for it only once, and the newer node goes on.",
         "new node registered with same name: look for a second start of the same node.",
+        "The newer of two nodes of one name ends the older.",
     )
     def test_the_newer_ends_the_older(self):
         with started_twice("asked_once:=true") as (older, newer):
@@ -111,6 +112,7 @@ class TestNames(unittest.TestCase):
         "So the master asks the newer node to shut down, too.",
         "In Python, start it a third time: the two may have ended each other.",
         "Perhaps the newer one, and perhaps neither.",
+        "In Python, what the older logs at its end may end the newer, too.",
     )
     def test_a_line_of_log_of_the_older_ends_the_newer(self):
         with Process(*GOODBYE, extra_env=LIVE) as older:
@@ -183,6 +185,8 @@ class TestNames(unittest.TestCase):
         "without a number.",
         "There, $(anon name) puts a number behind it, and roslaunch still gives the node its "
         "parameters:",
+        "roslaunch names the nodes: anonymous=True in their code adds no number, and $(anon) in "
+        "the launch file does.",
     )
     def test_roslaunch_names_what_is_anonymous(self):
         topic = "/anonymous_name/great_topic"

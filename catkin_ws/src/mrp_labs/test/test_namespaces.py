@@ -38,6 +38,7 @@ class TestNamespaces(unittest.TestCase):
         "Its attribute ns puts a namespace in front of all relative names in the group.",
         "A plain NodeHandle is in the group's namespace, and a NodeHandle for ~ is in the node's "
         "own.",
+        "A relative name is in the group's namespace, in the code as in a remap.",
     )
     def test_group(self):
         with Lab("namespaces_group.launch") as lab:
@@ -55,6 +56,7 @@ class TestNamespaces(unittest.TestCase):
         "group changes it.",
         "Good: the nodes of both groups meet on one topic.",
         "A global name is the same everywhere: no group can move it.",
+        "A name with / in front is in no group's namespace: both groups share one topic.",
     )
     def test_global(self):
         with Lab("namespaces_global.launch") as lab:
@@ -76,6 +78,7 @@ class TestNamespaces(unittest.TestCase):
         "Bad: to hear a publisher, another node must ask for the full name of its topic, such as "
         "/by_code/publisher_py/great_topic.",
         "A private name is in the namespace of one node.",
+        "A name with ~ in front is in the node's own namespace: no node hears another.",
     )
     def test_private(self):
         with Lab("namespaces_private.launch") as lab:

@@ -28,6 +28,8 @@ class TestOwnMessage(unittest.TestCase):
     @proves(
         "The header has the time at which a message was sent, so a subscriber knows how long it "
         "was on its way.",
+        "A message type of your own goes from C++ to Python and back; the time in its header "
+        "gives the latency.",
     )
     def test_from_each_language_to_each(self):
         with Lab("own_message.launch") as lab:

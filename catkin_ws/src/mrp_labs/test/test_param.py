@@ -55,6 +55,8 @@ class TestParam(unittest.TestCase):
         "A node that reads once does not see a change.",
         "It gets its default.",
         "The parameter of the group is not the node's private one.",
+        "A param with ~ in front reaches the nodes below it; one without ~ is the group's, and no "
+        "node's private parameter.",
     )
     def test_scope(self):
         with Lab("param_scope.launch") as lab:
@@ -69,7 +71,11 @@ class TestParam(unittest.TestCase):
                 self.master.setParam(own + "/speed", 5.0)
                 self.check(lab, own, "robbie", 3.0, 5.0)
 
-    @proves("The node takes its default, and logs nothing about it.")
+    @proves(
+        "The node takes its default, and logs nothing about it.",
+        "A text in place of a number: Python gets the text, and C++ takes its default and logs "
+        "nothing.",
+    )
     def test_type_cpp(self):
         with Lab("param_type.launch") as lab:
             self.check(lab, "/param_type/text_cpp", "nobody", 1.0, 1.0)
@@ -78,6 +84,8 @@ class TestParam(unittest.TestCase):
     @proves(
         'In this lab the parameter speed is the text "fast":',
         "The node gets the text.",
+        "A text in place of a number: Python gets the text, and C++ takes its default and logs "
+        "nothing.",
     )
     def test_type_py(self):
         with Lab("param_type.launch") as lab:
@@ -99,6 +107,8 @@ class TestParam(unittest.TestCase):
     @proves(
         'In a launch file, clear_params="true" in the <node> deletes the node\'s parameters '
         "before it starts.",
+        "A parameter stays on the master when its node has ended; with clear_params the next node "
+        "begins without it.",
     )
     def test_left(self):
         for kind, language in itertools.product(("kept", "cleared"), PROGRAMS):

@@ -51,6 +51,11 @@ class TestPublisherQueue(unittest.TestCase):
         "A full queue drops its oldest message.",
         "0 and None have special meanings.",
         "A publisher's queue of 0 has no limit, in both languages.",
+        "A publisher's queue that is full drops the oldest messages: the newest ones arrive.",
+        "In rospy, queue_size=None means no queue: the publisher is as slow as its subscriber, "
+        "and no message is lost.",
+        "A publisher's queue with size 0 has no limit: every message arrives, and takes memory "
+        "until then.",
     )
     def test_publisher_queue(self):
         with Lab(

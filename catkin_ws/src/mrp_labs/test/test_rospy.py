@@ -18,6 +18,7 @@ from mrp_testing.nodes import program
 from mrp_testing.process import LIVE, Process
 from mrp_testing.proves import proves
 from mrp_testing.waiting import wait_until, within
+from rosgraph_msgs.msg import Log
 from std_msgs.msg import UInt8MultiArray, UInt32
 
 LONG_SLEEP = 0.5  # seconds: much longer than what is asked for, 1 ms
@@ -190,6 +191,41 @@ class TestRospy(unittest.TestCase):
         process = ended(LOG_BY_DEFAULT)
         self.assertEqual(sorted(levels(process.lines)), ["error", "fatal", "info", "warn"])
         self.assertEqual(levels(process.errors), ["warn", "error", "fatal"])
+
+    @proves("print writes no time, no level, and nothing into /rosout.")
+    def test_print_is_no_log_py(self):
+        texts = []
+        subscriber = rospy.Subscriber("/rosout", Log, lambda msg: texts.append(msg.msg))
+        self.addCleanup(subscriber.unregister)
+        with run("""
+            import rospy
+            rospy.init_node("prints")
+            while not rospy.is_shutdown():
+                print("printed")
+                rospy.loginfo("logged")
+                rospy.sleep(0.05)
+        """) as process:
+            wait_until(lambda: texts.count("logged") >= 2, lambda: f"lines: {texts}")
+            self.assertIn("printed", process.lines)
+            self.assertNotIn("logged", process.lines)
+        self.assertNotIn("printed", " ".join(texts))
+
+    @proves(
+        "As long as the clock is the machine's own, sleep goes on to its end and raises nothing.",
+    )
+    def test_ctrl_c_does_not_wake_a_sleep_py(self):
+        with run("""
+            import rospy, time
+            rospy.init_node("sleeps_on")
+            print("sleeps")
+            while not rospy.is_shutdown():
+                begin = time.monotonic()
+                rospy.Rate(1).sleep()
+            print("whole" if time.monotonic() - begin >= 0.9 else "cut short")
+        """) as process:
+            process.wait_for(lambda: "sleeps" in process.lines, "it sleeps")
+            self.assertEqual(process.stop(), 0, str(process))
+        self.assertEqual(process.lines, ["sleeps", "whole"])
 
     def check_sleeps_until_there_is_a_clock(self, sleep):
         with contextlib.ExitStack() as stack:

@@ -45,12 +45,20 @@ class TestSubscriberQueue(unittest.TestCase):
         "The node's queue keeps 10 of them, and rostopic echo has a queue without a limit.",
         "With a queue of 10, the newest ten numbers of a publisher wait while the callback is "
         "busy.",
+        "So it prints runs of up to 10 numbers of each publisher, with a gap before each run.",
         "With a queue of 1, it prints the newest number each time (queues).",
         "In roscpp, all publishers of a topic share the subscriber's one queue.",
         "A subscriber's queue of 0 has no limit in C++, and is an error in Python.",
         "This is not always true.",
         "In rospy each connection has a queue of its own.",
         "Old messages that do not fit into one read of buff_size bytes still arrive.",
+        "While a callback is busy, a subscriber's queue keeps the newest messages: 1, 10, or all "
+        "of them.",
+        "In rospy, a queue of 1 drops only messages that came in the same read; a read takes up "
+        "to buff_size bytes.",
+        "A C++ subscriber has one queue for both publishers and loses messages; a Python "
+        "subscriber has one queue for each.",
+        "A subscriber's queue_size of 0 means no limit in C++, and is an error in Python.",
     )
     def test_subscriber_queue(self):
         with Lab(

@@ -59,6 +59,8 @@ class TestThreads(unittest.TestCase):
         "In C++, the callbacks are called meanwhile.",
         "The comment is right in C++: ros::spin calls all callbacks in the main thread.",
         "In Python each connection of a subscriber has a thread of its own.",
+        "In rospy, each connection has a thread for its callbacks; in roscpp, you choose the main "
+        "thread or several others.",
     )
     def test_in_which_thread(self):
         with Lab("threads.launch") as lab:
@@ -105,6 +107,8 @@ class TestThreads(unittest.TestCase):
         "With two threads it can, because callbacks of two topics run at the same time.",
         "A timer changes nothing, because its callback works just as long, and ros::spin calls "
         "one callback after the other.",
+        "A slow callback delays others: under spin all of them, in several threads those of its "
+        "topic, in rospy those of its publisher.",
     )
     def test_slow_callbacks_of_two_topics(self):
         both = {("C++", "Python")}
@@ -119,6 +123,8 @@ class TestThreads(unittest.TestCase):
         "ros::SubscribeOptions.",
         "In Python, the callback runs for two publishers at the same time, even on one topic.",
         "In Python, two threads may be in your callback at once.",
+        "A slow callback delays others: under spin all of them, in several threads those of its "
+        "topic, in rospy those of its publisher.",
     )
     def test_slow_callbacks_of_one_topic(self):
         both = {("C++", "Python")}

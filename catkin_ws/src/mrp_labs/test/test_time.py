@@ -65,6 +65,8 @@ class TestTime(unittest.TestCase):
         "In this lab five publishers wait for their timers, and nobody publishes /clock.",
         "These three publish all the same, because their timers do not follow it.",
         "rosparam get /use_sim_time prints true, and rostopic info /clock shows no publisher.",
+        "With use_sim_time and no clock, ROS timers never fire, loops never wake up, and neither "
+        "logs anything; wall timers and steady timers go on.",
     )
     def test_no_clock(self):
         with Lab("time_no_clock.launch") as running:
@@ -92,6 +94,8 @@ class TestTime(unittest.TestCase):
         "the ROS clock",
         "When /clock runs ten times as fast, ROS timers fire ten times as often; wall timers and "
         "steady timers do not.",
+        "When the simulated clock runs ten times as fast, so do ROS timers, but not wall timers "
+        "and steady timers.",
     )
     def test_fast_clock(self):
         with Lab("time_fast_clock.launch") as running:
@@ -111,6 +115,8 @@ class TestTime(unittest.TestCase):
         "Forward: every timer goes on, and none catches up on the time that was left out.",
         "Back: a rospy.Timer ends with an exception, and its node goes on without it.",
         "A rospy.Timer with reset=True goes on, and so does a ros::Timer in C++.",
+        "When the clock jumps, no timer catches up; a jump back ends a rospy.Timer without "
+        "reset=True, and no other timer.",
     )
     def test_jump(self):
         publishers = (ROS_CPP, ROS_PY, RESET_PY)

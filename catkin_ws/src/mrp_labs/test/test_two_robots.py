@@ -49,6 +49,7 @@ class TestTwoRobots(unittest.TestCase):
         "Groups with relative names keep robots apart.",
         "In this lab two robots run the same four nodes, and neither hears the other.",
         "In groups, with relative names, the robots stay apart.",
+        "Two robots run the same four nodes, each in its own group: neither hears the other.",
     )
     def test_groups_keep_the_robots_apart(self):
         with Lab("two_robots.launch") as lab:

@@ -49,6 +49,8 @@ class TestTypeMismatch(unittest.TestCase):
         "Nothing unexpected happens: the publishers refuse the connection and log why.",
         "The subscriber receives nothing from them.",
         "All other nodes go on.",
+        "A subscriber of another type receives nothing: the publishers refuse it and log that; "
+        "the other nodes go on.",
     )
     def test_other_type(self):
         with Lab("type_mismatch.launch") as lab:

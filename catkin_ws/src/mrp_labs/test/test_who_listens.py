@@ -14,8 +14,10 @@ from mrp_testing.lab import PACKAGE
 from mrp_testing.nodes import program
 from mrp_testing.process import LIVE, Process
 from mrp_testing.proves import proves
+from mrp_testing.waiting import within
 from std_msgs.msg import UInt32
 
+STILL = 0.5  # seconds
 TURN = 10.0  # seconds of the turned clock: many periods of the idiom's loop
 
 
@@ -92,6 +94,18 @@ class TestWhoListens(unittest.TestCase):
                 clock.turn_until(node, TURN, lambda: len(log_line.texts(node.lines)) >= 2)
                 received(node, 1, 1)
                 self.assertEqual(node.errors, [], str(node))
+
+    @proves("A publisher that nobody hears raises nothing and logs nothing.")
+    def test_nobody_hears(self):
+        for executable in ("latch", "latch.py"):
+            command = (program(PACKAGE, executable), "great_topic:=nobody_hears")
+            with Process(*command, extra_env=LIVE) as node:
+                node.wait_for(lambda: log_line.texts(node.lines), "it has published")
+                self.assertFalse(within(STILL, lambda: len(node.lines) > 1), str(node))
+                # Not by Ctrl-C: while it logs, rospy may not end.
+                node.stop(signal.SIGKILL)
+            self.assertEqual(log_line.texts(node.lines), ["published 42"])
+            self.assertEqual(node.errors, [])
 
     @proves("In Python it raises rospy.ROSException, with this text.")
     def test_timeout(self):

@@ -24,6 +24,7 @@ REASONS = {
     "question": "asks the reader",
     "opinion": "advises or judges",
     "source": "is taken from the source to which it links",
+    "entry": "is the cause or the fix of an error text: its entry has the commands that print it",
     "open": "claims something that no test proves yet",
 }
 

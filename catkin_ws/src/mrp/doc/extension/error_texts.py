@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Directive `why`: each error text that has an entry, with its cause and its fix (tools/why.py).
 
-A heading is the text itself: so the site's search finds it, and leads to its place.
+A heading is the text itself: so the site's search finds it, and leads to its place. The cause and
+the fix are sentences of the page, which stand in its list.
 """
 
 import itertools
@@ -14,11 +15,10 @@ from listing import Generated
 sys.path.append(str(evidence.WORKSPACE / "tools"))
 import why as tool
 
-PRINTED = "workspace/test_why/test_text_is_printed"
-PRINTED_BY_DOCKER = "docker/test_why/test_text_is_printed"
-
 
 class Why(Generated):
+    claims = "(Why|Fix): "
+
     def text(self):
         parts = []
         for theme, entries in itertools.groupby(tool.entries(), lambda one: one.theme):
@@ -31,14 +31,13 @@ class Why(Generated):
 
 def _section(entry):
     heading = _plain(tool.shown_on(entry.shows[0])[0])
-    proof = PRINTED_BY_DOCKER if entry.needs == "docker" else PRINTED
     yield from (f".. _{entry.name}:", "", heading, "^" * len(heading), "")
     for text in entry.shows:
         yield from _block(tool.shown_on(text))
     if entry.also:
         yield from ("In other versions, or with other names:", "")
         yield from _block([line for text in entry.also for line in text.splitlines()])
-    yield f"- **Why:** {_marked_up(entry.why)} :proof:`{proof}`"
+    yield f"- **Why:** {_marked_up(entry.why)}"
     yield f"- **Fix:** {_marked_up(entry.fix)}"
     if entry.page:
         page, _, anchor = entry.page.partition("#")

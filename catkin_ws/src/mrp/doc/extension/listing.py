@@ -13,11 +13,19 @@ import evidence
 from docutils import nodes
 from docutils.statemachine import StringList
 from proof import in_order
+from sentences import plain
 from sphinx.util.docutils import SphinxDirective
+
+_END = re.compile(r"(?<=\.) (?=[A-Z])")  # of a sentence in a lab's claim
 
 
 class Generated(SphinxDirective):
-    """A directive that stands for reStructuredText made of the workspace's files."""
+    """A directive that stands for reStructuredText made of the workspace's files.
+
+    claims: how the paragraphs begin whose sentences count as typed into the page; None: no such
+    """
+
+    claims = None
 
     def run(self):
         container = nodes.section()
@@ -26,28 +34,33 @@ class Generated(SphinxDirective):
         self.state.nested_parse(lines, self.content_offset, container, match_titles=True)
         for node in container:
             node["generated"] = True
+        for node in container.findall(nodes.paragraph) if self.claims is not None else ():
+            node["claims"] = bool(re.match(self.claims, node.astext()))
         return container.children
 
 
 class Labs(Generated):
+    claims = ""
+
     def text(self):
         folder = evidence.WORKSPACE / "src" / "mrp_labs"
         tests = {
-            proof: test.path.read_text()
+            proof: test
             for proof, test in evidence.all_tests().items()
             if proof.startswith("mrp_labs/")
         }
+        for test in tests.values():
+            self.env.note_dependency(str(test.path))
         parts = []
         for launch in sorted((folder / "launch").glob("*.launch")):
             claim = re.fullmatch(r"<!-- (.*) -->", launch.read_text().splitlines()[0]).group(1)
-            proofs = [proof for proof, text in tests.items() if f'"{launch.name}"' in text]
             parts += [
                 f".. _lab-{launch.stem}:",
                 "",
                 launch.stem.replace("_", " ").capitalize(),
                 "-" * len(launch.stem),
                 "",
-                " ".join([claim, *(f":proof:`{proof}`" for proof in proofs)]),
+                *(_proved(one, f'"{launch.name}"', tests) for one in _END.split(claim)),
                 "",
                 ".. code-block:: bash",
                 "",
@@ -58,6 +71,14 @@ class Labs(Generated):
                 "",
             ]
         return "\n".join(parts)
+
+
+def _proved(sentence, launch, tests):
+    """Return a sentence with marks: of the tests that quote it, or of those that start its lab."""
+    quote = [proof for proof, test in tests.items() if plain(sentence) in test.quotes]
+    start = [proof for proof, test in tests.items() if launch in test.source]
+    same_file = [proof for proof, test in tests.items() if launch in test.path.read_text()]
+    return " ".join([sentence, *(f":proof:`{one}`" for one in quote or start or same_file)])
 
 
 class ListOfTests(nodes.General, nodes.Element):

@@ -124,7 +124,8 @@ def _where(block, document, page):
         "heading": isinstance(block, _HEADINGS),
         "typed": source in (None, document.get("source"))
         # A block of code may have a caption.
-        and not any(node.get("generated") or node.get("literal_block") for node in around)
+        and not any(node.get("literal_block") for node in around)
+        and (block.get("claims") or not any(node.get("generated") for node in around))
         and not any(isinstance(node, nodes.system_message) for node in around)
         # The label of a tab is no sentence if it names the language alone.
         and not (isinstance(block, nodes.label) and block.astext() in LANGUAGES),

@@ -32,6 +32,7 @@ _EXCEPTIONS = re.compile("|".join(f"(?:{one})" for one in EXCEPTIONS), re.IGNORE
 # The reasons of claims.py for sentences whose numbers are free -> why.
 FREE = {
     "definition": "the number belongs to what the word means",
+    "entry": "the number is that of the entry's commands",
     "heading": "what stands below it says the number",
     "instruction": "the number is the task's own",
     "question": "the number is the task's own",

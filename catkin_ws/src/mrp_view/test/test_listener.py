@@ -1,0 +1,44 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""When the viewer subscribes to a topic: the others go first."""
+
+import types
+
+import pytest
+from mrp_testing.proves import proves
+from mrp_view import listener
+
+pytestmark = pytest.mark.quick
+
+
+@proves(
+    "So the viewer subscribes to a topic only after nothing has joined or left it for some "
+    "seconds.",
+)
+def test_others_come_first(monkeypatch):
+    now, topics = 100.0, []
+
+    def subscriber(topic, *_, **__):
+        topics.append(topic)
+        return types.SimpleNamespace(get_num_connections=lambda: 1)
+
+    def seen(*subscribers):
+        return types.SimpleNamespace(
+            viewer="/view", publishers={"/t": ["/p"]}, subscribers={"/t": [*subscribers]}
+        )
+
+    monkeypatch.setattr(listener.rospy, "Subscriber", subscriber)
+    monkeypatch.setattr(listener.time, "monotonic", lambda: now)
+    one = listener.Listener(settle=3.0)
+    one.follow(seen())
+    now += 2.0
+    one.follow(seen("/joins"))
+    now += 2.0
+    one.follow(seen("/joins"))
+    now += 2.0
+    one.follow(seen())  # it has left
+    now += 2.9
+    one.follow(seen())
+    assert topics == [listener.LOG_TOPIC]
+    now += 0.1
+    one.follow(seen())
+    assert topics == [listener.LOG_TOPIC, "/t"]
