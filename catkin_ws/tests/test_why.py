@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The list of error texts: each is printed by the real tool, and found by what people see of it."""
 
+import contextlib
 import itertools
 import os
 import pathlib
@@ -49,14 +50,6 @@ ENDING = 10.0  # seconds that a program has to end after Ctrl-C
 
 
 @pytest.fixture(scope="session")
-def running_master():
-    """The port of a master that the tests of a worker share."""
-    port = free_port()
-    with master(port):
-        yield port
-
-
-@pytest.fixture(scope="session")
 def headers(tmp_path_factory):
     """A folder with ROS's headers as g++ has read them once: it takes seconds each time."""
     folder = tmp_path_factory.mktemp("headers")
@@ -84,16 +77,18 @@ def known_compiler(tmp_path_factory):
 
 @pytest.fixture
 def env(request, tmp_path, known_compiler):
-    """The environment of a user with a home of its own, and a master if the entry needs one."""
+    """The environment of a user with a home of its own, and a master if the entry needs one. A
+    master that entries share would go on to know nodes that were ended and could not say so."""
     # Below make, a make says make[1].
     env = {k: v for k, v in os.environ.items() if not k.startswith(("CCACHE", "MAKE", "MFLAGS"))}
     needs = request.getfixturevalue("entry").needs.split()
-    port = request.getfixturevalue("running_master") if "master" in needs else free_port()
+    port = free_port()
     if "roscpp" in needs:
         env["CPLUS_INCLUDE_PATH"] = str(request.getfixturevalue("headers"))
     env.update(HOME=str(tmp_path), LC_ALL="C.UTF-8", PORT=str(port), ROS_MASTER_URI=uri_of(port))
     env.update(WORKSPACE=str(WORKSPACE), CMAKE_TOOLCHAIN_FILE=known_compiler)
-    return env
+    with master(port) if "master" in needs else contextlib.nullcontext():
+        yield env
 
 
 def missing(entry, lines):
