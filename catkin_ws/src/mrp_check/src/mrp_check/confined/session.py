@@ -30,14 +30,15 @@ def main() -> None:
     starter = apart.Starter()
     # The nodes cannot write to its own files.
     del os.environ["TMPDIR"]
-    os.environ.update(dict.fromkeys(variables.FOLDERS, tempfile.mkdtemp()))
-    with answer, Observer() as observer:
-        result: object
-        if kind == LaunchPlan.__name__:
-            result = launched.run(crossing.from_json(LaunchPlan, plan), observer, starter)
-        else:
-            result = alone.run(crossing.from_json(DirectPlan, plan), observer, starter)
-        answer.write(crossing.to_json(result))
+    with answer, tempfile.TemporaryDirectory() as folder:
+        os.environ.update(dict.fromkeys(variables.FOLDERS, folder))
+        with Observer() as observer:
+            result: object
+            if kind == LaunchPlan.__name__:
+                result = launched.run(crossing.from_json(LaunchPlan, plan), observer, starter)
+            else:
+                result = alone.run(crossing.from_json(DirectPlan, plan), observer, starter)
+            answer.write(crossing.to_json(result))
     # rospy's threads, and connections to what was killed, are no reason to wait.
     os._exit(0)
 
