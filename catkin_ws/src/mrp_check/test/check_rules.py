@@ -89,6 +89,7 @@ def file_findings(rule, package, **known):
     """
     given = {"manifest": manifest.parse(package), "model": model_of(package), "launch": None}
     given.update({"spec": PUB_SUB, "started": {}, **known})
+    given.setdefault("launches", [given["launch"]] if given["launch"] else [])
     return [*rule.RULE.findings(types.SimpleNamespace(package=package, **given))]
 
 

@@ -7,6 +7,7 @@ from check_rules import CMAKE, MANIFEST, file_findings, told
 from mrp_check.building import compiler, configuring, cpp_words
 from mrp_check.rules import cmake as cmake_rule
 from mrp_check.rules import dependencies, manifest, messages, package_name, scripts, targets, text
+from mrp_check.sources import uses
 from mrp_check.student import cmake
 from mrp_testing.proves import proves
 
@@ -321,3 +322,27 @@ def test_package_that_this_machine_has_not_is_not_the_students_fault(tmp_path):
     # Nobody asks for this one, and that one is misspelt.
     assert configuring.absent(package, said.format("tf2")) is None
     assert configuring.absent(package, said.format("rospyy")) is None
+    # Without a contract, CMakeLists.txt may ask for more.
+    assert configuring.absent(package, said.format("tf2"), is_contract=False) == "tf2"
+    assert configuring.absent(package, said.format("rospyy"), is_contract=False) is None
+
+
+@pytest.mark.parametrize(
+    ("name", "language", "debian", "says"),
+    [
+        ("geometry_msgs", "cpp", {"libgeometry-msgs-dev"}, "(Debian package libgeometry-msgs-dev)"),
+        ("map_msgs", "cpp", {"ros-map-msgs"}, "(Debian package ros-map-msgs)"),
+        ("cv2", "python", {"python3-opencv"}, "(Debian package python3-opencv)"),
+        ("mrs_lib", "cpp", {"libtf-dev"}, "(not in Debian)"),
+        ("mrs_lib", "cpp", set(), "(Debian package libmrs-lib-dev)"),
+    ],
+)
+@proves(
+    "A ROS package that this machine has not makes no error.",
+    "The checker names the Debian package, or says that Debian has none.",
+)
+def test_a_package_that_is_not_here_is_named_as_debian_has_it(
+    name, language, debian, says, monkeypatch
+):
+    monkeypatch.setattr(uses, "_debian_packages", lambda: debian)
+    assert says in uses.absent(name, language)

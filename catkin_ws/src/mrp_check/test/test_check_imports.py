@@ -20,9 +20,10 @@ LAYERS = (
     ("building",),
     ("running",),
     ("case",),
+    ("any_case",),
     ("evidence",),
     ("rules",),
-    ("report", "causes"),
+    ("report", "causes", "judging"),
     ("check",),
     ("cli",),
 )

@@ -40,14 +40,19 @@ class Case(Workspace):
     def __init__(
         self,
         package: Package,
-        spec: Spec,
+        spec: Spec | None,
         folder: pathlib.Path,
         timeout: float,
         progress: Callable[[str], None],
     ) -> None:
         super().__init__(package, folder, timeout, progress)
-        self.spec = spec
+        self._spec = spec
         self.catkin = Catkin(self)
+
+    @functools.cached_property
+    def spec(self) -> Spec:
+        assert self._spec
+        return self._spec
 
     @functools.cached_property
     def headers(self) -> Future[pathlib.Path]:
@@ -81,6 +86,11 @@ class Case(Workspace):
         return self._loading.result() if self._loading else None
 
     @functools.cached_property
+    def launches(self) -> list[Launch]:
+        """The same of each launch file that is looked at."""
+        return [self.launch] if self.launch else []
+
+    @functools.cached_property
     def model(self) -> Model:
         """What CMakeLists.txt says. The launch file is loaded at the same time."""
         _ = self._loading
@@ -102,7 +112,7 @@ class Case(Workspace):
     @functools.cached_property
     def facts(self) -> Facts:
         """What the sources say."""
-        if self.package.of_kind("message"):
+        if self.package.of_kind("message", "service", "action"):
             self.catkin.wait_until_built()  # before, there are no headers of its messages
         reader = CppReader(self, self.catkin.compile_commands(), self.headers)
         return reading.read(reader, self.spec, self.model, self.launch)

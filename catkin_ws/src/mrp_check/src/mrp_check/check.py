@@ -9,12 +9,13 @@ import tempfile
 import traceback
 import typing
 
-from mrp_check import causes, confine
+from mrp_check import causes, confine, judging
+from mrp_check.any_case import AnyCase
 from mrp_check.building.catkin import missing_tool
 from mrp_check.case import Case
 from mrp_check.contract.errors import CannotCheck
 from mrp_check.contract.finding import ERROR, Finding
-from mrp_check.contract.requirements import closure
+from mrp_check.contract.requirements import ANY, CONTRACT, closure
 from mrp_check.contract.spec import Spec
 from mrp_check.contract.verdict import BROKEN, FINDINGS, MET, UNCHECKED, Report
 from mrp_check.report import diff
@@ -26,13 +27,14 @@ _FOLD = 3  # findings about files outside the exercise: more are folded into one
 
 def check(
     package: Package,
-    spec: Spec,
+    spec: Spec | None,
     only=(),
     timeout: float = 600,
     progress: typing.Callable[[str], None] = lambda sentence: None,
 ) -> Report:
     """Check one package.
 
+    spec: its contract; None for a package that has none
     only: ids of the only requirements to check; all if empty
     timeout: seconds that all of it may take
 
@@ -42,13 +44,16 @@ def check(
     missing = missing_tool()
     if missing:
         raise CannotCheck(missing)
-    ids = [id_ for id_ in REQUIREMENTS if id_ in only or not only]
+    rules = [rule for rule in RULES if rule.only != (ANY if spec else CONTRACT)]
+    asked = REQUIREMENTS if spec else {id_ for rule in rules for id_ in rule.ids}
+    ids = [id_ for id_ in REQUIREMENTS if id_ in asked and (id_ in only or not only)]
     folder = pathlib.Path(tempfile.mkdtemp(prefix="mrp_check_"))
     folder.chmod(0o711)  # for the user that the package's programs run as
     try:
-        case = Case(package, spec, folder, timeout, progress)
+        given = folder, timeout, progress
+        case = Case(package, spec, *given) if spec else AnyCase(package, *given)
         try:
-            examination = _Examination(case, ids)
+            examination = _Examination(case, rules, ids, asked)
         except BaseException:  # such as Ctrl-C
             confine.stop()
             raise
@@ -62,17 +67,17 @@ def check(
 class _Examination:
     """The findings of all rules that are needed, and the ids of what they could not check."""
 
-    def __init__(self, case, ids):
-        self.case, self.ids = case, ids
+    def __init__(self, case, rules, ids, asked):
+        self.case, self.ids, self.asked = case, ids, asked
         self.findings: list[Finding] = []
         self.failed: dict[str, str] = {}
         self.reasons: list[str] = []
         self.lost: dict[str, Exception] = {}
-        needs = needs_of(ids)
+        needs = needs_of(ids, rules)
         if "facts" in needs:
             _ = case.headers  # they are read while CMake configures
         # Others that need no more are asked, too: they may know the cause.
-        chosen = [rule for rule in RULES if needs.issuperset(rule.needs)]
+        chosen = [rule for rule in rules if needs.issuperset(rule.needs)]
         for stage, rules in itertools.groupby(chosen, lambda rule: rule.stage):
             case.progress(f"stage {stage}")
             for rule in rules:
@@ -135,7 +140,12 @@ class _Examination:
 
     def report(self):
         package, known = self.case.package, vars(self.case)
+        is_any = isinstance(self.case, AnyCase)
+        if is_any:
+            judging.weigh(self.case, self.findings)
         findings = causes.told_once(self.findings, known.get("facts"), known.get("nodes"))
+        if is_any:
+            findings = judging.judged(self.case, findings, self.findings)
         for finding in findings:
             if finding.change and finding.file and finding.line:
                 patch = diff.of_change(package, finding.file, finding.line, finding.change)
@@ -158,6 +168,7 @@ class _Examination:
             },
             reason=" ".join(self.reasons),
             unseen={id_: unseen[id_] for id_ in self.ids if id_ in unseen},
+            left_out=[id_ for id_ in REQUIREMENTS if id_ not in self.asked],
         )
 
 
@@ -191,6 +202,6 @@ def unseen(case, ids):
     return {id_: why for id_, why in found.items() if why}
 
 
-def needs_of(ids):
+def needs_of(ids, rules=RULES):
     """Return all that must be known to check these requirements."""
-    return closure({need for rule in RULES if {*rule.ids} & {*ids} for need in rule.needs})
+    return closure({need for rule in rules if {*rule.ids} & {*ids} for need in rule.needs})

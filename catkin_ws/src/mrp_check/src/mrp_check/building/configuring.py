@@ -111,12 +111,12 @@ _NOT_FOUND = (
 )
 
 
-def absent(package: Package, output: str) -> str | None:
+def absent(package: Package, output: str, is_contract: bool = True) -> str | None:
     """Return the package that CMake did not find though package.xml asks for it, and that looks
-    like no other's misspelt name; or None."""
+    like no other's misspelt name; or None. Without a contract, any package may be asked for."""
     found = (re.search(shape, output) for shape in _NOT_FOUND)
     name = next((match.group(1) for match in found if match), None)
-    asked = name and package.find_line("package.xml", f">{name}<")
+    asked = not is_contract or name and package.find_line("package.xml", f">{name}<")
     return name if name and asked and not nearest(name, _PACKAGES) else None
 
 

@@ -33,7 +33,7 @@ def main(arguments=None):
 def parser():
     parser = argparse.ArgumentParser(
         prog="check",
-        description="Runs a package against its contract, and says what is wrong and where.",
+        description="Runs a package, against its contract or without, and says what is wrong.",
         epilog="exit code: 0 all requirements are met; 1 findings; 2 it could not check",
     )
     what = parser.add_mutually_exclusive_group(required=True)
@@ -44,6 +44,8 @@ def parser():
         metavar="DIR",
         help="check each folder in DIR as one submission; DIR.checked keeps their reports",
     )
+    without = "check a package that has no contract: report what fails"
+    parser.add_argument("--any", action="store_true", help=without)
     parser.add_argument(
         "--spec", default="pub_sub", metavar="FILE", help="the contract (default: %(default)s)"
     )
@@ -82,7 +84,7 @@ def _seconds(text):
 
 def run(options):
     """Check what the options say, write the reports, and return the exit code."""
-    of_package, of_class = ("json", "junit", "only"), ("csv",)
+    of_package, of_class = ("json", "junit", "only", "any"), ("csv",)
     try:
         for name in of_package if options.class_ else of_class:
             if getattr(options, name):
@@ -129,7 +131,7 @@ def run_package(options):
     """Check a package, write its reports, and return its verdict. Raises CannotCheck."""
     progress = console.Progress(sys.stderr)
     try:
-        contract = spec.read(spec.find(options.spec), REQUIREMENTS)
+        contract = None if options.any else spec.read(spec.find(options.spec), REQUIREMENTS)
         package = Package(options.path)
         say_how_apart()
         report = check.check(package, contract, options.only, options.timeout, progress.show)

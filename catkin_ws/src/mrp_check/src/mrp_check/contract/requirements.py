@@ -9,6 +9,7 @@ from typing import Callable, Iterable, Mapping
 from mrp_check.contract.finding import Finding
 
 STAGES = ("files", "static", "build", "run", "stop")
+CONTRACT, ANY = "contract", "any"
 
 
 class Requirement(typing.NamedTuple):
@@ -42,6 +43,7 @@ class Rule(typing.NamedTuple):
     findings: called with a case.Case, yields a Finding for each thing that is wrong
     requirements: id -> Requirement, of those that it stands for
     also: ids of other rules' requirements that it can report, too
+    only: CONTRACT if it compares with what a contract says, ANY if it is for packages without one
     """
 
     stage: str
@@ -50,6 +52,7 @@ class Rule(typing.NamedTuple):
     findings: Callable[..., Iterable[Finding]]
     requirements: Mapping[str, Requirement] = {}
     also: tuple[str, ...] = ()
+    only: str = ""
 
     @property
     def ids(self) -> tuple[str, ...]:

@@ -134,6 +134,7 @@ class Spec:
     messages: dict[str, dict[str, str]] = dataclasses.field(default_factory=dict)
     install: bool = False
     points: dict[str, float] = dataclasses.field(default_factory=dict)
+    is_contract: bool = True  # if not, it only lists the nodes of a package
 
     def node_path(self, node_name: str, group: str | None = None) -> str:
         """Return a node's full name, such as /mrp/publisher_cpp_node."""

@@ -19,6 +19,7 @@ class Report:
     findings: in the order in which the stages found them
     requirements: id -> MET, BROKEN or UNCHECKED
     reason: why it is UNCHECKED, in one sentence
+    left_out: the ids of what was not asked, as the package has no contract
     unseen: id -> why nobody can say whether it is met, of those that are UNCHECKED
     """
 
@@ -29,6 +30,7 @@ class Report:
     requirements: dict[str, str]
     reason: str = ""
     unseen: dict[str, str] = dataclasses.field(default_factory=dict)
+    left_out: list[str] = dataclasses.field(default_factory=list)
 
 
 def unchecked(reason: str) -> Report:

@@ -67,6 +67,9 @@ def text(report, colours=False):
             first, *rest = finding_lines(finding, report)
             head, mark, message = first.partition(f" {finding.severity}: ")
             lines += ["", f"{head} {paint(mark.strip(), finding.severity)} {message}", *rest]
+    if report.left_out:
+        left_out = f"Left out, as only a contract can say it: {', '.join(report.left_out)}."
+        lines += ["", *_wrapped("", left_out, "")]
     return "\n".join([*lines, "", summary(report)])
 
 

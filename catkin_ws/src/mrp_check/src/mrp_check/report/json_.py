@@ -20,6 +20,8 @@ def data(report):
         finding["section"] = REQUIREMENTS[finding["id"]].section
     if not report.reason:
         del result["reason"]
+    if not report.left_out:
+        del result["left_out"]
     return result
 
 

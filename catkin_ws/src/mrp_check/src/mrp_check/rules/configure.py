@@ -18,7 +18,7 @@ def findings(case: Case) -> Iterator[Finding]:
     if case.built is not None:
         return
     package, step = case.package, case.catkin.configured
-    missing = configuring.absent(package, step.output)
+    missing = configuring.absent(package, step.output, case.spec.is_contract)
     if missing:
         raise CannotCheck(uses.absent(missing, "cpp"))
     output = "" if step.why_ended else step.output

@@ -12,7 +12,7 @@ from mrp_check.confined.places import Kind
 from mrp_check.confined.seen import Log
 from mrp_check.contract import spec as specs
 from mrp_check.contract.finding import Finding
-from mrp_check.contract.requirements import Requirement, Rule
+from mrp_check.contract.requirements import CONTRACT, Requirement, Rule
 from mrp_check.running.node import Node, each_node
 from mrp_check.running.words import PREFIX
 
@@ -177,4 +177,5 @@ RULE = Rule(
     requirements={
         "console": Requirement("The console shows the right lines", "launching", evidence.up)
     },
+    only=CONTRACT,
 )

@@ -7,7 +7,7 @@ from typing import Collection, Iterator
 
 from mrp_check.confined.places import Kind, Place
 from mrp_check.contract.finding import ERROR, WARNING, Finding
-from mrp_check.contract.requirements import Rule
+from mrp_check.contract.requirements import CONTRACT, Rule
 from mrp_check.sources.node import Node, each_node
 
 
@@ -68,4 +68,4 @@ def _declared(node: Node, place: Place) -> Place:
     return same[0] if same else place
 
 
-RULE = Rule("static", 90, ("facts",), each_node(_of), also=("wrap",))
+RULE = Rule("static", 90, ("facts",), each_node(_of), also=("wrap",), only=CONTRACT)

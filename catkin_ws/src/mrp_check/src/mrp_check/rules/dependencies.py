@@ -25,6 +25,8 @@ def _findings(case: Case) -> Iterator[Finding]:
     # Which packages the exercise is about: to leave one of them out is the manifest's fault. Any
     # other is the fault of the line that uses it.
     own = {"roscpp", "rospy"} | {topic.type.split("/")[0] for topic in case.spec.topics.values()}
+    if not case.spec.is_contract:
+        own.update(used)
     for name, use in sorted(used.items()):
         in_manifest = manifest is None or name in _all(manifest, tests=not use.firm)
         in_cmake = model.catkin is None or name in model.components

@@ -8,7 +8,7 @@ from typing import Iterator
 from mrp_check import evidence
 from mrp_check.case import Case
 from mrp_check.contract.finding import Finding
-from mrp_check.contract.requirements import Requirement, Rule
+from mrp_check.contract.requirements import CONTRACT, Requirement, Rule
 
 
 def _findings(case: Case) -> Iterator[Finding]:
@@ -48,4 +48,5 @@ RULE = Rule(
     requirements={
         "install": Requirement("What is needed to run is installed", "building", evidence.cmake)
     },
+    only=CONTRACT,
 )

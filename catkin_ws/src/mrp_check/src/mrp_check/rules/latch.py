@@ -8,7 +8,7 @@ from typing import Iterator
 from mrp_check import evidence
 from mrp_check.confined.places import Kind
 from mrp_check.contract.finding import Finding
-from mrp_check.contract.requirements import Requirement, Rule
+from mrp_check.contract.requirements import CONTRACT, Requirement, Rule
 from mrp_check.running.node import Node, each_node
 
 
@@ -42,4 +42,5 @@ RULE = Rule(
             evidence.of_publisher(lambda role: True, Node.published, "published no message"),
         )
     },
+    only=CONTRACT,
 )

@@ -19,11 +19,12 @@ _TAGS = ("launch node group arg param rosparam remap include env machine test ma
 
 def _findings(case: Case) -> Iterator[Finding]:
     yield from case.launch_file[1]
-    tags = case.launch.elements(case.package) if case.launch else []
-    if case.launch and case.launch.error:
-        yield _error(case.launch, tags)
-    else:
-        yield from _unknown(tags)
+    for launch in case.launches:
+        tags = launch.elements(case.package)
+        if launch.error:
+            yield _error(launch, tags)
+        else:
+            yield from _unknown(tags)
 
 
 def _unknown(tags: Sequence[tuple[str, Element]]) -> Iterator[Finding]:

@@ -10,7 +10,7 @@ from mrp_check import evidence
 from mrp_check.case import Case
 from mrp_check.confined.launch_dump import Started
 from mrp_check.contract.finding import WARNING, Finding
-from mrp_check.contract.requirements import Requirement, Rule
+from mrp_check.contract.requirements import CONTRACT, Requirement, Rule
 from mrp_check.student.xml_file import Element
 
 
@@ -99,4 +99,5 @@ RULE = Rule(
             "The launch file puts the nodes into the group", "namespaces", evidence.launch
         )
     },
+    only=CONTRACT,
 )

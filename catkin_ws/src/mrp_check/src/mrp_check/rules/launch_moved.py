@@ -7,7 +7,7 @@ from typing import Iterator
 
 from mrp_check.case import Case
 from mrp_check.contract.finding import Finding
-from mrp_check.contract.requirements import Rule
+from mrp_check.contract.requirements import CONTRACT, Rule
 
 
 def findings(case: Case) -> Iterator[Finding]:
@@ -29,4 +29,4 @@ def findings(case: Case) -> Iterator[Finding]:
             return
 
 
-RULE = Rule("run", 90, ("nodes",), findings, also=("namespace",))
+RULE = Rule("run", 90, ("nodes",), findings, also=("namespace",), only=CONTRACT)

@@ -9,7 +9,7 @@ from typing import Iterator
 from mrp_check import evidence
 from mrp_check.case import Case
 from mrp_check.confined.launch_dump import Started
-from mrp_check.contract.finding import Finding
+from mrp_check.contract.finding import NOTE, Finding
 from mrp_check.contract.requirements import Requirement, Rule
 from mrp_check.contract.words import nearest
 from mrp_check.sources import uses
@@ -23,16 +23,32 @@ def _findings(case: Case) -> Iterator[Finding]:
     launch = case.launch
     if not launch or launch.error:
         return
-    others = [n for n in launch.nodes if n.name not in case.spec.nodes]
+    others = [
+        node
+        for node in launch.nodes
+        if node.name not in case.spec.nodes or not case.spec.is_contract
+    ]
     others = [n for n in others if n.package == case.package.name]
-    for name in case.spec.nodes:
+    for name in case.spec.nodes if case.spec.is_contract else ():
         found = [node for node in launch.nodes if node.name == name]
         if not found:
             yield _missing(case.package, launch, name, others)
         for node in found[:1]:
             yield from _can_start(case, node, name)
     for node in others:
-        yield from _can_start(case, node)
+        for finding in _can_start(case, node):
+            finding.node = None if case.spec.is_contract else node.type
+            yield finding
+    if not case.spec.is_contract:
+        yield from _elsewhere(case.package.name, launch)
+
+
+def _elsewhere(own: str, launch: Launch) -> Iterator[Finding]:
+    """Yield a note for each package that the launch file starts nodes of, and that is not here."""
+    for name, node in {node.package: node for node in launch.nodes}.items():
+        if name != own and not uses.is_ros_package(name):
+            said = uses.absent(name, "cpp")
+            yield Finding("launch-nodes", said, node.file, node.line, NOTE)
 
 
 def _missing(package: Package, launch: Launch, name: str, spare: list[Started]) -> Finding:

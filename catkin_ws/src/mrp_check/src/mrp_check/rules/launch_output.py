@@ -8,7 +8,7 @@ from typing import Iterator
 from mrp_check import evidence
 from mrp_check.case import Case
 from mrp_check.contract.finding import Finding
-from mrp_check.contract.requirements import Requirement, Rule
+from mrp_check.contract.requirements import CONTRACT, Requirement, Rule
 
 
 def findings(case: Case) -> Iterator[Finding]:
@@ -36,4 +36,5 @@ RULE = Rule(
             "The nodes' lines come to the screen", "launching", evidence.launch
         )
     },
+    only=CONTRACT,
 )

@@ -8,7 +8,7 @@ from typing import Iterator
 from mrp_check.case import Case
 from mrp_check.confined.launch_dump import Started
 from mrp_check.contract.finding import Finding
-from mrp_check.contract.requirements import Rule
+from mrp_check.contract.requirements import CONTRACT, Rule
 from mrp_check.contract.spec import Spec
 from mrp_check.student.package import Package
 from mrp_check.student.xml_file import elements
@@ -35,7 +35,7 @@ def _of(package: Package, spec: Spec, node: Started) -> Iterator[Finding]:
                     f"The launch file renames the topic {old} of {node.name} to {new}:"
                     " the nodes do not meet there.",
                     node.file,
-                    _remap_line(package, node, old, new),
+                    remap_line(package, node, old, new),
                     node=node.name,
                     expected=f"the topic {topic.name}",
                     seen=f"{old} renamed to {new}",
@@ -43,7 +43,8 @@ def _of(package: Package, spec: Spec, node: Started) -> Iterator[Finding]:
                 )
 
 
-def _remap_line(package: Package, node: Started, old: str, new: str) -> int | None:
+def remap_line(package: Package, node: Started, old: str, new: str) -> int | None:
+    """Return the line of the <remap> that renames `old` to `new`."""
     # A file of another package has no lines that could be named.
     for element in elements(package.bytes(node.file)) if node.file else ():
         if element.tag == "remap" and old.endswith(
@@ -54,4 +55,6 @@ def _remap_line(package: Package, node: Started, old: str, new: str) -> int | No
     return node.line
 
 
-RULE = Rule(stage="files", order=125, needs=("launch",), findings=findings, also=("topic",))
+RULE = Rule(
+    stage="files", order=125, needs=("launch",), findings=findings, also=("topic",), only=CONTRACT
+)

@@ -17,7 +17,7 @@ def _of(node: Node) -> Iterator[Finding]:
     kinds = {"subscribe": Kind.SUBSCRIBER, "advertise": Kind.PUBLISHER}
     for place in node.places(Kind.DISCARDED, Kind.LOCAL):
         call = place.text or ""
-        if call in kinds:
+        if call in kinds and node.spec.is_contract:
             same = [
                 p
                 for p in node.on_topic(kinds[call], topics[call])

@@ -8,7 +8,7 @@ from typing import Iterator
 from mrp_check import evidence
 from mrp_check.confined.places import Kind
 from mrp_check.contract.finding import WARNING, Finding
-from mrp_check.contract.requirements import Requirement, Rule
+from mrp_check.contract.requirements import CONTRACT, Requirement, Rule
 from mrp_check.sources.node import Node, each_node
 from mrp_check.sources.python_text import GAP
 
@@ -50,4 +50,5 @@ RULE = Rule(
             "Each node gives itself its own name", "publisher#start-the-node", evidence.read
         )
     },
+    only=CONTRACT,
 )

@@ -8,7 +8,7 @@ from typing import Iterator
 
 from mrp_check.confined.places import Kind
 from mrp_check.contract.finding import WARNING, Finding
-from mrp_check.contract.requirements import Rule
+from mrp_check.contract.requirements import CONTRACT, Rule
 from mrp_check.running.node import Node, each_node
 
 
@@ -38,4 +38,6 @@ def _of(node: Node) -> Iterator[Finding]:
         )
 
 
-RULE = Rule("run", 11, ("nodes",), each_node(_of, also_dead=True), also=("node-name",))
+RULE = Rule(
+    "run", 11, ("nodes",), each_node(_of, also_dead=True), also=("node-name",), only=CONTRACT
+)

@@ -8,7 +8,7 @@ from typing import Iterator
 from mrp_check import evidence
 from mrp_check.confined.places import Kind, Place
 from mrp_check.contract.finding import ERROR, WARNING, Finding
-from mrp_check.contract.requirements import Requirement, Rule
+from mrp_check.contract.requirements import CONTRACT, Requirement, Rule
 from mrp_check.sources.node import Node, each_node
 
 
@@ -88,4 +88,5 @@ RULE = Rule(
     needs=("facts",),
     findings=each_node(_of),
     requirements={"queue": Requirement("Queues are long enough", "queues", evidence.read)},
+    only=CONTRACT,
 )

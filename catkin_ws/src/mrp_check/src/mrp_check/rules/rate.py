@@ -9,7 +9,7 @@ from typing import Iterator, Sequence
 from mrp_check import evidence
 from mrp_check.confined.places import Kind
 from mrp_check.contract.finding import Finding, Where
-from mrp_check.contract.requirements import Requirement, Rule
+from mrp_check.contract.requirements import CONTRACT, Requirement, Rule
 from mrp_check.contract.spec import Publishes
 from mrp_check.running.node import Node, each_node
 
@@ -89,4 +89,5 @@ RULE = Rule(
             ),
         )
     },
+    only=CONTRACT,
 )

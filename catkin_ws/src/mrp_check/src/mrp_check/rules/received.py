@@ -10,7 +10,7 @@ from mrp_check import evidence
 from mrp_check.confined.places import Kind
 from mrp_check.confined.seen import Log
 from mrp_check.contract.finding import ERROR, WARNING, Finding, Where
-from mrp_check.contract.requirements import Requirement, Rule
+from mrp_check.contract.requirements import CONTRACT, Requirement, Rule
 from mrp_check.contract.spec import Subscribes
 from mrp_check.rules.console import not_logged, other_words, received_pattern, sample
 from mrp_check.running.node import Node, each_node
@@ -140,4 +140,5 @@ RULE = Rule(
         )
     },
     also=("console", "queue", "callbacks"),
+    only=CONTRACT,
 )

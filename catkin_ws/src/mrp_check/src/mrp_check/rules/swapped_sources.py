@@ -8,7 +8,7 @@ from typing import Iterator
 from mrp_check.case import Case
 from mrp_check.contract import spec as specs
 from mrp_check.contract.finding import Finding, Line
-from mrp_check.contract.requirements import Rule
+from mrp_check.contract.requirements import CONTRACT, Rule
 from mrp_check.sources.node import Node
 
 
@@ -45,4 +45,4 @@ def _launch(node: Node, other: specs.Node, place: Line) -> Finding:
     )
 
 
-RULE = Rule("static", 28, ("facts",), findings, also=("targets", "launch-nodes"))
+RULE = Rule("static", 28, ("facts",), findings, also=("targets", "launch-nodes"), only=CONTRACT)

@@ -9,7 +9,7 @@ from typing import Iterator, Mapping
 from mrp_check import evidence
 from mrp_check.confined.places import Kind
 from mrp_check.contract.finding import Finding, Where
-from mrp_check.contract.requirements import Requirement, Rule
+from mrp_check.contract.requirements import CONTRACT, Requirement, Rule
 from mrp_check.contract.spec import Topic
 from mrp_check.running.node import Node, each_node
 from mrp_check.running.planning import resolved
@@ -162,4 +162,5 @@ RULE = Rule(
             "The nodes can be moved to another namespace", "namespaces", evidence.alone, shown=75
         ),
     },
+    only=CONTRACT,
 )

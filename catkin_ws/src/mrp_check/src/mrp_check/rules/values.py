@@ -9,7 +9,7 @@ from mrp_check import evidence
 from mrp_check.confined.places import Kind
 from mrp_check.confined.seen import Number
 from mrp_check.contract.finding import Finding, Where
-from mrp_check.contract.requirements import Requirement, Rule
+from mrp_check.contract.requirements import CONTRACT, Requirement, Rule
 from mrp_check.contract.spec import Publishes, Values
 from mrp_check.running.node import Node, each_node
 from mrp_check.running.planning import resolved
@@ -145,4 +145,5 @@ RULE = Rule(
             lambda case: _sent(case) or _published(case),
         )
     },
+    only=CONTRACT,
 )

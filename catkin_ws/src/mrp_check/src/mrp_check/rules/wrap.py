@@ -9,7 +9,7 @@ from mrp_check import evidence
 from mrp_check.confined.places import Kind
 from mrp_check.confined.seen import Number
 from mrp_check.contract.finding import NOTE, Finding
-from mrp_check.contract.requirements import Requirement, Rule
+from mrp_check.contract.requirements import CONTRACT, Requirement, Rule
 from mrp_check.contract.spec import Values
 from mrp_check.running.node import Node, each_node
 
@@ -112,4 +112,5 @@ RULE = Rule(
             shown=35,
         )
     },
+    only=CONTRACT,
 )

@@ -43,6 +43,19 @@ _SOURCED = (
 
 
 @dataclasses.dataclass
+class Launched:
+    """What came of the nodes under one of several launch files.
+
+    file: relative to the package; empty of one that the checker has made
+    nodes: full name -> node of the spec
+    """
+
+    file: str
+    nodes: dict[str, str]
+    seen: LaunchResult
+
+
+@dataclasses.dataclass
 class Observed:
     """What was seen.
 
@@ -51,6 +64,7 @@ class Observed:
     started: node of the spec -> what of the launch file starts it
     executables: node of the spec -> path of its executable
     moved: what roslaunch makes of the launch file inside another group, or None
+    launches: the same as launch, of each launch file of a package without a contract
     problems: sentences on what could not be observed, and why
     """
 
@@ -59,6 +73,7 @@ class Observed:
     started: dict[str, Started] = dataclasses.field(default_factory=dict)
     executables: dict[str, pathlib.Path] = dataclasses.field(default_factory=dict)
     moved: Launch | None = None
+    launches: list[Launched] = dataclasses.field(default_factory=list)
     problems: list[str] = dataclasses.field(default_factory=list)
 
     @property
@@ -84,7 +99,7 @@ def observe(workspace: Workspace, spec: Spec, launch: Launch | None, facts: Fact
         result.moved = _moved(workspace, file)
     for name, node in spec.nodes.items():
         started, files = result.started.get(name), facts.sources.get(name, [])
-        path = _executable(workspace, node, started, files)
+        path = executable(workspace, node, started, files)
         if path:
             result.executables[name] = path
     if not result.executables:
@@ -97,12 +112,12 @@ def observe(workspace: Workspace, spec: Spec, launch: Launch | None, facts: Fact
         result.executables,
         result.started,
         launch.params if launch else {},
-        _environment(workspace),
-        messages.definitions(workspace.package.name, _message_folders(workspace.package), SHARES),
+        environment(workspace),
+        messages.definitions(workspace.package.name, message_folders(workspace.package), SHARES),
     )
     under, problems = planner.launch(file), result.problems
-    launched = workspace.submit(_session, workspace, under, LaunchResult, problems)
-    direct = workspace.submit(_session, workspace, planner.direct(), DirectResult, problems)
+    launched = workspace.submit(session, workspace, under, LaunchResult, problems)
+    direct = workspace.submit(session, workspace, planner.direct(), DirectResult, problems)
     result.launch, result.direct = launched.result(), direct.result()
     if result.launch and result.launch.ending == "most":
         # Not the package's fault: one that never comes up is idle, or uses up its time.
@@ -121,7 +136,7 @@ def _moved(workspace: Workspace, file: pathlib.Path) -> Launch | None:
     return None if moved.error else moved
 
 
-def _executable(
+def executable(
     workspace: Workspace, node: Node, started: Started | None, files: list[str]
 ) -> pathlib.Path | None:
     """Return the path of a node's executable as rosrun finds it, or None.
@@ -141,7 +156,7 @@ def _executable(
     return None
 
 
-def _environment(workspace: Workspace) -> dict[str, str]:
+def environment(workspace: Workspace) -> dict[str, str]:
     """Return the environment that the workspace's setup.bash makes, as far as there is one."""
     setups = [str(NOETIC), str(workspace.folder / "devel" / "setup.bash")]
     done = workspace.run("bash", "-c", _SOURCED, "bash", *setups)
@@ -150,11 +165,11 @@ def _environment(workspace: Workspace) -> dict[str, str]:
     return {**own, **pairs, **variables.AT_ONCE}
 
 
-def _message_folders(package: Package) -> list[pathlib.Path]:
+def message_folders(package: Package) -> list[pathlib.Path]:
     return sorted({(package.root / file).parent for file in package.of_kind("message")})
 
 
-def _session(
+def session(
     workspace: Workspace, plan: LaunchPlan | DirectPlan, kind: type[T], problems: list[str]
 ) -> T | None:
     """Have session.py carry out a plan; return the result, which is of that kind.

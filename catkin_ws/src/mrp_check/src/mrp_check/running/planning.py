@@ -85,6 +85,18 @@ class Planner:
             enough=ENOUGH,
         )
 
+    def of_file(
+        self, file: pathlib.Path, seconds: float, nodes: list[plans.LaunchNode]
+    ) -> plans.LaunchPlan:
+        """Return the plan for a launch file without a contract; all lines come to the screen."""
+        common = self._common(self.spec.shutdown.seconds + _ROSLAUNCH_SECONDS)
+        return plans.LaunchPlan(
+            common=dataclasses.replace(common, seconds=seconds),
+            command=["roslaunch", "--screen", str(file)],
+            nodes=nodes,
+            enough=ENOUGH_ALONE,
+        )
+
     def _launch_node(self, node: specs.Node, senders: list[str]) -> plans.LaunchNode:
         started, topic = self.started.get(node.name), node.subscribing
         path = started.path if started else self.spec.node_path(node.name)

@@ -78,6 +78,8 @@ class Node:
     @functools.cached_property
     def mistaken_for(self) -> specs.Node | None:
         """The node of the spec whose sources these are in truth, or None."""
+        if not self.spec.is_contract:
+            return None
         names = {p.text for p in self.places(Kind.INIT)}
         others = [n for n in names if n in self.spec.nodes and n != self.name]
         if len(names) != 1 or not others:

@@ -23,12 +23,16 @@ def sources(
 
     python: file -> python_source.Source
     """
-    started = {node.name: node for node in (launch.nodes if launch else [])}
+    # Without a contract, the nodes of the spec are executables, whatever a launch file calls them.
+    by_name = launch.nodes if launch and spec.is_contract else []
+    started = {node.name: node for node in by_name}
     result = {}
     for name, node in spec.nodes.items():
         files = []
         if name in started and started[name].package == package.name:
             files = of_executable(package, model, started[name].type)
+        if not files and node.executable:
+            files = of_executable(package, model, node.executable)
         result[name] = files or _by_name(package, model, node)
     return {name: with_own(package, files, python) for name, files in result.items()}
 

@@ -7,6 +7,7 @@ import ast
 import functools
 import pathlib
 import re
+import subprocess
 import typing
 from typing import Iterator
 
@@ -43,11 +44,26 @@ _DEBIAN = {"cv2": "python3-opencv", "PIL": "python3-pil", "OpenGL": "python3-ope
 def absent(name: str, language: str) -> str:
     """Return the sentence about a package or a module that this machine has not."""
     plain = name.lower().replace("_", "-")
-    guess = _DEBIAN.get(name, f"python3-{plain}") if language == "python" else f"lib{plain}-dev"
+    guesses = [_DEBIAN.get(name, f"python3-{plain}")]
+    if language == "cpp":
+        guesses = [f"lib{plain}-dev", f"ros-{plain}", *guesses, plain]
+    debian = _debian_packages()
+    guess = next((guess for guess in guesses if guess in debian), None if debian else guesses[0])
+    where = f"Debian package {guess}" if guess else "not in Debian"
     return (
-        f"{name} is not on this machine (Debian package {guess}): what needs it could not be"
-        " checked. Install it, and check again."
+        f"{name} is not on this machine ({where}): what needs it could not be checked. Install it,"
+        " and check again."
     )
+
+
+@functools.lru_cache(maxsize=None)
+def _debian_packages() -> set[str]:
+    """Return the names of all packages that apt knows of; none where there is no apt."""
+    try:
+        done = subprocess.run(["apt-cache", "pkgnames"], stdout=subprocess.PIPE, text=True)
+    except OSError:
+        return set()
+    return set(done.stdout.split())
 
 
 @functools.lru_cache(maxsize=None)
@@ -56,9 +72,14 @@ def is_ros_package(name: str) -> bool:
     return any((pathlib.Path(share) / name / "package.xml").is_file() for share in SHARES)
 
 
+def without_comments(text: str) -> str:
+    """Return a C++ source in which spaces stand for comments."""
+    return _COMMENT.sub(lambda m: re.sub(r"[^\n]", " ", m.group()), text)
+
+
 def includes(package: Package, file: str) -> Iterator[tuple[str, int]]:
     """Yield (header, line) of each #include that is no comment."""
-    text = _COMMENT.sub(lambda m: re.sub(r"[^\n]", " ", m.group()), package.text(file))
+    text = without_comments(package.text(file))
     for match in _INCLUDE.finditer(text):
         yield match.group(1), text.count("\n", 0, match.start(1)) + 1
 

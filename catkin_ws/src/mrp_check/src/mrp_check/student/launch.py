@@ -75,11 +75,16 @@ def readable(package: Package, spec: Spec) -> tuple[str | None, list[Finding]]:
                 else "Write one, as the page shows.",
             )
         ]
+    return path, problems(package, path)
+
+
+def problems(package: Package, path: str) -> list[Finding]:
+    """Return the Findings that say why a launch file is no XML."""
     try:
         elements(package.bytes(path))
     except xml.parsers.expat.ExpatError as error:
-        return path, [xml_finding("launch-file", package, path, error, why="launch-xml")]
-    return path, []
+        return [xml_finding("launch-file", package, path, error, why="launch-xml")]
+    return []
 
 
 def load(workspace: Workspace, file: str) -> Launch:

@@ -35,6 +35,8 @@ KINDS = {
     ".hxx": "header",
     ".launch": "launch",
     ".msg": "message",
+    ".srv": "service",
+    ".action": "action",
     ".cmake": "cmake",
 }
 
@@ -114,7 +116,7 @@ class Package:
         return self.text(path).split("\n")
 
     def kind(self, path: str) -> str:
-        """Return python, cpp, header, launch, message, cmake, or other."""
+        """Return python, cpp, header, launch, message, service, action, cmake, or other."""
         name = path.rsplit("/", 1)[-1]
         if name == "CMakeLists.txt":
             return "cmake"

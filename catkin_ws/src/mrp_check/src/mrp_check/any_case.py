@@ -1,0 +1,88 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A package under check that no contract describes: its executables are the nodes."""
+
+from __future__ import annotations
+
+import codecs
+import functools
+import pathlib
+import stat
+from concurrent.futures import Future
+from typing import Callable
+
+from mrp_check.case import Case
+from mrp_check.contract.finding import Finding
+from mrp_check.contract.spec import Spec
+from mrp_check.running import observing, unasked
+from mrp_check.sources import executables, uses
+from mrp_check.student import launch as launching
+from mrp_check.student.launch import Launch
+from mrp_check.student.package import Package
+
+_MOST = 12  # launch files that are looked at
+
+
+class AnyCase(Case):
+    """See above. `launch` is all launch files together."""
+
+    def __init__(
+        self,
+        package: Package,
+        folder: pathlib.Path,
+        timeout: float,
+        progress: Callable[[str], None],
+    ) -> None:
+        super().__init__(package, None, folder, timeout, progress)
+        for path in package.of_kind("python"):
+            if package.shebang(path) and executables.is_script(package, path):
+                _make_startable(self.package_folder / path)
+
+    @functools.cached_property
+    def spec(self) -> Spec:
+        return executables.spec(self.package, self.model)
+
+    @functools.cached_property
+    def launch_file(self) -> tuple[str | None, list[Finding]]:
+        return None, [f for file in self._files for f in launching.problems(self.package, file)]
+
+    @property
+    def _files(self) -> list[str]:
+        files = [file for file in self.package.of_kind("launch") if not uses.is_test(file)]
+        return files[:_MOST]
+
+    @functools.cached_property
+    def _loading_all(self) -> Future[list[Launch]]:
+        _ = self.manifest  # what stands in the copy is read
+        files = [file for file in self._files if not launching.problems(self.package, file)]
+        return self.submit(lambda: [launching.load(self, file) for file in files])
+
+    @functools.cached_property
+    def launches(self) -> list[Launch]:
+        return self._loading_all.result()
+
+    @functools.cached_property
+    def launch(self) -> Launch | None:
+        loaded = [launch for launch in self.launches if not launch.error]
+        if not loaded:
+            return None
+        return Launch(
+            "",
+            nodes=[node for launch in loaded for node in launch.nodes],
+            files=list(dict.fromkeys(file for launch in loaded for file in launch.files)),
+            params={name: v for launch in loaded for name, v in launch.params.items()},
+            file=loaded[0].file,
+        )
+
+    @functools.cached_property
+    def observed(self) -> observing.Observed:
+        return unasked.observe(self, self.spec, self.launches, self.facts)
+
+
+def _make_startable(path: pathlib.Path) -> None:
+    """Mend in the copy what keeps Linux from starting a script: the rules look at the original,
+    and so the rest of it can be checked, too."""
+    first, end, rest = path.read_bytes().partition(b"\n")
+    first = first[len(codecs.BOM_UTF8) :] if first.startswith(codecs.BOM_UTF8) else first
+    if b"python" in first:
+        path.write_bytes(b"#!/usr/bin/python3" + end + rest)
+    path.chmod(path.stat().st_mode | stat.S_IXUSR | stat.S_IXGRP | stat.S_IXOTH)

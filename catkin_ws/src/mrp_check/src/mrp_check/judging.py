@@ -1,0 +1,142 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""How severe a finding is where no contract says it: an error is what was seen to fail, or what
+breaks a rule of ROS without which nothing can work."""
+
+from __future__ import annotations
+
+import re
+from typing import Iterable
+
+from mrp_check.case import Case
+from mrp_check.contract.finding import ERROR, NOTE, WARNING, Finding
+from mrp_check.running.node import Node
+from mrp_check.running.words import last_words
+
+# What neither catkin, nor the compiler, Linux or roslaunch takes: nobody has to see it fail.
+_RULES = set(
+    (
+        "manifest package-name cmake configure compile link python-syntax scripts text targets"
+        " launch-file launch-nodes"
+    ).split()
+)
+_SEEN = {"build", "run", "stop"}
+# What a node says that stands before an empty keyboard, screen or command line -> what it waits for
+_WAITS = (
+    (r"(?i)^\s*\W*usage\b|\[ ?\w+\] \[[\d., ]+\]: usage\b", "arguments on its command line"),
+    (r"EOFError: EOF when reading a line", "the keyboard"),
+    (r"termios\.error|Inappropriate ioctl for device", "the keyboard"),
+    (r"(?i)cannot open display|could not connect to display|no display name", "a screen"),
+    (r"(?i)can.t open camera|VIDEOIO|/dev/(video|tty)\w*", "a device"),
+    (r"KeyError: ", "a parameter"),
+)
+_ENDED = ("KeyboardInterrupt", "ROSInterruptException")
+
+
+def weigh(case: Case, findings: Iterable[Finding]) -> None:
+    """Give what was seen of the nodes its severity: before one cause is told once."""
+    for finding in findings:
+        if finding.severity == ERROR and finding.stage in ("run", "stop"):
+            _of_run(case, finding)
+
+
+def judged(case: Case, findings: Iterable[Finding], seen: Iterable[Finding]) -> list[Finding]:
+    """Return the findings with the severity that each has for a package without a contract.
+
+    findings: what is told; seen: all that was found, also what is not told twice
+    """
+    findings = list(findings)
+    failed = [f for f in seen if f.stage in _SEEN and f.severity == ERROR]
+    confirmed: set[tuple[str | None, str | None]] = {(f.id, f.file) for f in failed}
+    confirmed |= {(f.consequence_of, None) for f in findings if f.stage in _SEEN}
+    kept = []
+    for finding in findings:
+        is_seen = {(finding.id, finding.file), (finding.id, None)} & confirmed
+        if finding.severity == ERROR and finding.stage not in _SEEN and not is_seen:
+            if not _is_rule(case, finding):
+                wants = finding.id == "launch-file" and _wants(finding)
+                finding.severity = NOTE if wants else WARNING
+        if finding.severity != ERROR:
+            finding.consequence_of = None
+        if not _is_unbuilt(case, finding):
+            kept.append(finding)
+    errors = {f.id for f in kept if f.severity == ERROR}
+    for finding in kept:
+        if finding.consequence_of not in errors:
+            finding.consequence_of = None
+    return kept
+
+
+def _is_rule(case: Case, finding: Finding) -> bool:
+    """Return whether a finding of the sources breaks a rule without which nothing works."""
+    is_python = bool(finding.file) and case.package.kind(finding.file or "") == "python"
+    if finding.id == "python-syntax":
+        return finding.file in {f for files in case.facts.sources.values() for f in files}
+    if finding.id == "scripts" and is_python:
+        # catkin_install_python() makes an executable of what lacks a first line, too.
+        relayed = {s.path for s in case.model.scripts if s.by == "catkin_install_python"}
+        return not (finding.file in relayed and _came_up(case, finding.file))
+    if finding.id in ("spin", "lifetime") and not is_python:
+        return "publisher that" not in finding.message
+    if finding.id == "launch-file":
+        return _wants(finding) is None
+    return finding.id in _RULES
+
+
+def _came_up(case: Case, file: str | None) -> bool:
+    nodes = vars(case).get("nodes") or {}
+    return any(
+        node.is_up and file in case.facts.sources.get(name, ()) for name, node in nodes.items()
+    )
+
+
+def _wants(finding: Finding) -> str | None:
+    """Return what a launch file wants from its caller or from another package, or None."""
+    found = re.search(r"argument (\w+) has no value|is not there: (\S+)\.", finding.message)
+    return found.group(0) if found else None
+
+
+def _of_run(case: Case, finding: Finding) -> None:
+    """Weigh what was seen of a node: it may have waited for what only its user has."""
+    node = case.nodes.get(finding.node or "") if "nodes" in vars(case) else None
+    if node is None:
+        return
+    if finding.id == "exit" and any(word in finding.message for word in _ENDED):
+        finding.severity = WARNING
+    elif finding.stage == "run" and finding in node.not_up:
+        _of_start(node, finding)
+
+
+def _of_start(node: Node, finding: Finding) -> None:
+    lines = [text for _, _, text in node.direct.lines] if node.direct else []
+    for shape, what in _WAITS:
+        said = next((text for text in lines if re.search(shape, text)), None)
+        if said:
+            is_parameter = what == "a parameter"
+            if is_parameter and "param" not in _source(node, finding):
+                continue
+            finding.severity = WARNING if is_parameter else NOTE
+            finding.message = f"{node.name} waits for {what}: {said.strip()[:200]}"
+            return
+    if node.direct and node.direct.code == 0 and not _is_left_alone(node):
+        finding.severity = NOTE
+        finding.message = f"{node.name} does its work, and ends: {last_words(lines) or 'in peace'}"
+
+
+def _source(node: Node, finding: Finding) -> str:
+    lines = node.package.lines(finding.file) if finding.file else []
+    return lines[finding.line - 1] if finding.line and finding.line <= len(lines) else ""
+
+
+def _is_left_alone(node: Node) -> bool:
+    """Return whether a node ended that was to be called back."""
+    return bool(node.seen_alone.subscriptions)
+
+
+def _is_unbuilt(case: Case, finding: Finding) -> bool:
+    """Return whether a node has no executable only as something on this machine is missing."""
+    return (
+        finding.id == "starts"
+        and finding.consequence_of is None
+        and "has no executable" in finding.message
+        and case.built is None
+    )

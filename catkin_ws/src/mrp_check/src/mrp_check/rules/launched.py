@@ -1,0 +1,94 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What goes wrong when the nodes of a package run together, under each of its launch files."""
+
+from __future__ import annotations
+
+import re
+from typing import Iterator
+
+from mrp_check.case import Case
+from mrp_check.confined.places import Kind
+from mrp_check.contract.finding import NOTE, Finding, Where
+from mrp_check.contract.requirements import ANY, Rule
+from mrp_check.running.observing import Launched
+from mrp_check.running.starting import id_of_error
+from mrp_check.running.words import code_text
+
+_DIED = re.compile(r"\[(?P<name>\S+)-\d+\] process has died \[pid \d+, exit code (?P<code>-?\d+)")
+_GIVES_UP = "RLException: "
+_AFTER = 0.5  # seconds in which roslaunch may still show what was printed before it was to end
+
+
+def _findings(case: Case) -> Iterator[Finding]:
+    for launched in case.observed.launches:
+        end = launched.seen.asked + _AFTER
+        lines = [text for time, _, text in launched.seen.lines if time <= end]
+        yield from _gave_up(case, launched, lines)
+        yield from _raised(case, launched, lines)
+        for text in lines:
+            died = _DIED.search(text)
+            name = died and launched.nodes.get("/" + died["name"])
+            # What ends by itself, too, has been said.
+            if died and name and not case.nodes[name].not_up:
+                yield _died(case, launched, name, int(died["code"]))
+
+
+def _where(launched: Launched) -> str:
+    return f"under {launched.file}" if launched.file else "together with the other nodes"
+
+
+def _raised(case: Case, launched: Launched, lines: list[str]) -> Iterator[Finding]:
+    found = case.places.traceback(lines)
+    if found is None:
+        return
+    place, kind, text = found
+    nodes = [n for n in launched.nodes.values() if place[0] in case.places.sources(n)]
+    name = nodes[0] if nodes else None
+    if name is None or case.nodes[name].not_up:
+        return
+    source = case.package.lines(place[0])[place[1] - 1].strip()
+    yield Finding(
+        id_of_error(kind, text, "callbacks"),
+        f"{name} runs into an error {_where(launched)}: {kind}: {text}",
+        *place,
+        expected="a node that works without an error",
+        seen=f"{kind}: {text}, in: {source}",
+        node=name,
+    )
+
+
+def _died(case: Case, launched: Launched, name: str, code: int) -> Finding:
+    return Finding(
+        "starts",
+        f"{name} ends {_where(launched)}, {code_text(code)}; by itself it goes on.",
+        *case.places.of(name, Kind.INIT, Kind.HANDLE),
+        expected="a node that goes on until Ctrl-C",
+        seen=code_text(code),
+        node=name,
+    )
+
+
+def _gave_up(case: Case, launched: Launched, lines: list[str]) -> Iterator[Finding]:
+    """Yield a note if roslaunch ends by itself: it most often wants what is not on this machine."""
+    said = next((text for text in lines if text.startswith(_GIVES_UP)), None)
+    if launched.seen.ending != "itself" or said is None:
+        return
+    place: Where = launched.file or None, 1
+    yield Finding(
+        "starts",
+        f"roslaunch gives up on {launched.file}: {said[len(_GIVES_UP) :][:300]}",
+        *place,
+        severity=NOTE,
+        expected="a launch file that goes on until Ctrl-C",
+        seen=said[:300],
+    )
+
+
+RULE = Rule(
+    "run",
+    13,
+    ("nodes",),
+    _findings,
+    also=("starts", "callbacks", "python-names", "python-syntax", "type", "node-start"),
+    only=ANY,
+)

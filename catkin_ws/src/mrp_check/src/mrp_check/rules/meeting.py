@@ -1,0 +1,153 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Publishers and subscribers of a package meet: no name is misspelt, and the types are the same."""
+
+from __future__ import annotations
+
+import difflib
+import re
+import typing
+from typing import Iterable, Iterator
+
+from mrp_check.case import Case
+from mrp_check.confined.places import Kind
+from mrp_check.confined.seen import Seen
+from mrp_check.contract.finding import ERROR, NOTE, WARNING, Finding
+from mrp_check.contract.requirements import ANY, Rule
+
+_OF_ROS = {"/rosout", "/rosout_agg", "/clock", "/tf", "/tf_static", "/diagnostics"}
+_ALIKE = 0.85
+
+
+class End(typing.NamedTuple):
+    """A node of the package, or None for another's, that publishes or subscribes."""
+
+    node: str | None
+    topic: str
+    type: str
+
+
+class Graph(typing.NamedTuple):
+    where: str
+    publishers: list[End]
+    subscribers: list[End]
+
+
+def _findings(case: Case) -> Iterator[Finding]:
+    told: set[object] = set()
+    published = {_base(one.topic) for graph, _ in _graphs(case) for one in graph.publishers}
+    for graph, nodes in _graphs(case):
+        for end in graph.subscribers:
+            if end.node not in nodes or (end.node, end.topic) in told:
+                continue
+            same = [one for one in graph.publishers if one.topic == end.topic]
+            for finding in (
+                _of_types(case, graph, end, same) if same else _alone(case, graph, end, published)
+            ):
+                told.add((end.node, end.topic))
+                yield finding
+
+
+def _graphs(case: Case) -> Iterator[tuple[Graph, set[str]]]:
+    """Yield what was seen under each launch file, and of each by itself, with the nodes that it
+    is asked of: each by itself only of those that no launch file starts."""
+    together: set[str] = set()
+    for launched in case.observed.launches:
+        together.update(launched.nodes.values())
+        where = f"Under {launched.file}" if launched.file else "When all nodes run together"
+        graph = _graph(where, launched.seen.seen, launched.nodes, lambda topic: topic)
+        yield graph, {*launched.nodes.values()}
+    direct = case.observed.direct
+    if direct:
+        alone = {one.name: key for key, one in direct.nodes.items() if one.name}
+        # Each ran in a namespace of its own.
+        graph = _graph("Started by itself", direct.seen, alone, _outside)
+        yield graph, {*alone.values()} - together
+
+
+def _outside(topic: str) -> str:
+    return re.sub(r"^/check_\d+/", "/", topic)
+
+
+def _graph(
+    where: str,
+    seen: Seen,
+    nodes: dict[str, str],
+    plain: typing.Callable[[str], str],
+) -> Graph:
+    def ends(records: Iterable[typing.Any]) -> list[End]:
+        found = (End(nodes.get(one.node), plain(one.topic), one.type) for one in records)
+        return [end for end in dict.fromkeys(found) if end.topic not in _OF_ROS]
+
+    return Graph(where, ends(seen.publications), ends(seen.subscriptions))
+
+
+def _of_types(case: Case, graph: Graph, end: End, publishers: list[End]) -> Iterator[Finding]:
+    for other in publishers:
+        if "*" in (end.type, other.type) or other.type == end.type:
+            continue
+        file, line = case.places.of_topic(end.node or "", Kind.SUBSCRIBER, end.topic)
+        yield Finding(
+            "type",
+            f"{end.node} subscribes to {end.topic} with messages of type {end.type}, and"
+            f" {other.node or 'another node'} publishes {other.type} there: nothing arrives.",
+            file,
+            line,
+            expected=other.type,
+            seen=end.type,
+            fix="Let both use the same type.",
+            node=end.node,
+        )
+
+
+def _alone(case: Case, graph: Graph, end: End, published: set[str]) -> Iterator[Finding]:
+    """Yield the Finding about a topic that nobody publishes on."""
+    heard = {one.topic for one in graph.subscribers}
+    near = [one for one in graph.publishers if one.node and _is_meant(one, end)]
+    near.sort(key=lambda one: one.topic in heard)
+    file, line = case.places.of_topic(end.node or "", Kind.SUBSCRIBER, end.topic)
+    if not near:
+        nobody = "nobody" if _base(end.topic) in published else "no node of this package"
+        yield Finding(
+            "topic",
+            f"{graph.where}, {end.node} waits for messages on {end.topic}: {nobody} publishes any.",
+            file,
+            line,
+            NOTE,
+            node=end.node,
+        )
+        return
+    other = near[0]
+    is_sure = other.topic not in heard or not _is_moved(other, end)
+    digits = [re.sub(r"\d", "", one.topic) for one in (other, end)]
+    yield Finding(
+        "topic",
+        f"{graph.where}, {end.node} subscribes to {end.topic}, where nobody publishes, and"
+        f" {other.node} publishes on {other.topic}.",
+        file,
+        line,
+        ERROR if is_sure and digits[0] != digits[1] else WARNING,
+        expected=other.topic,
+        seen=end.topic,
+        fix="Give both topics one name; a <remap> in the launch file does so, too.",
+        node=end.node,
+    )
+
+
+def _is_meant(one: End, other: End) -> bool:
+    """Return whether two names are so alike that one of them is misspelt, or in another group."""
+    if one.type != other.type:
+        return False
+    ratio = difflib.SequenceMatcher(None, one.topic.lower(), other.topic.lower()).ratio()
+    return _is_moved(one, other) or ratio >= _ALIKE
+
+
+def _is_moved(one: End, other: End) -> bool:
+    """Return whether two names differ in their namespaces alone."""
+    return _base(one.topic) == _base(other.topic)
+
+
+def _base(topic: str) -> str:
+    return topic.rsplit("/", 1)[-1]
+
+
+RULE = Rule("run", 21, ("nodes",), _findings, also=("topic", "type"), only=ANY)

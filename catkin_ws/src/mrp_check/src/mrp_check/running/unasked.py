@@ -1,0 +1,132 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Runs the nodes of a package that no contract describes, and keeps what was seen.
+
+Each by itself, as rosrun does, and then as each launch file starts them; if there are some that no
+launch file starts, all run together as well.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import pathlib
+import re
+import xml.sax.saxutils
+from typing import Mapping
+
+from mrp_check.confined import messages
+from mrp_check.confined.places import Kind
+from mrp_check.confined.plans import LaunchNode
+from mrp_check.confined.seen import DirectResult, LaunchResult
+from mrp_check.contract.resources import SHARES
+from mrp_check.contract.spec import Spec
+from mrp_check.running import observing
+from mrp_check.running.observing import Launched, Observed
+from mrp_check.running.planning import ENOUGH_ALONE, Planner
+from mrp_check.sources.facts import Facts
+from mrp_check.student.launch import Launch
+from mrp_check.student.workspace import Workspace
+
+_SECONDS = 8  # in which the nodes are watched, once all are up
+_MOST = 6  # launch files that are run
+
+
+def observe(workspace: Workspace, spec: Spec, launches: list[Launch], facts: Facts) -> Observed:
+    """Run the nodes, and return what was seen. Raises CannotCheck."""
+    result = Observed()
+    own = {launch.file: _own(workspace, spec, launch) for launch in _outermost(launches)}
+    for launch in launches:
+        for started in [] if launch.error else launch.nodes:
+            if started.package == workspace.package.name and started.type in spec.nodes:
+                result.started.setdefault(started.type, started)
+    for name, node in spec.nodes.items():
+        path = observing.executable(workspace, node, None, facts.sources.get(name, []))
+        if path:
+            result.executables[name] = path
+    if not result.executables:
+        return result
+    workspace.progress("running the nodes")
+    planner = _planner(workspace, spec, result, launches)
+    direct = planner.direct()
+    direct.common.seconds = _SECONDS
+    for key, one in direct.nodes.items():
+        direct.nodes[key] = dataclasses.replace(one, publishes=ENOUGH_ALONE)
+    problems = result.problems
+    ran = workspace.submit(observing.session, workspace, direct, DirectResult, problems)
+    files = {file: nodes for file, nodes in own.items() if nodes and file}
+    runs = [(file, workspace.package_folder / file, files[file]) for file in list(files)[:_MOST]]
+    if len(result.executables) > 1 and result.executables.keys() - result.started.keys():
+        made = _made(workspace, facts, [*result.executables])
+        runs.append(("", _write(workspace, result, made), made))
+    for file, path, nodes in runs:
+        plan = planner.of_file(path, _SECONDS, _watched(workspace, facts, nodes))
+        seen = observing.session(workspace, plan, LaunchResult, problems)
+        if seen:
+            result.launches.append(Launched(file, nodes, seen))
+    result.direct = ran.result()
+    return result
+
+
+def _planner(workspace: Workspace, spec: Spec, result: Observed, launches: list[Launch]) -> Planner:
+    return Planner(
+        workspace,
+        spec,
+        result.executables,
+        result.started,
+        {name: value for launch in launches for name, value in launch.params.items()},
+        observing.environment(workspace),
+        messages.definitions(
+            workspace.package.name, observing.message_folders(workspace.package), SHARES
+        ),
+    )
+
+
+def _outermost(launches: list[Launch]) -> list[Launch]:
+    """Return those that can be loaded, and that no other one includes."""
+    loaded = [launch for launch in launches if not launch.error]
+    return [
+        launch
+        for launch in loaded
+        if not any(launch.file in other.files for other in loaded if other is not launch)
+    ]
+
+
+def _own(workspace: Workspace, spec: Spec, launch: Launch) -> dict[str, str]:
+    """Return full name -> node of the spec, of what a launch file starts."""
+    name = workspace.package.name
+    return {
+        one.path: one.type for one in launch.nodes if one.package == name and one.type in spec.nodes
+    }
+
+
+def _made(workspace: Workspace, facts: Facts, names: list[str]) -> dict[str, str]:
+    """Return full name -> node of the spec, where the nodes name themselves."""
+    found: dict[str, str] = {}
+    for name in names:
+        texts = [place.text for place in facts.of(name, Kind.INIT) if place.text]
+        plain = re.sub(r"\W", "_", (texts[0] if texts else name).lstrip("/~")) or "node"
+        path = f"/{plain}" if f"/{plain}" not in found else "/" + re.sub(r"\W", "_", name)
+        found[path] = name
+    return found
+
+
+def _write(workspace: Workspace, result: Observed, nodes: Mapping[str, str]) -> pathlib.Path:
+    lines = []
+    for path, name in nodes.items():
+        values = {
+            "pkg": workspace.package.name,
+            "type": result.executables[name].name,
+            "name": path[1:],
+        }
+        text = " ".join(f"{k}={xml.sax.saxutils.quoteattr(v)}" for k, v in values.items())
+        lines.append(f"  <node {text}/>")
+    file = workspace.given / "of_package.launch"
+    file.write_text("\n".join(["<launch>", *lines, "</launch>", ""]))
+    return file
+
+
+def _watched(workspace: Workspace, facts: Facts, nodes: Mapping[str, str]) -> list[LaunchNode]:
+    package = workspace.package.name
+    return [
+        LaunchNode(path, f"{package}/{name}", bool(facts.of(name, Kind.PUBLISH)), None, None, 0)
+        for path, name in nodes.items()
+    ]

@@ -1,0 +1,62 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Which services and parameters the sources of a package ask for, and which they give."""
+
+from __future__ import annotations
+
+import re
+import typing
+from typing import Iterable, Iterator
+
+from mrp_check.sources import uses
+from mrp_check.student.package import Package
+
+_NAME = r"""\(\s*[rf]?["']([~/\w]+)["']"""
+_PYTHON = {
+    "asks": r"\b(?:wait_for_service|ServiceProxy)\s*" + _NAME,
+    "offers": r"\brospy\.Service\s*" + _NAME,
+    "reads": r"\bget_param\s*" + _NAME + r"\s*\)",
+    "knows": r"\b(?:get_param|has_param|search_param|get_param_cached)\s*" + _NAME,
+    "sets": r"\bset_param\s*" + _NAME,
+}
+_CPP = {
+    "asks": r"\b(?:serviceClient\s*<[^;()]*>|waitForService)\s*" + _NAME,
+    "offers": r"\badvertiseService\s*(?:<[^;()]*>\s*)?" + _NAME,
+    "reads": r"\bgetParam\s*" + _NAME,
+    "knows": r"\b(?:getParam|getParamCached|hasParam|searchParam|param(?:\s*<[^;()]*>)?|get)\s*"
+    + _NAME,
+    "sets": r"\bsetParam\s*" + _NAME,
+}
+_PYTHON_COMMENT = re.compile(r"^[ \t]*#[^\n]*", re.MULTILINE)
+
+
+class Said(typing.NamedTuple):
+    """Where a source names a service or a parameter.
+
+    what: "asks" or "offers", of a service; "reads" (without a default), "knows" or "sets", of a
+        parameter
+    """
+
+    what: str
+    name: str
+    file: str
+    line: int
+
+    @property
+    def base(self) -> str:
+        """The name's last part: whatever namespace it is in."""
+        return self.name.strip("~/").rsplit("/", 1)[-1]
+
+
+def of(package: Package, files: Iterable[str]) -> Iterator[Said]:
+    """Yield what these sources say, in order."""
+    for file in files:
+        is_python = package.kind(file) == "python"
+        text = package.text(file)
+        if is_python:
+            text = _PYTHON_COMMENT.sub("", text)
+        else:
+            text = uses.without_comments(text)
+        for what, shape in (_PYTHON if is_python else _CPP).items():
+            for match in re.finditer(shape, text):
+                line = text.count("\n", 0, match.start(1)) + 1
+                yield Said(what, match.group(1), file, line)

@@ -1,0 +1,49 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The nodes of any package, by what it makes executables of: they stand in for a contract."""
+
+from __future__ import annotations
+
+import re
+from typing import Iterator
+
+from mrp_check.contract import spec as specs
+from mrp_check.contract.spec import Spec
+from mrp_check.sources import uses
+from mrp_check.student.cmake import Model
+from mrp_check.student.package import Package
+
+# What a program does that is a node, or was meant to be one.
+_ROSPY = re.compile(r"^[^#\n]*\b(?:init_node|rospy\.(?:Publisher|Subscriber|Service))\s*\(", re.M)
+_ROSCPP = re.compile(r"\bros::(?:init\b|NodeHandle\b)")
+_SECONDS = 5  # in which a node has to end on Ctrl-C
+_INIT = re.compile(r"^[^#\n]*\binit_node\s*\(", re.M)
+
+
+def spec(package: Package, model: Model) -> Spec:
+    """Return a Spec with each node of a package, by its executable's name, and nothing more."""
+    nodes = {node.name: node for node in [*_python(package, model), *_cpp(package, model)]}
+    end = specs.Shutdown(seconds=_SECONDS)
+    return Spec("no contract", {}, nodes, specs.Launch(""), end, is_contract=False)
+
+
+def is_script(package: Package, path: str) -> bool:
+    """Return whether a Python file is a node that can be started, not one that others import."""
+    if uses.is_test(path) or path == "setup.py" or not _ROSPY.search(package.text(path)):
+        return False
+    is_started = package.shebang(path) or package.is_executable(path)
+    return bool(is_started or _INIT.search(package.text(path)))
+
+
+def _python(package: Package, model: Model) -> Iterator[specs.Node]:
+    for path in package.of_kind("python"):
+        if is_script(package, path):
+            name = path.rsplit("/", 1)[-1]
+            yield specs.Node(name, "python", file=path, executable=name)
+
+
+def _cpp(package: Package, model: Model) -> Iterator[specs.Node]:
+    for name, target in model.executables().items():
+        sources = [file for file in model.all_sources(target) if file in package.files]
+        is_node = any(_ROSCPP.search(package.text(file)) for file in sources)
+        if is_node and not all(map(uses.is_test, sources)):
+            yield specs.Node(name, "cpp", executable=name)

@@ -1,0 +1,195 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Two packages without a contract: one as beginners write it, and one with several defects."""
+
+import check_rules
+
+_TALKER = """\
+#!/usr/bin/env python
+import rospy
+from std_msgs.msg import String
+
+
+def talk():
+    publisher = rospy.Publisher("chatter", String, queue_size=10)
+    rospy.init_node("talker", anonymous=True)
+    rate = rospy.Rate(10)
+    while not rospy.is_shutdown():
+        publisher.publish("hello at %s" % rospy.get_time())
+        rate.sleep()
+
+
+if __name__ == "__main__":
+    try:
+        talk()
+    except rospy.ROSInterruptException:
+        pass
+"""
+_LISTENER = """\
+#!/usr/bin/env python
+import rospy
+from std_msgs.msg import String
+
+
+def hear(message):
+    rospy.loginfo("%s heard %s", rospy.get_caller_id(), message.data)
+
+
+def listen():
+    rospy.init_node("listener", anonymous=True)
+    rospy.Subscriber("chatter", String, hear)
+    rospy.spin()
+
+
+if __name__ == "__main__":
+    listen()
+"""
+_CPP_TALKER = """\
+#include <ros/ros.h>
+#include <std_msgs/String.h>
+
+int main(int argc, char** argv)
+{
+  ros::init(argc, argv, "talker");
+  ros::NodeHandle n;
+  ros::Publisher publisher = n.advertise<std_msgs::String>("chatter", 1000);
+  ros::Rate rate(10);
+  while (ros::ok())
+  {
+    std_msgs::String message;
+    message.data = "hello";
+    publisher.publish(message);
+    ros::spinOnce();
+    rate.sleep();
+  }
+  return 0;
+}
+"""
+_CPP_LISTENER = """\
+#include <ros/ros.h>
+#include <std_msgs/String.h>
+
+void hear(const std_msgs::String::ConstPtr& message)
+{
+  ROS_INFO("I heard: [%s]", message->data.c_str());
+}
+
+int main(int argc, char** argv)
+{
+  ros::init(argc, argv, "listener");
+  ros::NodeHandle n;
+  ros::Subscriber subscriber = n.subscribe("chatter", 1000, hear);
+  ros::spin();
+  return 0;
+}
+"""
+# It wants numbers on its command line, and a service that no other node has to offer.
+_CLIENT = """\
+#!/usr/bin/env python3
+import sys
+
+import rospy
+from std_srvs.srv import SetBool
+
+
+def ask(wanted):
+    rospy.wait_for_service("switch")
+    print(rospy.ServiceProxy("switch", SetBool)(wanted))
+
+
+if __name__ == "__main__":
+    if len(sys.argv) != 2:
+        print("usage: client.py 0|1")
+        sys.exit(1)
+    rospy.init_node("client")
+    ask(sys.argv[1] == "1")
+"""
+_CMAKE = """\
+cmake_minimum_required(VERSION 3.10)
+project(some_pkg)
+find_package(catkin REQUIRED COMPONENTS roscpp rospy std_msgs genmsg)
+add_message_files(FILES Num.msg)
+generate_messages(DEPENDENCIES std_msgs)
+catkin_package()
+include_directories(${catkin_INCLUDE_DIRS})
+add_executable(talker src/talker.cpp)
+target_link_libraries(talker ${catkin_LIBRARIES})
+add_executable(listener src/listener.cpp)
+target_link_libraries(listener ${catkin_LIBRARIES})
+catkin_install_python(PROGRAMS scripts/talker.py scripts/listener.py
+  DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
+"""
+
+
+def correct(folder):
+    """Make talkers and listeners in both languages, as the wiki has them, and no launch file.
+
+    With `genmsg`, a script without a first line that catkin_install_python() starts, and what an
+    editor has left.
+    """
+    manifest = check_rules.MANIFEST.replace(
+        "<depend>rospy</depend>",
+        "<depend>rospy</depend>\n  <build_depend>genmsg</build_depend>\n"
+        "  <build_depend>message_generation</build_depend>\n"
+        "  <exec_depend>message_runtime</exec_depend>",
+    )
+    files = {
+        "package_DOT_xml": manifest,
+        "CMakeLists_DOT_txt": _CMAKE,
+        "msg__Num_DOT_msg": "int64 num\n",
+        "scripts__talker_DOT_py": _TALKER,
+        "scripts__listener_DOT_py": _LISTENER.split("\n", 1)[1],
+        "scripts__talker_DOT_py_DOT_save_DOT_1": "print 'an old one'\n",
+        "src__talker_DOT_cpp": _CPP_TALKER,
+        "src__listener_DOT_cpp": _CPP_LISTENER,
+    }
+    check_rules.make(folder, **files)
+    return folder
+
+
+_CMAKE_OF_SCRIPTS = """\
+cmake_minimum_required(VERSION 3.10)
+project(some_pkg)
+find_package(catkin REQUIRED COMPONENTS rospy std_msgs)
+catkin_package()
+"""
+_LAUNCH = """\
+<launch>
+  <param name="near/limt" value="3"/>
+  <node pkg="some_pkg" type="talker.py" name="talker"/>
+  <node pkg="some_pkg" type="near.py" name="near"/>
+  <node pkg="some_pkg" type="raises.py" name="raises">
+    <remap from="chater" to="heard"/>
+  </node>
+  <node pkg="some_pkg" type="number.py" name="number"/>
+  <node pkg="some_pkg" type="nobody.py" name="nobody"/>
+</launch>
+"""
+
+
+def faulty(folder):
+    """Make a package of scripts; each of them but the talker has one defect."""
+    python3 = _LISTENER.replace("env python", "env python3")
+    files = {
+        "package_DOT_xml": check_rules.MANIFEST.replace("<depend>std_msgs</depend>", ""),
+        "CMakeLists_DOT_txt": _CMAKE_OF_SCRIPTS,
+        "launch__all_DOT_launch": _LAUNCH,
+        "launch__broken_DOT_launch": "<launch>\n  <node>\n</launch>\n",
+        "scripts__talker_DOT_py": _TALKER.replace("env python", "env python3"),
+        "scripts__near_DOT_py": python3.replace('"chatter"', '"chater"').replace(
+            "    rospy.spin", '    rospy.get_param("~limit")\n    rospy.spin'
+        ),
+        "scripts__raises_DOT_py": python3.replace("message.data)", "message.text)"),
+        "scripts__number_DOT_py": python3.replace("String", "Int32"),
+        "scripts__ends_DOT_py": python3.replace("    rospy.spin()\n", ""),
+        "scripts__old_DOT_py": _LISTENER,
+        "scripts__print_DOT_py": python3.replace("    rospy.spin()", "    print 'ready'"),
+        "scripts__stays_DOT_py": python3.replace(
+            "    rospy.spin()",
+            "    import time\n    while True:\n        try:\n"
+            "            time.sleep(1)\n        except KeyboardInterrupt:\n            pass",
+        ),
+        "scripts__client_DOT_py": _CLIENT,
+    }
+    check_rules.make(folder, **files)
+    (folder / "scripts" / "ends.py").chmod(0o644)
+    return folder

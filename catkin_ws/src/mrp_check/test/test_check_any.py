@@ -1,0 +1,87 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Packages without a contract: what works is not reported, and what fails is, at its place."""
+
+import json
+import re
+
+import any_packages
+import jsonschema
+import pytest
+from mrp_check import check
+from mrp_check.contract.finding import ERROR, NOTE, WARNING
+from mrp_check.report import console, json_
+from mrp_check.student.package import Package
+from mrp_testing.proves import proves
+
+pytestmark = pytest.mark.slow
+
+# (severity, id, file and what stands in the line, what the message says)
+FOUND = [
+    (ERROR, "launch-file", "launch/broken.launch: <node>", ""),
+    (ERROR, "launch-nodes", 'launch/all.launch: "nobody.py"', "no executable of that name"),
+    (ERROR, "scripts", "scripts/old.py: env python", "asks for 'python'"),
+    (ERROR, "scripts", "scripts/ends.py: #!", "is not executable"),
+    (ERROR, "python-syntax", "scripts/print.py: print", "print is a function"),
+    (ERROR, "spin", "scripts/ends.py: ", "ends by itself|never calls"),
+    (ERROR, "exit", "scripts/stays.py: ", "does not end on Ctrl-C"),
+    (ERROR, "topic", 'scripts/near.py: "chater"', "publishes on /chatter|nobody publishes"),
+    (ERROR, "type", "scripts/number.py: Int32", "std_msgs/String"),
+    (ERROR, "python-names", "scripts/raises.py: message.text", "text"),
+    (WARNING, "dependencies", "package.xml: depend", "does not name std_msgs"),
+    (WARNING, "topic", "launch/all.launch: <remap", "uses no such name"),
+    (WARNING, "starts", "scripts/near.py: ~limit", "sets limt"),
+    (NOTE, "starts", "scripts/client.py: switch", "waits for the service switch"),
+    (NOTE, "starts", "scripts/client.py: ", "waits for arguments"),
+]
+
+
+def checked(folder):
+    return check.check(Package(folder), None, timeout=300)
+
+
+def shown(findings):
+    return "\n".join(f"{f.severity} {f.id} {f.file}:{f.line} {f.message}" for f in findings)
+
+
+@proves("The last lines name what only a contract can say.")
+def test_what_beginners_write_has_no_error(tmp_path, report_schema):
+    report = checked(any_packages.correct(tmp_path / "some_pkg"))
+    # Installed, the script without a first line could not be started.
+    wrong = [
+        one
+        for one in report.findings
+        if one.severity != NOTE and (one.id, one.file) != ("scripts", "scripts/listener.py")
+    ]
+    assert (report.verdict, shown(wrong)) == (check.MET, ""), report.reason
+    assert {"values", "rate", "queue"} <= {*report.left_out}
+    assert "Left out, as only a contract can say it: " in console.text(report)
+    jsonschema.validate(json.loads(json_.text(report)), report_schema)
+
+
+@proves(
+    "Any ROS 1 package of nodes can be checked, with --any.",
+    "The checker builds it, starts each node by itself and each launch file, and reports what "
+    "fails.",
+    "An error was seen to fail, or breaks a rule without which nothing starts.",
+    "All else is a warning or a note.",
+    "A launch file runs if it can start without arguments.",
+    "The nodes that no launch file starts run together, too.",
+    "A node that needs a service, a parameter or arguments waits for them: that is a note.",
+)
+def test_each_defect_is_found_at_its_place(tmp_path):
+    folder = any_packages.faulty(tmp_path / "some_pkg")
+    report = checked(folder)
+    missed = [one for one in FOUND if not any(is_told(f, folder, *one) for f in report.findings)]
+    assert not missed, shown(report.findings)
+    errors = [f for f in report.findings if f.severity == ERROR and not f.consequence_of]
+    others = [f for f in errors if not any(is_told(f, folder, *one) for one in FOUND)]
+    assert not others, shown(others)
+    assert not [f for f in report.findings if f.file == "scripts/talker.py"]
+
+
+def is_told(finding, folder, severity, id_, where, message):
+    file, text = where.split(": ", 1)
+    if (finding.severity, finding.id, finding.file) != (severity, id_, file):
+        return False
+    lines = (folder / file).read_text().splitlines()
+    return text in lines[finding.line - 1] and bool(re.search(message, finding.message))
