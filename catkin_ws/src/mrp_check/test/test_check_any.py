@@ -59,14 +59,13 @@ def test_what_beginners_write_has_no_error(tmp_path, report_schema):
 
 
 @proves(
-    "Any ROS 1 package of nodes can be checked, with --any.",
-    "The checker builds it, starts each node by itself and each launch file, and reports what "
-    "fails.",
-    "An error was seen to fail, or breaks a rule without which nothing starts.",
-    "All else is a warning or a note.",
-    "A launch file runs if it can start without arguments.",
-    "The nodes that no launch file starts run together, too.",
-    "A node that needs a service, a parameter or arguments waits for them: that is a note.",
+    "With --any, the checker takes any ROS 1 package of nodes: it builds the package, runs each "
+    "node by itself and under each launch file, and reports what fails.",
+    "An error was seen to fail, or breaks a rule without which nothing starts; all else is a "
+    "warning or a note.",
+    "Each launch file that needs no arguments is run, and all nodes run together if one of them "
+    "is in no launch file.",
+    "A node that needs a service, a parameter or arguments waits for them: that is no error.",
 )
 def test_each_defect_is_found_at_its_place(tmp_path):
     folder = any_packages.faulty(tmp_path / "some_pkg")

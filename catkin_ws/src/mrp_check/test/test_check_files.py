@@ -338,8 +338,8 @@ def test_package_that_this_machine_has_not_is_not_the_students_fault(tmp_path):
     ],
 )
 @proves(
-    "A ROS package that this machine has not makes no error.",
-    "The checker names the Debian package, or says that Debian has none.",
+    "A ROS package that this machine has not makes no error: the checker names its Debian package, "
+    "or says that Debian has none.",
 )
 def test_a_package_that_is_not_here_is_named_as_debian_has_it(
     name, language, debian, says, monkeypatch

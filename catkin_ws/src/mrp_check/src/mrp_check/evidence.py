@@ -34,8 +34,10 @@ def cmake(case: Case) -> str | None:
 
 
 def launch(case: Case) -> str | None:
-    is_read = case.launch and not case.launch.error
-    return None if is_read else "roslaunch cannot read the launch file"
+    if case.launch and not case.launch.error:
+        return None
+    is_there = case.package.of_kind("launch")
+    return "roslaunch cannot read the launch file" if is_there else "there is no launch file"
 
 
 def built(case: Case) -> str | None:
