@@ -37,6 +37,7 @@ class Use(typing.NamedTuple):
     firm: bool  # whether not to declare it is an error: of some, others bring them along
 
 
+_ALL = 20000  # a Debian release has more packages; without its lists, apt knows the installed ones
 # Python modules whose Debian package is called otherwise.
 _DEBIAN = {"cv2": "python3-opencv", "PIL": "python3-pil", "OpenGL": "python3-opengl"}
 
@@ -58,12 +59,13 @@ def absent(name: str, language: str) -> str:
 
 @functools.lru_cache(maxsize=None)
 def _debian_packages() -> set[str]:
-    """Return the names of all packages that apt knows of; none where there is no apt."""
+    """Return the names of all packages that apt knows of; none where it knows only a part."""
     try:
         done = subprocess.run(["apt-cache", "pkgnames"], stdout=subprocess.PIPE, text=True)
     except OSError:
         return set()
-    return set(done.stdout.split())
+    names = set(done.stdout.split())
+    return names if len(names) >= _ALL else set()
 
 
 @functools.lru_cache(maxsize=None)
