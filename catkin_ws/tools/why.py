@@ -12,6 +12,7 @@ in defects/. Its fields:
     Why: The terminal ...          the cause, in one or two sentences
     Fix: Source ...                what to do, in one or two sentences
     Page: wrong#there-is-no-master where the pages say more
+    Above: yes                     the cause stands above: one of such entries is enough
     Try: rostopic list             the commands that make ROS print it
     Needs: master                  what they need: see tests/test_why.py, or docker/test/test_why.py
 
@@ -37,7 +38,7 @@ from mrp_check.contract import defects  # noqa: E402
 FOLDER = WORKSPACE / "why"
 ANSWERS = 3
 REQUIRED, SEVERAL = ("Shows", "Why", "Fix", "Try"), ("Shows", "Also")
-FIELDS = (*REQUIRED, "Also", "Page", "Needs")
+FIELDS = (*REQUIRED, "Also", "Page", "Above", "Needs")
 
 # What differs from one run to the next, and from one machine to another.
 _MASKS = (
@@ -52,14 +53,24 @@ _MASKS = (
 # Of a path, only the last part counts, and whether it is that of ROS's own packages.
 _FOLDERS = re.compile(r"(?<![\w.])~?(/opt/ros/\w+)?/(?:[^\s/:;,'\"()\[\]<>]+/)*")
 _WORD = re.compile(r"[^\W\d_]+|\d+")
+# A name in quotes or brackets is somebody's own: that of a package, a topic, a parameter.
+_NAME = re.compile(r"""'[^'\s]+'|"[^"\s]+"|\[[^][\s]+\]""")
 # A text is near an entry if it has this part of the entry's words, or the entry this part of its.
 _OF_ENTRY, _OF_TEXT = 0.5, 0.7
 _TOGETHER = 3  # lines: long messages are broken into that many
 # Lines around any error, which say nothing of it.
 _EVERYWHERE = re.compile(
     r'\s*(?:Traceback \(most recent call last\):|File "[^"]*", line \d+, in \S+'
-    r"|The traceback for the exception was written to the log file)\s*"
+    r"|The traceback for the exception was written to the log file"
+    r"|\.\.\. logging to .*|Checking log directory .*|Press Ctrl-C to interrupt"
+    r"|Done checking log file .*|started roslaunch server .*|ROS_MASTER_URI=.*"
+    r"|auto-starting new master|setting /run_id .*|started core service .*"
+    r"|process\[.*\]: started with pid .*"
+    r"|all processes on machine have died.*|(?:\.\.\. )?shutting down processing monitor.*"
+    r"|-- (?:Using|Found) .*|\[ *\d+%\] .*)\s*"
 )
+# A line of code in a traceback, below the line that names its file: the error stands further below.
+_CODE = re.compile(r'^([ \t]*)File "[^"\n]*", line \d+.*\n\1[ \t]+\S.*$', re.MULTILINE)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -74,6 +85,7 @@ class Entry:
     try_: str
     also: tuple = ()
     page: str = ""
+    above: str = ""
     needs: str = ""
     defect: defects.Defect = None
 
@@ -149,23 +161,26 @@ class Index:
         self._entries = found
         self._table = sqlite3.connect(":memory:")
         self._table.execute("CREATE VIRTUAL TABLE texts USING fts5(words, entry UNINDEXED)")
-        self._words = []
+        self._known = set()
+        self._sure = []  # for each text: its words, without names if there are others
         for number, one in enumerate(found):
             for text in (*one.shows, *one.also):
-                words = _words(" ".join(shown_on(text)))
-                self._words.append(words)
+                line = " ".join(shown_on(text))
+                words = _words(line)
+                self._known.update(words)
+                self._sure.append(set(_words(_NAME.sub(" ", mask(line))) or words))
                 self._table.execute("INSERT INTO texts VALUES (?, ?)", (" ".join(words), number))
-        self._known = set(itertools.chain(*self._words))
 
     def nearest(self, text, count=ANSWERS):
         """Return the entries that are near to a text, the nearest one first."""
         best = {}
         for words in _passages(text):
             for row, number, score in self._search(words):
-                if score > best.get(number, 0) and self._is_near(words, self._words[row - 1]):
+                if score > best.get(number, 0) and _is_near(set(words), self._sure[row - 1]):
                     best[number] = score
-        ranked = sorted(best, key=lambda number: -best[number])
-        return [self._entries[number] for number in ranked[:count]]
+        ranked = [self._entries[number] for number in sorted(best, key=lambda one: -best[one])]
+        ends = [one for one in ranked if one.above][1:]
+        return [one for one in ranked if one not in ends][:count]
 
     def _search(self, words):
         """Yield (row, number of the entry, score) of all texts that have one of the words."""
@@ -178,11 +193,13 @@ class Index:
             )
             yield from self._table.execute(query, (" OR ".join(sorted(terms)),))
 
-    def _is_near(self, words, others):
-        shared = set(words) & set(others)
-        enough = len(shared) > 1 or len(set(others)) == 1
-        of_entry, of_text = len(shared) / len(set(others)), len(shared) / len(set(words))
-        return enough and (of_entry >= _OF_ENTRY or of_text >= _OF_TEXT)
+
+def _is_near(words, others):
+    shared = words & others
+    enough = len(shared) > 1 or len(others) == 1
+    return enough and (
+        len(shared) / len(others) >= _OF_ENTRY or len(shared) / len(words) >= _OF_TEXT
+    )
 
 
 def _words(text):
@@ -192,6 +209,7 @@ def _words(text):
 
 def _passages(text):
     """Yield the words of each line of a text, and of lines that follow each other."""
+    text = _CODE.sub("", text)
     lines = [line for line in text.splitlines() if not _EVERYWHERE.fullmatch(line)]
     lines = [words for words in map(_words, lines) if words]
     seen = set()
