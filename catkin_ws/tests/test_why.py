@@ -13,6 +13,7 @@ import sysconfig
 import check_sets
 import doctor
 import pytest
+import rospkg
 import why
 from front_door import environment, make
 from mrp_check.building import configuring, cpp_words
@@ -78,8 +79,17 @@ def known_compiler(tmp_path_factory):
     return str(path)
 
 
+@pytest.fixture(scope="session")
+def roscore(tmp_path_factory):
+    """The folder of a roscore.xml that knows ROS's version: roslaunch asks for it otherwise."""
+    folder = tmp_path_factory.mktemp("etc")
+    text = pathlib.Path(rospkg.get_etc_ros_dir(), "roscore.xml").read_text()
+    (folder / "roscore.xml").write_text(re.sub('command="rosversion [^"]*"', 'value="1"', text))
+    return str(folder)
+
+
 @pytest.fixture
-def env(request, tmp_path, known_compiler):
+def env(request, tmp_path, known_compiler, roscore):
     """The environment of a user with a home of its own, and a master if the entry needs one. A
     master that entries share would go on to know nodes that were ended and could not say so."""
     # Below make, a make says make[1].
@@ -89,7 +99,9 @@ def env(request, tmp_path, known_compiler):
     if "roscpp" in needs:
         env["CPLUS_INCLUDE_PATH"] = str(request.getfixturevalue("headers"))
     env.update(HOME=str(tmp_path), LC_ALL="C.UTF-8", PORT=str(port), ROS_MASTER_URI=uri_of(port))
-    env.update(WORKSPACE=str(WORKSPACE), CMAKE_TOOLCHAIN_FILE=known_compiler)
+    env.update(WORKSPACE=str(WORKSPACE), CMAKE_TOOLCHAIN_FILE=known_compiler, ROS_ETC_DIR=roscore)
+    # roslaunch imports distutils: that of setuptools takes as long as half of ROS.
+    env["SETUPTOOLS_USE_DISTUTILS"] = "stdlib"
     with master(port) if "master" in needs else contextlib.nullcontext():
         yield env
 
