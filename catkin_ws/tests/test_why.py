@@ -8,6 +8,7 @@ import pathlib
 import re
 import signal
 import subprocess
+import sys
 import sysconfig
 
 import check_sets
@@ -100,8 +101,10 @@ def env(request, tmp_path, known_compiler, roscore):
         env["CPLUS_INCLUDE_PATH"] = str(request.getfixturevalue("headers"))
     env.update(HOME=str(tmp_path), LC_ALL="C.UTF-8", PORT=str(port), ROS_MASTER_URI=uri_of(port))
     env.update(WORKSPACE=str(WORKSPACE), CMAKE_TOOLCHAIN_FILE=known_compiler, ROS_ETC_DIR=roscore)
-    # roslaunch imports distutils: that of setuptools takes as long as half of ROS.
-    env["SETUPTOOLS_USE_DISTUTILS"] = "stdlib"
+    # roslaunch imports distutils: that of setuptools takes as long as half of ROS. From Python 3.12
+    # on, there is no other.
+    if sys.version_info < (3, 12):
+        env["SETUPTOOLS_USE_DISTUTILS"] = "stdlib"
     with master(port) if "master" in needs else contextlib.nullcontext():
         yield env
 
