@@ -123,8 +123,8 @@ catkin_install_python(PROGRAMS scripts/talker.py scripts/listener.py
 def correct(folder):
     """Make talkers and listeners in both languages, as the wiki has them, and no launch file.
 
-    With `genmsg`, a script without a first line that catkin_install_python() starts, and what an
-    editor has left.
+    With `genmsg`, scripts that only catkin_install_python() starts, a node that returns 3 in the
+    end, and what an editor has left.
     """
     manifest = check_rules.MANIFEST.replace(
         "<depend>rospy</depend>",
@@ -136,11 +136,11 @@ def correct(folder):
         "package_DOT_xml": manifest,
         "CMakeLists_DOT_txt": _CMAKE,
         "msg__Num_DOT_msg": "int64 num\n",
-        "scripts__talker_DOT_py": _TALKER,
+        "scripts__talker_DOT_py": _TALKER.replace("env python", "python"),
         "scripts__listener_DOT_py": _LISTENER.split("\n", 1)[1],
         "scripts__talker_DOT_py_DOT_save_DOT_1": "print 'an old one'\n",
         "src__talker_DOT_cpp": _CPP_TALKER,
-        "src__listener_DOT_cpp": _CPP_LISTENER,
+        "src__listener_DOT_cpp": _CPP_LISTENER.replace("return 0", "return 3"),
     }
     check_rules.make(folder, **files)
     return folder
@@ -173,6 +173,7 @@ def faulty(folder):
         "package_DOT_xml": check_rules.MANIFEST.replace("<depend>std_msgs</depend>", ""),
         "CMakeLists_DOT_txt": _CMAKE_OF_SCRIPTS,
         "launch__all_DOT_launch": _LAUNCH,
+        "launch__asks_DOT_launch": '<launch>\n  <param name="a" value="$(arg who)"/>\n</launch>\n',
         "launch__broken_DOT_launch": "<launch>\n  <node>\n</launch>\n",
         "scripts__talker_DOT_py": _TALKER.replace("env python", "env python3"),
         "scripts__near_DOT_py": python3.replace('"chatter"', '"chater"').replace(
@@ -182,7 +183,7 @@ def faulty(folder):
         "scripts__number_DOT_py": python3.replace("String", "Int32"),
         "scripts__ends_DOT_py": python3.replace("    rospy.spin()\n", ""),
         "scripts__old_DOT_py": _LISTENER,
-        "scripts__print_DOT_py": python3.replace("    rospy.spin()", "    print 'ready'"),
+        "scripts__print_DOT_py": _LISTENER.replace("    rospy.spin()", "    print 'ready'"),
         "scripts__stays_DOT_py": python3.replace(
             "    rospy.spin()",
             "    import time\n    while True:\n        try:\n"

@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The checker's rules about files: text, manifest, CMake, scripts; broken and alike."""
 
+import dataclasses
+import re
+
 import check_rules
 import pytest
 from check_rules import CMAKE, MANIFEST, file_findings, told
@@ -95,6 +98,18 @@ def test_missing_dependency_in_the_manifest(tmp_path):
     assert "rospy" in finding.message
 
 
+def test_missing_dependency_that_is_not_here_either(tmp_path):
+    files = {"src__b_DOT_py": f"from some_other_msgs.msg import Odd\n{NODE}"}
+    package = check_rules.make(tmp_path, src__a_DOT_cpp="", **files)
+    without = dataclasses.replace(check_rules.PUB_SUB, is_contract=False)
+    found = file_findings(dependencies, package, spec=without)
+    assert [one.file for one in found if "some_other_msgs" in one.message] == [
+        "package.xml",
+        "CMakeLists.txt",
+    ]
+    assert file_findings(dependencies, package) == []
+
+
 def test_misspelt_dependency_is_its_own_lines_fault(tmp_path):
     text_ = MANIFEST.replace("<depend>rospy", "<depend>rosppy")
     (finding,) = dependency_findings(tmp_path, text_)
@@ -133,8 +148,9 @@ def test_comment_uses_nothing(source, tmp_path):
         ("catkin_package(CATKIN_DEPENDS roscpp rospy std_msgs)\n", "", 3, "catkin_package"),
         ("catkin_package(", "add_executable(b src/a.cpp)\ncatkin_package(", 5, "comes after"),
         ("catkin_install", "add_executable(b src/aa.cpp)\ncatkin_install", 5, "src/a.cpp is meant"),
+        ("catkin_package(", "catkin_package(INCLUDE_DIRS include ", 4, "no such folder"),
     ],
-    ids=range(4),
+    ids=range(5),
 )
 def test_broken_cmake(old, new, line, says, tmp_path):
     assert CMAKE.count(old) == 1
@@ -310,6 +326,57 @@ def test_what_makes_messages(generator, severities, tmp_path):
         msg__A_DOT_msg="int32 a\n",
     )
     assert [finding.severity for finding in file_findings(messages, package)] == severities
+
+
+@pytest.mark.parametrize(
+    ("without", "file", "says"),
+    [
+        ("", "", ""),
+        ("add_dependencies(a some_pkg_gencpp)\n", "CMakeLists.txt: add_exec", "does not wait"),
+        ("generate_messages()\n", "CMakeLists.txt: add_service_files", "never calls generate"),
+        ("add_service_files(FILES Ask.srv)\n", "CMakeLists.txt: find_pac", "add_service_files()"),
+    ],
+)
+def test_own_service_is_made_before_it_is_used(without, file, says, tmp_path):
+    more = (
+        "add_service_files(FILES Ask.srv)\ngenerate_messages()\ncatkin_package()\n"
+        "add_executable(a src/a.cpp)\nadd_dependencies(a some_pkg_gencpp)\n"
+    )
+    text_ = re.sub(r"catkin_package\(.*\n", more.replace(without, ""), CMAKE)
+    package = check_rules.make(
+        tmp_path,
+        package_DOT_xml=MANIFEST.replace(
+            "</package>",
+            "<depend>message_generation</depend><depend>message_runtime</depend></package>",
+        ),
+        CMakeLists_DOT_txt=text_.replace("roscpp rospy", "message_generation roscpp rospy"),
+        srv__Ask_DOT_srv="---\n",
+        src__a_DOT_cpp="#include <some_pkg/AskRequest.h>\n",
+    )
+    found = [
+        f"{one.file}: {package.lines(one.file)[one.line - 1]} {one.message}"
+        for one in file_findings(messages, package)
+    ]
+    assert len(found) == bool(without)
+    assert all(one.startswith(file) and says in one for one in found), found
+
+
+@pytest.mark.parametrize(
+    ("said", "words"),
+    [
+        ("Messages depends on unknown pkg: odd_msgs (Missing find_package(odd_msgs?))", "odd_msgs"),
+    ],
+)
+def test_what_catkin_says_in_plain_words(said, words, tmp_path):
+    package = check_rules.make(tmp_path, CMakeLists_DOT_txt=CMAKE)
+    output = (
+        "CMake Error at /usr/share/catkin/cmake/catkin_package.cmake:302 (message):\n"
+        f"  {said}\nCall Stack (most recent call first):\n"
+        f"  {tmp_path}/CMakeLists.txt:4 (catkin_package)\n"
+    )
+    found = configuring.finding(package, output, tmp_path, check_rules.model_of(package))
+    assert (found.file, found.line) == ("CMakeLists.txt", 4)
+    assert words in found.message + found.fix + found.seen and "the page" not in found.fix
 
 
 def test_package_that_this_machine_has_not_is_not_the_students_fault(tmp_path):

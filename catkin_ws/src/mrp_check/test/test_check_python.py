@@ -201,6 +201,8 @@ def test_module_that_this_machine_has_not_is_not_the_students_fault(tmp_path):
     text = replaced("import rospy\n", "import rospy\nimport cv3\n")
     (finding,) = check_rules.python_findings(tmp_path, text)
     assert "csv" not in f"{finding.message} {finding.fix}"
+    text = replaced("import rospy\n", "import rospy\nfrom std_srvs.srv import Empty\n")
+    assert told(check_rules.python_findings(tmp_path, text)) == []
 
 
 @pytest.mark.parametrize(

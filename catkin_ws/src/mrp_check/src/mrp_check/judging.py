@@ -29,6 +29,11 @@ _WAITS = (
     (r"(?i)can.t open camera|VIDEOIO|/dev/(video|tty)\w*", "a device"),
     (r"KeyError: ", "a parameter"),
 )
+# The same of a launch file: an argument, a variable of the environment, or another's launch file.
+_WANTED = (
+    r"argument \w+ has no value|requires the '\w+' arg|environment variable \S+ is not set"
+    r"|is not there: \S+\."
+)
 _ENDED = ("KeyboardInterrupt", "ROSInterruptException")
 
 
@@ -45,6 +50,9 @@ def judged(case: Case, findings: Iterable[Finding], seen: Iterable[Finding]) -> 
     findings: what is told; seen: all that was found, also what is not told twice
     """
     findings = list(findings)
+    for finding in findings:
+        if finding.consequence_of == "scripts" and not _is_of_scripts(case, finding):
+            finding.consequence_of = None
     failed = [f for f in seen if f.stage in _SEEN and f.severity == ERROR]
     confirmed: set[tuple[str | None, str | None]] = {(f.id, f.file) for f in failed}
     confirmed |= {(f.consequence_of, None) for f in findings if f.stage in _SEEN}
@@ -64,6 +72,17 @@ def judged(case: Case, findings: Iterable[Finding], seen: Iterable[Finding]) -> 
         if finding.consequence_of not in errors:
             finding.consequence_of = None
     return kept
+
+
+def _is_of_scripts(case: Case, finding: Finding) -> bool:
+    """Return whether a finding can follow from one about a script.
+
+    What kept Linux from starting it is mended in the copy that ran: see any_case.py.
+    """
+    if finding.stage not in ("run", "stop"):
+        return any(script.path not in case.package.files for script in case.model.scripts)
+    node = case.nodes.get(finding.node or "")
+    return not (node and node.is_up)
 
 
 def _is_rule(case: Case, finding: Finding) -> bool:
@@ -91,7 +110,7 @@ def _came_up(case: Case, file: str | None) -> bool:
 
 def _wants(finding: Finding) -> str | None:
     """Return what a launch file wants from its caller or from another package, or None."""
-    found = re.search(r"argument (\w+) has no value|is not there: (\S+)\.", finding.message)
+    found = re.search(_WANTED, finding.message)
     return found.group(0) if found else None
 
 
@@ -100,8 +119,11 @@ def _of_run(case: Case, finding: Finding) -> None:
     node = case.nodes.get(finding.node or "") if "nodes" in vars(case) else None
     if node is None:
         return
-    if finding.id == "exit" and any(word in finding.message for word in _ENDED):
-        finding.severity = WARNING
+    if finding.id == "exit":
+        # Whatever its exit code, it ended: roslaunch asks for no more.
+        ends = node.direct and (node.direct.code or 0) > 0
+        if ends or any(word in finding.message for word in _ENDED):
+            finding.severity = WARNING
     elif finding.stage == "run" and finding in node.not_up:
         _of_start(node, finding)
 
@@ -133,10 +155,8 @@ def _is_left_alone(node: Node) -> bool:
 
 
 def _is_unbuilt(case: Case, finding: Finding) -> bool:
-    """Return whether a node has no executable only as something on this machine is missing."""
-    return (
-        finding.id == "starts"
-        and finding.consequence_of is None
-        and "has no executable" in finding.message
-        and case.built is None
-    )
+    """Return whether a node only lacks what was not built, as this machine misses something."""
+    no_executable = finding.id == "starts" and "has no executable" in finding.message
+    own_module = f"No module named '{case.package.name}'" in finding.message
+    alone = finding.consequence_of is None and no_executable
+    return case.built is None and (alone or own_module)

@@ -178,6 +178,15 @@ _WORDS: Sequence[tuple[str | None, str, Callable[..., _Said] | _Said, str]] = (
     (None, r'Unknown CMake command "(\w+)"', _unknown_command, "cmake-unknown-command"),
     *(("find_package", shape, _no_package, "package-config-not-found") for shape in _NOT_FOUND),
     (
+        None,
+        r"Messages depends on unknown pkg: (\w+)",
+        (
+            "generate_messages() names a package that find_package() does not find.",
+            "Name only what the definitions use, and find it with find_package(catkin ...).",
+        ),
+        "",
+    ),
+    (
         "catkin_package",
         r"catkin_package\(\) .*?'(\w+)'",
         lambda *given: (

@@ -10,6 +10,7 @@ from mrp_check.case import Case
 from mrp_check.contract.finding import Finding
 from mrp_check.contract.requirements import Requirement, Rule
 from mrp_check.student.cmake import Model
+from mrp_check.student.package import Package
 
 FILE = "CMakeLists.txt"
 
@@ -18,6 +19,7 @@ def _findings(case: Case) -> Iterator[Finding]:
     if FILE in case.package.files:
         yield from _missing_calls(case.model)
         yield from _too_late(case.model)
+        yield from _no_folder(case.package, case.model)
     else:
         yield Finding(
             "cmake",
@@ -66,6 +68,24 @@ def _too_late(model: Model) -> Iterator[Finding]:
             f" catkin_package() in line {call.line}",
             fix="Move catkin_package() up, to before the first target.",
         )
+
+
+def _no_folder(package: Package, model: Model) -> Iterator[Finding]:
+    """Yield a finding for each folder that catkin_package() passes on, and that is not there."""
+    for name in model.include_dirs:
+        if model.catkin_package and not name.startswith(("/", "$")):
+            if not (package.root / name).is_dir():
+                yield Finding(
+                    "cmake",
+                    f"catkin_package() names the folder {name} in INCLUDE_DIRS, and there is no"
+                    " such folder: CMake stops.",
+                    model.catkin_package.file,
+                    model.catkin_package.line,
+                    expected="a folder of the package",
+                    seen=f"INCLUDE_DIRS {name}",
+                    fix=f"Take INCLUDE_DIRS {name} out; or make the folder, with a file in it, as"
+                    " git keeps no empty folder.",
+                )
 
 
 RULE = Rule(

@@ -21,7 +21,8 @@ from mrp_check.student.package import Package
 
 def _findings(case: Case) -> Iterator[Finding]:
     package, model, (manifest, _) = case.package, case.model, case.manifest
-    used = uses.of(package, model)
+    is_known = uses.is_ros_package if case.spec.is_contract else uses.is_called_so
+    used = uses.of(package, model, is_known)
     # Which packages the exercise is about: to leave one of them out is the manifest's fault. Any
     # other is the fault of the line that uses it.
     own = {"roscpp", "rospy"} | {topic.type.split("/")[0] for topic in case.spec.topics.values()}

@@ -41,7 +41,7 @@ def _of(node: Node, direct: Alone, asked: float, shutdown: Shutdown) -> Iterator
     code, traceback = direct.code, places.traceback(lines)
     if direct.stopped_in is None:
         # If roslaunch could end it, the machine was too busy.
-        if _needs_force(node.name, places.observed.launch):
+        if all(_needs_force(name, launch) for name, launch in _runs(node)):
             yield finding(
                 f"{node.name} does not end on Ctrl-C: it was still there after"
                 f" {shutdown.seconds:g} s.",
@@ -98,6 +98,18 @@ def _cause(
         return traceback[0], f" {traceback[1]}: {traceback[2]}"
     said = last_words(lines)
     return _leaves(node, direct.code), f" Its last words: {said}" if said else ""
+
+
+def _runs(node: Node) -> list[tuple[str, LaunchResult | None]]:
+    """Return the name of a node under roslaunch, with what was seen there, of each time it ran."""
+    observed = node.places.observed
+    own: list[tuple[str, LaunchResult | None]] = [
+        (path.rsplit("/", 1)[-1], launched.seen)
+        for launched in observed.launches
+        for path, name in launched.nodes.items()
+        if name == node.name
+    ]
+    return own or [(node.name, observed.launch)]
 
 
 def _needs_force(name: str, launch: LaunchResult | None) -> bool:

@@ -19,13 +19,14 @@ from mrp_check.student.manifest import declared, last_dependency
 from mrp_check.student.package import Package
 
 FILE = "CMakeLists.txt"
+_KINDS = ("message", "service", "action")
 
 
 def _findings(case: Case) -> Iterator[Finding]:
     package, model, (manifest, _) = case.package, case.model, case.manifest
     for name, fields in case.spec.messages.items():
         yield from _definition(package, name, fields)
-    files = [path for path in package.of_kind("message") if path.count("/") <= 1]
+    files = [path for path in package.of_kind(*_KINDS) if path.count("/") <= 1]
     if not files and not model.message_files or not model.complete and model.catkin is None:
         return
     yield from _in_cmake(case, files)
@@ -50,17 +51,18 @@ def _in_cmake(case: Case, files: list[str]) -> Iterator[Finding]:
     for path in files:
         file = path.rsplit("/", 1)[-1]
         if path not in model.message_files and (not own or file[:-4] in own):
+            command = f"add_{case.package.kind(path)}_files"
             yield _message_finding(
-                f"{path} is not named in add_message_files(): no code is made of it.",
+                f"{path} is not named in {command}(): no code is made of it.",
                 call.line if call else catkin_line,
-                f"add_message_files(FILES {file})",
-                f"Add {file} to add_message_files(FILES ...).",
+                f"{command}(FILES {file})",
+                f"Add {file} to {command}(FILES ...).",
             )
     if call and model.message_files and model.generate is None:
         yield _message_finding(
             "CMakeLists.txt never calls generate_messages(): no code is made of the messages.",
             call.line,
-            "generate_messages(...) after add_message_files(...)",
+            f"generate_messages(...) after {call.command}(...)",
             "Add generate_messages(DEPENDENCIES std_msgs).",
         )
 
@@ -131,7 +133,7 @@ def _definition(package: Package, name: str, fields: Mapping[str, str]) -> Itera
 
 def _order(package: Package, model: Model) -> Iterator[Finding]:
     """Yield a finding for each target that uses a message's header before it is made."""
-    own = {path.rsplit("/", 1)[-1][:-4] for path in package.of_kind("message")}
+    own = {name for path in package.of_kind(*_KINDS) for name in uses.generated(path)}
     for target in model.targets.values():
         used = [
             (file, line, header)

@@ -41,11 +41,13 @@ def _findings(case: Case) -> Iterator[Finding]:
     package, model = case.package, case.model
     relayed = {s.path for s in model.scripts if s.by == "catkin_install_python"}
     yield from _listed(package, model)
+    # Without a contract, each node is a script, even one that Python cannot read.
+    nodes = () if case.spec.is_contract else {node.file for node in case.spec.nodes.values()}
     for path in package.of_kind("python"):
         if is_test(path) or path == "setup.py":
             continue
         shebang = package.shebang(path) or ""
-        is_node = path in case.started or path in {s.path for s in model.scripts}
+        is_node = path in case.started or path in nodes or path in {s.path for s in model.scripts}
         if is_node or shebang and _is_node(package, path):
             yield from _of(package, model, path, shebang, path in relayed)
             yield from _shadowing(path)

@@ -9,9 +9,10 @@ import pathlib
 import re
 import subprocess
 import typing
-from typing import Iterator
+from typing import Callable, Iterator
 
 from mrp_check.contract.resources import SHARES
+from mrp_check.contract.words import nearest
 from mrp_check.student.cmake import Model
 from mrp_check.student.package import Package
 
@@ -28,6 +29,23 @@ _LOOSE = set(
         " xmlrpcpp cpp_common rosgraph_msgs"
     ).split()
 )
+
+
+# The ending of a definition -> what is added to its name for what is made of it.
+_MADE = {
+    "msg": ("",),
+    "srv": ("", "Request", "Response"),
+    "action": (
+        *("Action", "ActionGoal", "ActionResult", "ActionFeedback"),
+        *("Goal", "Result", "Feedback"),
+    ),
+}
+
+
+def generated(path: str) -> list[str]:
+    """Return the names of the messages that are made of a .msg, .srv or .action file."""
+    name, _, ending = path.rsplit("/", 1)[-1].rpartition(".")
+    return [name + added for added in _MADE[ending]]
 
 
 class Use(typing.NamedTuple):
@@ -97,8 +115,19 @@ def is_test(path: str) -> bool:
     return path.split("/")[0] in ("test", "tests")
 
 
-def of(package: Package, model: Model) -> dict[str, Use]:
-    """Return name -> Use of the ROS packages that the sources use; tests are left out."""
+def is_called_so(name: str) -> bool:
+    """Return whether a name is that of a ROS package, on this machine or elsewhere."""
+    is_messages = name.endswith(("_msgs", "_srvs")) and not nearest(name, ["std_msgs"], 0.85)
+    return is_messages or is_ros_package(name)
+
+
+def of(
+    package: Package, model: Model, is_known: Callable[[str], bool] = is_ros_package
+) -> dict[str, Use]:
+    """Return name -> Use of the ROS packages that the sources use; tests are left out.
+
+    is_known: says of a name whether it is that of a ROS package
+    """
     built = {s for target in model.targets.values() for s in target.sources}
     found: dict[str, Use] = {}
     for file in package.of_kind("cpp", "header"):
@@ -106,7 +135,9 @@ def of(package: Package, model: Model) -> dict[str, Use]:
         if is_test(file) or package.kind(file) == "cpp" and model.complete and file not in built:
             continue
         for header, line in includes(package, file):
-            _add(found, package, package_of_header(header), Use(file, line, "cpp", True))
+            name = package_of_header(header)
+            if is_known(name):
+                _add(found, package, name, Use(file, line, "cpp", True))
     for file in package.of_kind("python"):
         if is_test(file) or file == "setup.py":
             continue
@@ -115,7 +146,9 @@ def of(package: Package, model: Model) -> dict[str, Use]:
         except (SyntaxError, ValueError, RecursionError, MemoryError):
             continue
         for name, line in _imports(tree):
-            _add(found, package, name.split(".")[0], Use(file, line, "python", True))
+            name = name.split(".")[0]
+            if is_known(name):
+                _add(found, package, name, Use(file, line, "python", True))
     return found
 
 
@@ -129,7 +162,7 @@ def _imports(tree: ast.AST) -> Iterator[tuple[str, int]]:
 
 
 def _add(found: dict[str, Use], package: Package, name: str, use: Use) -> None:
-    if name == package.name or not name or not is_ros_package(name):
+    if name == package.name or not name:
         return
     use = use._replace(firm=name not in _LOOSE or use.language == "cpp" and name == "roslib")
     if name not in found or found[name].language == "python" and use.language == "cpp":

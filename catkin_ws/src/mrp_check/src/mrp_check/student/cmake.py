@@ -152,8 +152,9 @@ class Model:
     components: ROS package -> Call, of find_package
     catkin: the Call of find_package(catkin ...), or None
     catkin_package: its Call, or None; late: the first target before it, or None
-    depends: the packages in CATKIN_DEPENDS
-    targets: name -> Target; scripts: list of Script; message_files: name -> Call
+    depends: the packages in CATKIN_DEPENDS; include_dirs: the folders in INCLUDE_DIRS
+    targets: name -> Target; scripts: list of Script; message_files: name -> Call, of services and
+        actions, too
     """
 
     def __init__(self, folder: pathlib.Path, calls: Iterable[Call], complete: bool) -> None:
@@ -170,6 +171,7 @@ class Model:
         self.generate: Call | None = None
         self.components: dict[str, Call] = {}
         self.depends: list[str] = []
+        self.include_dirs: list[str] = []
         self.targets: dict[str, Target] = {}
         self.scripts: list[Script] = []
         self.message_files: dict[str, Call] = {}
@@ -234,7 +236,9 @@ class Model:
             *("INCLUDE_DIRS", "LIBRARIES", "CATKIN_DEPENDS", "DEPENDS", "CFG_EXTRAS"),
             *("EXPORTED_TARGETS", "SKIP_CMAKE_CONFIG_GENERATION"),
         }
-        self.depends = sections(call.arguments, names).get("CATKIN_DEPENDS", [])
+        parts = sections(call.arguments, names)
+        self.depends = parts.get("CATKIN_DEPENDS", [])
+        self.include_dirs = parts.get("INCLUDE_DIRS", [])
 
     def _add_executable(self, call: Call, is_library: bool = False) -> None:
         name, *sources = call.arguments
@@ -297,10 +301,11 @@ class Model:
     def _add_message_files(self, call: Call) -> None:
         self.add_message_files = self.add_message_files or call
         parts = sections(call.arguments, {"FILES", "DIRECTORY", "NOINSTALL", "PACKAGE"})
-        folder = (parts.get("DIRECTORY") or ["msg"])[0]
+        ending = MESSAGES[call.command]
+        folder = (parts.get("DIRECTORY") or [ending])[0]
         files = parts.get("FILES")
         if files is None:
-            files = [path.name for path in (self.folder / folder).glob("*.msg")]
+            files = [path.name for path in (self.folder / folder).glob(f"*.{ending}")]
         for file in files:
             self.message_files[f"{folder}/{file}"] = call
 
@@ -308,6 +313,8 @@ class Model:
         self.generate = self.generate or call
 
 
+# Command -> the ending of what it makes code of, which is the name of its folder, too.
+MESSAGES = {"add_message_files": "msg", "add_service_files": "srv", "add_action_files": "action"}
 _UNDERSTOOD = {
     "project": Model._project,
     "find_package": Model._find_package,
@@ -320,7 +327,7 @@ _UNDERSTOOD = {
     "set_target_properties": Model._set_target_properties,
     "catkin_install_python": Model._catkin_install_python,
     "install": Model._install,
-    "add_message_files": Model._add_message_files,
+    **dict.fromkeys(MESSAGES, Model._add_message_files),
     "generate_messages": Model._generate_messages,
 }
 _MAY_BE_EMPTY = {"catkin_package", "generate_messages"}
