@@ -119,7 +119,10 @@ def _of_run(case: Case, finding: Finding) -> None:
     node = case.nodes.get(finding.node or "") if "nodes" in vars(case) else None
     if node is None:
         return
-    if finding.id == "exit":
+    own = rf"(No module named|cannot import name .* from) '{case.package.name}\b"
+    if case.built is None and re.search(own, finding.message):
+        finding.severity = NOTE  # it is not made where CMake failed
+    elif finding.id == "exit":
         # Whatever its exit code, it ended: roslaunch asks for no more.
         ends = node.direct and (node.direct.code or 0) > 0
         if ends or any(word in finding.message for word in _ENDED):
@@ -155,8 +158,10 @@ def _is_left_alone(node: Node) -> bool:
 
 
 def _is_unbuilt(case: Case, finding: Finding) -> bool:
-    """Return whether a node only lacks what was not built, as this machine misses something."""
-    no_executable = finding.id == "starts" and "has no executable" in finding.message
-    own_module = f"No module named '{case.package.name}'" in finding.message
-    alone = finding.consequence_of is None and no_executable
-    return case.built is None and (alone or own_module)
+    """Return whether a node has no executable only as something on this machine is missing."""
+    return (
+        finding.id == "starts"
+        and finding.consequence_of is None
+        and "has no executable" in finding.message
+        and case.built is None
+    )
