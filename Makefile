@@ -142,7 +142,7 @@ own-times:  ## fail if building and testing took longer than before; RECORD=1: k
 # The pages that it links to are built once.
 .PHONY: view
 view: packages-view $(BUILT_WHOLE)  ## watch the graph and the messages in a browser; end it with Ctrl-C
-	@[ -e $(SITE)/index.html ] || $(MAKE) docs > /dev/null
+	@[ -e $(SITE)/index.html ] || $(MAKE) docs
 	@$(IN_WORKSPACE) $(LOCAL) source devel/setup.bash; \
 	exec rosrun mrp_view view_node.py --tutorial $(SITE) $(VIEW_OPTIONS)
 

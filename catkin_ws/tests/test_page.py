@@ -44,7 +44,8 @@ def shown(site, tmp_path_factory):
     "std_msgs::UInt32 msg; makes a message, and msg.data is its only field.",
     "catkin_create_pkg has made both.",
     "Programs that later lines make go into devel/lib/mrp.",
-    "The first line of your own file names python, a program that Debian does not have.",
+    "The first line of your own file names python, a program that Debian does not install by "
+    "itself.",
     "Your copy has no tests, and it is built without mrp_testing.",
     "ROS does not need it here.",
     "source makes the new package known to this terminal, which you opened before the package was "
@@ -70,8 +71,8 @@ def shown(site, tmp_path_factory):
     "A new terminal that sources only over_ws knows the first workspace, too:",
     "Cause: devel remembers a folder that does not exist.",
     "source says nothing about it.",
-    "A setup.bash replaces what an earlier one has set, unless the one workspace was built over "
-    "the other.",
+    "A setup.bash replaces what an earlier one has set: it brings its own workspace, and those "
+    "over which it was built.",
     "add_dependencies for each C++ program that uses a message.",
     "catkin_python_setup() and setup.py for a module; no script with the package's name.",
     "rosmsg md5 with the type, in both terminals.",

@@ -7,6 +7,7 @@ test_claims.py sees whether the build fails.
 import ast
 
 import mutate_prose
+import pages
 import pytest
 import quote_claims
 import typed_numbers
@@ -198,6 +199,40 @@ def test_a_changed_sentence_keeps_its_reason_and_a_new_one_gets_one(tmp_path):
     assert quote_claims.wanted_list(sentences, listed) == wanted
     claims.write_list(tmp_path / "one.txt", "pages/one", wanted)
     assert claims.read_list(tmp_path / "one.txt") == wanted
+
+
+def test_what_is_true_at_its_place_alone_may_not_change_places(tmp_path):
+    page = [
+        sentence("node", heading=True),
+        sentence("A program."),
+        sentence("topic", heading=True),
+        sentence("A name."),
+        sentence("Python", typed=False, placed="Python"),
+        sentence("A picture of numbers", typed=False, placed="queue publisher_queue"),
+        sentence("made from data", typed=False),
+    ]
+    digits = [one for _, one in claims.order(page)]
+    claims.write_list(tmp_path / "one.txt", "pages/one", {"node": "heading"}, digits)
+    assert claims.read_list(tmp_path / "one.txt") == {"node": "heading"}
+
+    def first_moved(sentences, faults=()):
+        return [fault.page for fault in claims.moved(sentences, tmp_path, faults)]
+
+    assert first_moved(page) == []
+    assert first_moved(page[:-1]) == []
+    assert first_moved([page[2], page[1], page[0], *page[3:]]) == ["topic"]
+    other_tab = sentence("C++", typed=False, placed="C++")
+    assert first_moved([*page[:4], other_tab, *page[5:]]) == ["C++"]
+    other_picture = sentence("It", typed=False, placed="queue subscriber_queue")
+    assert first_moved([*page[:5], other_picture]) == ["queue subscriber_queue"]
+    assert first_moved(page[:3]) == ["topic"]
+    # A fault that says more is enough.
+    assert first_moved(page[:3], [claims.Fault("not listed", ("pages/one", 1))]) == []
+
+
+def test_each_page_has_its_order():
+    lists = [path for path in pages.LISTS.glob("*.txt") if path.stem not in pages.NOT_CHECKED]
+    assert lists and [path.stem for path in lists if not claims.read_order(path)] == []
 
 
 @pytest.mark.parametrize(

@@ -43,8 +43,8 @@ def workspaces(tmp_path_factory):
 
 @proves(
     "A terminal uses that of the workspace whose setup.bash it has sourced last.",
-    "A setup.bash replaces what an earlier one has set, unless the one workspace was built over "
-    "the other.",
+    "A setup.bash replaces what an earlier one has set: it brings its own workspace, and those "
+    "over which it was built.",
     "If two workspaces have a package of the same name, the terminal uses that of the one sourced "
     "last.",
 )

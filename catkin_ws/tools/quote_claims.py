@@ -159,15 +159,17 @@ def write(sentences):
     for page in dict.fromkeys(one.page for one in sentences):
         path = pages.LISTS / f"{claims.name_of(page)}.txt"
         listed = claims.read_list(path)
-        wanted = wanted_list([one for one in sentences if one.page == page], listed)
-        if page not in pages.NOT_CHECKED and wanted != listed:
+        mine = [one for one in sentences if one.page == page]
+        wanted, order = wanted_list(mine, listed), [digits for _, digits in claims.order(mine)]
+        if page not in pages.NOT_CHECKED and (wanted, order) != (listed, claims.read_order(path)):
             _say(path.relative_to(evidence.ROOT), listed, wanted)
-            claims.write_list(path, page, wanted)
+            claims.write_list(path, page, wanted, order)
 
 
 def show(sentences):
     """Print what does not fit together; return how much that is."""
     found = pages.faults(sentences)
+    found += claims.moved(sentences, pages.LISTS, found)
     for fault in found:
         where = fault.where if isinstance(fault.where, str) else "{}, line {}".format(*fault.where)
         print(f"{where}: {fault.text(evidence.all_tests())}\n")

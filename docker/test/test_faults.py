@@ -105,7 +105,7 @@ def flows_again(received, heard):
 @proves(
     "A publisher has one such queue for each of its subscribers, so a subscriber that cannot be "
     "reached does not hold up the others.",
-    "When the network comes back, the subscribers reconnect by themselves.",
+    "When the network comes back after a short cut, the connections go on by themselves.",
     "Some of the values that were sent meanwhile are lost.",
     "That subscriber loses values of each publisher, and the other subscriber loses none.",
 )
@@ -157,7 +157,8 @@ def test_cut_network_loses_nothing_where_the_queue_has_no_bound(nodes, image):
 
 @proves(
     "Running nodes go on, but a node that starts later finds no other node.",
-    "The master keeps registrations in memory, and a node registers only when it starts.",
+    "The master keeps registrations in memory, and a node registers a publisher or a subscriber "
+    "once, when it makes it.",
     "A restarted master knows no node until that node restarts, too.",
 )
 def test_restarted_master_knows_nobody_but_the_flow_goes_on(nodes):

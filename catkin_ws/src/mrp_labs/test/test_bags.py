@@ -210,7 +210,7 @@ class TestBags(unittest.TestCase):
     @proves(
         "Symptom: the file's name ends in .bag.active, and rosbag info says ERROR bag unindexed.",
         "Cause: the recording was killed.",
-        "rosbag record writes the index when it ends.",
+        "rosbag record completes the index when it ends.",
         "What was still in memory is lost.",
         "A bag that was not closed needs rosbag reindex.",
     )

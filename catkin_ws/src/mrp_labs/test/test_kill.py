@@ -144,7 +144,8 @@ class TestKill(unittest.TestCase):
         "Nodes that are connected go on when the master ends, but a node that starts after a new "
         "master hears nothing of the old ones.",
         "Nodes that are already connected go on.",
-        "A new master knows nothing of them: nodes register once, when they start.",
+        "A new master knows nothing of them: a node registers each publisher and subscriber once, "
+        "when it makes it.",
         "A node that starts later receives nothing from the old ones.",
         "Messages go from node to node: connected nodes do not need the master.",
         "The connection between the two nodes is still there, so messages flow.",

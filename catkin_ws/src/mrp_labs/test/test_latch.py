@@ -27,7 +27,8 @@ class TestLatch(unittest.TestCase):
         "A latched publisher keeps its last message, and sends it to each subscriber that "
         "connects later.",
         "The argument latch=True of rospy.Publisher latches a publisher.",
-        "If several latched publishers share a topic, a subscriber gets the last message of each.",
+        "If latched publishers of several nodes share a topic, a subscriber gets the last message "
+        "of each.",
         "The publisher keeps the message, not the topic: when the publisher ends, the message is "
         "gone.",
         "Two of the four publishers in this lab are latched.",

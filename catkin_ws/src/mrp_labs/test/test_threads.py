@@ -56,7 +56,7 @@ class TestThreads(unittest.TestCase):
         "Under ros::spin it cannot: one thread calls all callbacks.",
         "rospy calls the callback in a thread of the connection, whatever the loop does.",
         "In Python, the connection's own thread receives the message and calls the callback.",
-        "In C++, the callbacks are called meanwhile.",
+        "In C++, it calls the callbacks; in Python, other threads call them.",
         "The comment is right in C++: ros::spin calls all callbacks in the main thread.",
         "In Python each connection of a subscriber has a thread of its own.",
         "In rospy, each connection has a thread for its callbacks; in roscpp, you choose the main "

@@ -6,11 +6,17 @@ Each sentence of a page is one of two:
 - proved: it is marked with a test, and the test quotes it word for word;
 - listed: it stands in unproved/PAGE.txt, word for word, under the reason why no test proves it.
 
+A true sentence at a wrong place is false, such as the explanation of another term. So each list
+ends with the order of all that stands on its page, each as the first digits of its SHA-1.
+
 So no sentence, no quote and no list can change alone: what does not fit together is a Fault, which
 fails the build of the pages.
 """
 
 import difflib
+import hashlib
+import itertools
+import textwrap
 from typing import NamedTuple
 
 import typed_numbers
@@ -27,6 +33,9 @@ REASONS = {
     "entry": "is the cause or the fix of an error text: its entry has the commands that print it",
     "open": "claims something that no test proves yet",
 }
+
+
+_ORDER = "order"
 
 
 class Fault(NamedTuple):
@@ -73,6 +82,8 @@ MESSAGES = {
     "sentence, or give another reason.",
     "typed number": "This sentence has a number that is typed, and no test proves it. Take the "
     "number from where it is defined (extension/value.py), or leave it out.",
+    "moved": "This stood at another place, or something else stood here. Is all around it true? "
+    "Then 'make claims WRITE=1' keeps the new order.",
     "no such page": "No page has this name: delete its list of unproved sentences.",
     "no such reason": f"The list gives an unknown reason. Expected one of: {', '.join(REASONS)}.",
 }
@@ -93,9 +104,21 @@ def read_list(path):
     for line in path.read_text().splitlines() if path.exists() else []:
         if line.startswith("["):
             reason = line.strip("[]")
-        elif line and not line.startswith("#"):
+        elif line and not line.startswith("#") and reason != _ORDER:
             listed[plain(line)] = reason
     return listed
+
+
+def read_order(path):
+    """Return the order that ends a list, or [] if there is none."""
+    text = path.read_text() if path.exists() else ""
+    return text.partition(f"[{_ORDER}]")[2].split()
+
+
+def order(sentences):
+    """Return (Sentence, digits) of all that has its place on a page."""
+    texts = ((one, one.text if one.typed else one.placed) for one in sentences)
+    return [(one, hashlib.sha1(text.encode()).hexdigest()[:4]) for one, text in texts if text]
 
 
 def read_lists(folder):
@@ -103,8 +126,9 @@ def read_lists(folder):
     return {path.stem: read_list(path) for path in sorted(folder.glob("*.txt"))}
 
 
-def write_list(path, page, listed):
-    """Write a list: sentence -> reason, in the order in which they are to stand."""
+def write_list(path, page, listed, digits=()):
+    """Write a list: sentence -> reason, in the order in which they are to stand; and the order of
+    the page."""
     parts = [
         f"# The sentences of {page} that no test proves, word for word: see extension/claims.py."
     ]
@@ -112,6 +136,7 @@ def write_list(path, page, listed):
         lines = [sentence for sentence, its in listed.items() if its == reason]
         if lines:
             parts.append("\n".join([f"[{reason}]", *lines]))
+    parts.append("\n".join([f"[{_ORDER}]", *textwrap.wrap(" ".join(digits), 99)]))
     path.write_text("\n\n".join(parts) + "\n")
 
 
@@ -160,6 +185,22 @@ def _quotes(typed, checked, tests):
         for quote in quotes:
             where = f"{tests[proof].file}:{tests[proof].line}"
             yield Fault("not marked", where, "", quote, proof)
+
+
+def moved(sentences, folder, faults):
+    """Return the first fault of the order on each page that has no other fault.
+
+    sentences, faults: of all pages; folder: that of the lists
+    """
+    wrong = {one.where[0] for one in faults if isinstance(one.where, tuple)}
+    for page in dict.fromkeys(one.page for one in sentences):
+        kept = read_order(folder / f"{name_of(page)}.txt")
+        mine = order(one for one in sentences if one.page == page)
+        pairs = itertools.zip_longest(mine, kept, fillvalue=(None, ""))
+        other = next((one for one, old in pairs if one[1] != old), None)
+        if kept and other and page not in wrong:
+            one = other[0] or mine[-1][0]
+            yield Fault("moved", (page, one.line), one.text if one.typed else one.placed)
 
 
 def _language(sentence, tests):

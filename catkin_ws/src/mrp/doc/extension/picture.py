@@ -44,7 +44,8 @@ class Picture(SphinxDirective):
                 "</svg></div>",
             ]
         )
-        return nodes.raw(text, text, format="html", alt=alt, generated=True)
+        placed = f"{self.name} {self.arguments[0]}"
+        return nodes.raw(text, text, format="html", alt=alt, placed=placed, generated=True)
 
 
 class Graph(Picture):

@@ -106,7 +106,9 @@ def _check(app, env):
     """Warn of all that does not fit together; have the page of the tests written anew."""
     tests = evidence.all_tests()
     lists = claims.read_lists(LISTS)
-    for fault in claims.check(in_order(env), tests, lists, app.config.pages_not_checked_yet):
+    found = in_order(env)
+    faults = claims.check(found, tests, lists, app.config.pages_not_checked_yet)
+    for fault in [*faults, *claims.moved(found, LISTS, faults)]:
         where = fault.where
         if isinstance(where, tuple) and where[0] not in env.all_docs:
             where = f"{where[0]}.md:{where[1]}"
@@ -135,4 +137,4 @@ def setup(app):
     app.connect("env-purge-doc", _forget)
     app.connect("env-updated", _check)
     app.connect("build-finished", _write)
-    return {"parallel_read_safe": False, "env_version": 1}
+    return {"parallel_read_safe": False, "env_version": 2}

@@ -44,6 +44,8 @@ class Sentence(NamedTuple):
     numbers: those that are typed in it, see typed_numbers.py
     heading: whether it is a heading, or a term that is explained
     typed: whether somebody has typed it into the page; otherwise a directive has made it from data
+    placed: what is no sentence, but has its place on the page: a tab's label, which picture it is,
+        a box of the README; or ""
     """
 
     page: str
@@ -56,6 +58,7 @@ class Sentence(NamedTuple):
     numbers: tuple = ()
     heading: bool = False
     typed: bool = True
+    placed: str = ""
 
 
 def plain(text):
@@ -86,6 +89,8 @@ def of_markdown(path):
     document = publish_doctree(
         path.read_text(), source_path=str(path), parser=Parser(), settings_overrides=settings
     )
+    for node in document.findall(nodes.literal_block):
+        node["placed"] = node.astext()
     for node in list(document.findall(nodes.raw)):
         match = _COMMENT.fullmatch(node.astext().strip())
         mark = ProofMark(proof=match.group(1)) if match else None
@@ -100,7 +105,7 @@ def of_markdown(path):
 
 def _is_block(node):
     """Say whether a node is a paragraph or the like, or a picture that says what it shows."""
-    if isinstance(node, nodes.Element) and node.get("alt"):
+    if isinstance(node, nodes.Element) and (node.get("alt") or node.get("placed")):
         return True
     no_block = (nodes.Inline, nodes.FixedTextElement)
     return isinstance(node, nodes.TextElement) and not isinstance(node, no_block)
@@ -115,6 +120,7 @@ def _where(block, document, page):
         node = node.parent
     source, line = utils.get_source_line(block)
     section = next((node for node in around if isinstance(node, nodes.section)), None)
+    label = block.astext() if isinstance(block, nodes.label) else ""
     tabs = [node[0].astext() for node in around if node.get("type") == "tab"]
     return {
         "page": page,
@@ -127,8 +133,10 @@ def _where(block, document, page):
         and not any(node.get("literal_block") for node in around)
         and (block.get("claims") or not any(node.get("generated") for node in around))
         and not any(isinstance(node, nodes.system_message) for node in around)
+        and not block.get("placed")
         # The label of a tab is no sentence if it names the language alone.
-        and not (isinstance(block, nodes.label) and block.astext() in LANGUAGES),
+        and label not in LANGUAGES,
+        "placed": block.get("placed", label),
     }
 
 
