@@ -31,8 +31,9 @@ ALONE := unset ROS_IP ROS_NAMESPACE ROS_MASTER_URI; export ROS_HOSTNAME=localhos
 PACKAGES_run := run tools
 PACKAGES_build := $(PACKAGES_run) build
 PACKAGES_check := $(PACKAGES_run) check
+PACKAGES_learn := $(PACKAGES_check) learn
 PACKAGES_view := $(PACKAGES_build) view
-PACKAGES_test := $(PACKAGES_build) check view bench test
+PACKAGES_test := $(PACKAGES_build) check learn view bench test
 PACKAGES_test-all := $(PACKAGES_test) docs test-all
 PACKAGES_test-browser := $(PACKAGES_view) docs test browser
 PACKAGES_bench := $(PACKAGES_build) bench
@@ -116,10 +117,16 @@ check: packages-check  ## check the package at PKG against the tutorial's contra
 test-check: packages-test-all  ## check the packages that judge the checker; TESTS=NAME: those of a name
 	@$(IN_WORKSPACE) $(ALONE) /usr/bin/python3 -m pytest -n 3 --dist loadgroup -m sets $(if $(TESTS),-k "$(TESTS)") --junit-xml=$(RESULTS)/sets.xml src/mrp_check/test
 
+# On a terminal it fills the screen, and elsewhere it prints lines.
+.PHONY: learn
+learn: packages-learn  ## show one exercise after the other, and check each when you save it
+	@$(IN_ENVIRONMENT) PYTHONPATH=catkin_ws/src/mrp_check/src exec /usr/bin/python3 \
+	  -m mrp_check.cli.learn catkin_ws/exercises
+
 # HINT=1 shows the hint; RESET=1 begins the exercise anew. Exit code 1 only says: not yet.
 .PHONY: exercise
 exercise: packages-check  ## show the next exercise, or check it; HINT=1 gives a hint
-	@$(IN_ENVIRONMENT) PYTHONPATH=catkin_ws/src/mrp_check/src /usr/bin/python3 -m mrp_check.cli.exercise \
+	@$(IN_ENVIRONMENT) PYTHONPATH=catkin_ws/src/mrp_check/src /usr/bin/python3 -m mrp_check.cli.learn --once \
 	  $(if $(HINT),--hint) $(if $(RESET),--reset) catkin_ws/exercises || [ $$? = 1 ]
 
 # What else runs on this machine shows in the figures: end it before.

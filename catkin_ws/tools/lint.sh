@@ -37,10 +37,10 @@ check "catkin_lint" env -C catkin_ws tools/with_rosdep.sh catkin_lint --rosdistr
 check "clang-format" clang-format --dry-run --Werror "${cpp[@]}"
 check "ruff check" $tools/ruff check --no-cache --config catkin_ws/ruff.toml catkin_ws docker
 check "ruff format" $tools/ruff format --check --no-cache --config catkin_ws/ruff.toml catkin_ws docker
-# What another program looks at by its name: expat, roslaunch, and the confinement's watcher. What a
+# What another program looks at by its name: expat, roslaunch, prompt_toolkit, and the confinement's watcher. What a
 # defect's head says is read by the tests and by the pages.
 check "vulture" $tools/vulture catkin_ws/src/mrp_check/{src,scripts} \
-  --ignore-names '*ElementHandler,ignore_unset_args,cpu,open_files,file_size,erratum,fails,says,proves,finds,tells,missed,why'
+  --ignore-names '*ElementHandler,ignore_unset_args,cpu,open_files,file_size,erratum,fails,says,proves,finds,tells,missed,why,ttimeoutlen'
 check "mypy" $tools/mypy --no-error-summary --cache-dir $lint/mypy --config-file catkin_ws/mypy.ini \
   --package mrp_check
 check "eslint" $tools/node $lint/node_modules/.bin/eslint --max-warnings 0 \

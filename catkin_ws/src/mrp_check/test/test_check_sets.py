@@ -165,7 +165,8 @@ def assert_one_defect(findings, defect, folder, severities=("error",)):
     "Each exercise fails for its own reason, and its solution passes.",
     "It only reads the folder that you name: it builds and runs a copy, in a scratch folder.",
     "Some of these mistakes are exercises: packages that you fix, and that the checker checks.",
-    "Practise: make exercise gives you broken packages to fix, one after the other.",
+    "Practise: make learn gives you broken packages to fix, one after the other, and checks each "
+    "when you save it.",
 )
 @pytest.mark.parametrize("exercise", EXERCISES, ids=lambda one: one.name)
 def test_exercise_fails_for_its_own_reason_and_its_solution_passes(exercise, tmp_path, run_check):

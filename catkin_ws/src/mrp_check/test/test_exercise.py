@@ -1,17 +1,25 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What `make exercise` says, from the first exercise on; the check itself is not made here."""
+"""What the exercises do and say, from the first on; the check itself is not made here."""
 
 import shutil
+import subprocess
+import threading
 
+import check_sets
 import pytest
 from mrp_check import check
-from mrp_check.cli import exercise
+from mrp_check.cli import learn
+from mrp_check.contract import defects
 from mrp_check.contract.finding import WARNING, Finding
+from mrp_check.learning import plain, watch
+from mrp_check.learning.exercise import Course, ExerciseError
 from mrp_testing.proves import proves
+from mrp_testing.waiting import DEADLINE, wait_until
 
 pytestmark = pytest.mark.quick
 
-COUNT = len(exercise.exercises())
+EXERCISES = defects.exercises()
+COUNT = len(EXERCISES)
 FIRST = "01_a_parenthesis"
 
 
@@ -33,9 +41,9 @@ def checked(monkeypatch):
     return findings
 
 
-@proves("The first call makes a broken copy of the tutorial's package, and prints your task.")
+@proves("The first call prints your task.")
 def test_first_call_shows_the_task_and_makes_the_package(tmp_path, capsys, checked):
-    assert exercise.run(tmp_path / "mine") == exercise.PASSED
+    assert plain.run_once(tmp_path / "mine") == plain.PASSED
     printed = capsys.readouterr().out
     place = tmp_path / "mine" / FIRST
     assert f"Exercise 1 of {COUNT}\n\n# A parenthesis" in printed
@@ -45,16 +53,13 @@ def test_first_call_shows_the_task_and_makes_the_package(tmp_path, capsys, check
     assert checked.folders == []
 
 
-@proves(
-    "Then call make exercise again: it checks your copy.",
-    "If not, it prints what is still wrong, and where.",
-)
+@proves("The next call checks your copy.")
 def test_not_yet_says_what_and_where_and_not_how(tmp_path, capsys, checked):
-    exercise.run(tmp_path)
+    plain.run_once(tmp_path)
     capsys.readouterr()
     checked.append(Finding("spin", "It ends.", "src/a.py", 7, expected="spin", fix="Do this."))
     checked.append(Finding("exit", "It follows.", consequence_of="spin"))
-    assert exercise.run(tmp_path) == exercise.NOT_YET
+    assert plain.run_once(tmp_path) == plain.NOT_YET
     printed = capsys.readouterr().out
     assert f"Exercise 1 of {COUNT}, {FIRST}: not yet." in printed
     assert "src/a.py:7: It ends.\n  expected: spin\n" in printed
@@ -63,35 +68,34 @@ def test_not_yet_says_what_and_where_and_not_how(tmp_path, capsys, checked):
     assert checked.folders == [tmp_path / FIRST]
 
 
-@proves("If your copy meets the contract, without a warning, it goes on to the next exercise.")
+@proves("If your copy meets the contract, without a warning, the exercise is passed.")
 def test_a_warning_is_not_passed(tmp_path, checked):
-    exercise.run(tmp_path)
+    plain.run_once(tmp_path)
     checked.append(Finding("warnings", "It warns.", severity=WARNING))
-    assert exercise.run(tmp_path) == exercise.NOT_YET
+    assert plain.run_once(tmp_path) == plain.NOT_YET
 
 
-@proves(
-    "If your copy meets the contract, without a warning, it goes on to the next exercise.",
-    "Practise: make exercise gives you broken packages to fix, one after the other.",
-)
+@proves("If it passes, the next exercise follows.")
 def test_passed_goes_on_to_the_next_until_all_are_passed(tmp_path, capsys, checked):
     for number in range(1, COUNT + 1):
-        exercise.run(tmp_path)
+        plain.run_once(tmp_path)
         printed = capsys.readouterr().out
         assert f"Exercise {number} of {COUNT}\n" in printed
-    exercise.run(tmp_path)
+    plain.run_once(tmp_path)
     assert f"All {COUNT} exercises are passed." in capsys.readouterr().out
-    assert [path.name for path in checked.folders] == [one.name for one in exercise.exercises()]
+    assert [path.name for path in checked.folders] == [
+        one.name for one in Course(tmp_path).exercises
+    ]
 
 
 @proves(
     "make exercise HINT=1 gives a hint, and make exercise RESET=1 starts the exercise again.",
 )
 def test_hint(tmp_path, capsys, checked):
-    exercise.run(tmp_path)
+    plain.run_once(tmp_path)
     capsys.readouterr()
-    assert exercise.run(tmp_path, hint=True) == exercise.PASSED
-    assert capsys.readouterr().out == exercise.exercises()[0].defect.hint + "\n"
+    assert plain.run_once(tmp_path, hint=True) == plain.PASSED
+    assert capsys.readouterr().out == EXERCISES[0].hint + "\n"
     assert checked.folders == []
 
 
@@ -99,18 +103,110 @@ def test_hint(tmp_path, capsys, checked):
     "make exercise HINT=1 gives a hint, and make exercise RESET=1 starts the exercise again.",
 )
 def test_reset_begins_anew(tmp_path, checked):
-    exercise.run(tmp_path)
+    plain.run_once(tmp_path)
     script = tmp_path / FIRST / "src" / "subscriber_py_node.py"
     before = script.read_text()
     script.write_text("")
-    exercise.run(tmp_path)
+    plain.run_once(tmp_path)
     (tmp_path / "passed.txt").unlink()
-    exercise.run(tmp_path, reset=True)
+    plain.run_once(tmp_path, reset=True)
     assert script.read_text() == before
 
 
 def test_installed_without_sources_says_what_to_do(tmp_path, monkeypatch):
-    installed = shutil.copytree(exercise.defects.resources.folder("defects"), tmp_path / "defects")
-    monkeypatch.setattr(exercise.defects.resources, "folder", lambda name: installed)
-    with pytest.raises(exercise.ExerciseError, match="in a clone of the repository"):
-        exercise.run(tmp_path / "mine")
+    installed = shutil.copytree(defects.resources.folder("defects"), tmp_path / "defects")
+    monkeypatch.setattr(defects.resources, "folder", lambda name: installed)
+    with pytest.raises(ExerciseError, match="in a clone of the repository"):
+        plain.run_once(tmp_path / "mine")
+
+
+@proves("make learn checks your copy each time that you save a file of it.")
+def test_each_save_is_checked_and_an_editors_own_files_are_not(tmp_path, checked):
+    watched = watch.Watched(Course(tmp_path / "mine"), tmp_path / "scratch")
+
+    def check_is_done():
+        watched.look()
+        return watched.check and watched.check.done and watched.check
+
+    checked.append(Finding("spin", "It ends."))
+    first = wait_until(check_is_done, "the check of what is there")
+    assert [finding.message for finding in first.findings] == ["It ends."]
+    place = watched.exercise.place
+    for name in ("src/.a.py.swp", "src/a.py~", "#a.py#"):
+        (place / name).write_text("")
+    for _ in range(3):
+        watched.look()
+    assert watched.check is first
+    checked.clear()
+    (place / "src" / "subscriber_py_node.py").write_text("")
+    wait_until(lambda: check_is_done() not in (None, False, first), "the next check")
+    second = watched.check
+    watched.look()
+    assert second.passed and watched.course.is_passed(watched.exercise)
+    assert [one.number for one in Course(tmp_path / "mine").open][:2] == [2, 3]
+    watched.reset()
+    assert (place / "src" / "subscriber_py_node.py").read_text() != ""
+
+
+@proves(
+    "It first shows what it finds in the files, and then what it finds when it runs the nodes.",
+)
+def test_what_is_found_early_is_shown_early(tmp_path, capsys, monkeypatch):
+    """The check goes on only after its first findings are shown, and its verdict comes later."""
+    shown = threading.Event()
+
+    def fake(package, *_, early, **__):
+        found = [Finding("spin", "In the files.", "src/a.py", 7)]
+        early(check.Report("mrp", "", check.FINDINGS, found, {}))
+        assert shown.wait(DEADLINE)
+        found = [*found, Finding("exit", "In a run.")]
+        return check.Report("mrp", "", check.FINDINGS, found, {})
+
+    monkeypatch.setattr(check, "check", fake)
+    watched, printed = watch.Watched(Course(tmp_path), tmp_path / "scratch"), [""]
+    followed = plain.Followed(watched)
+
+    def is_shown(text):
+        followed.show()
+        printed[0] += capsys.readouterr().out
+        return text in printed[0]
+
+    wait_until(lambda: is_shown("src/a.py:7: In the files.\n"), "what is found first")
+    assert "not yet" not in printed[0]
+    shown.set()
+    wait_until(lambda: is_shown(f"{FIRST}: not yet.\n"), "the verdict")
+    assert "mrp: In a run.\n" in printed[0]
+
+
+@proves("Where there is no terminal, it prints lines, and goes on by itself.")
+def test_without_a_terminal_it_goes_on_to_the_last(tmp_path, capsys, checked):
+    plain.Followed(watch.Watched(Course(tmp_path), tmp_path / "scratch")).follow()
+    printed = capsys.readouterr().out
+    for number, exercise in enumerate(Course(tmp_path).exercises, 1):
+        assert f"Exercise {number} of {COUNT}, {exercise.name}: passed.\n" in printed
+    assert printed.endswith(f"All {COUNT} exercises are passed.\n")
+
+
+def test_the_solution_is_a_diff_that_solves_it(tmp_path):
+    check_sets.lay_out("mrp", tmp_path / "tutorial")
+    for exercise in Course(tmp_path).exercises:
+        exercise.prepare()
+        text = "\n".join([*exercise.solution(), ""])
+        command = ["patch", "-p1", "--fuzz=0", "--silent"]
+        subprocess.run(command, cwd=exercise.place, input=text, text=True, check=True)
+        (exercise.place / "TASK.md").unlink()
+        same = ["diff", "-r", exercise.place, tmp_path / "tutorial"]
+        assert subprocess.run(same, capture_output=True, text=True).stdout == ""
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [(["passed.txt"], "passed.txt: File exists."), ([], "the following arguments are required")],
+)
+def test_what_cannot_be_used_is_an_error_in_a_sentence(tmp_path, capsys, arguments, said):
+    (tmp_path / "passed.txt").write_text("")
+    with pytest.raises(SystemExit) as ended:
+        learn.main([str(tmp_path / name) for name in arguments])
+    assert ended.value.code == 2
+    printed = capsys.readouterr().err
+    assert said in printed and "Traceback" not in printed

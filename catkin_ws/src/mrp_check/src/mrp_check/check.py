@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+import contextlib
+import copy
 import itertools
 import pathlib
 import tempfile
@@ -31,12 +33,17 @@ def check(
     only=(),
     timeout: float = 600,
     progress: typing.Callable[[str], None] = lambda sentence: None,
+    kept: pathlib.Path | None = None,
+    early: typing.Callable[[Report], None] | None = None,
 ) -> Report:
     """Check one package.
 
     spec: its contract; None for a package that has none
     only: ids of the only requirements to check; all if empty
     timeout: seconds that all of it may take
+    kept: a scratch_folder() for several checks of one's own package: what has not changed since
+        the last of them is not built again
+    early: called after each stage with what is known by then
 
     Raises CannotCheck if a tool is missing. What else keeps something from being checked is in the
     report, with what could be checked.
@@ -47,27 +54,34 @@ def check(
     rules = [rule for rule in RULES if rule.only != (ANY if spec else CONTRACT)]
     asked = REQUIREMENTS if spec else {id_ for rule in rules for id_ in rule.ids}
     ids = [id_ for id_ in REQUIREMENTS if id_ in asked and (id_ in only or not only)]
-    folder = pathlib.Path(tempfile.mkdtemp(prefix="mrp_check_"))
-    folder.chmod(0o711)  # for the user that the package's programs run as
-    try:
+    with contextlib.nullcontext(kept) if kept else scratch_folder() as folder:
         given = folder, timeout, progress
         case = Case(package, spec, *given) if spec else AnyCase(package, *given)
         try:
-            examination = _Examination(case, rules, ids, asked)
+            examination = _Examination(case, rules, ids, asked, early)
         except BaseException:  # such as Ctrl-C
             confine.stop()
             raise
         finally:
             case.close()
+    return examination.report()
+
+
+@contextlib.contextmanager
+def scratch_folder() -> typing.Iterator[pathlib.Path]:
+    """Make a folder for checks, and delete it in the end."""
+    folder = pathlib.Path(tempfile.mkdtemp(prefix="mrp_check_"))
+    folder.chmod(0o711)  # for the user that the package's programs run as
+    try:
+        yield folder
     finally:
         confine.remove(folder)
-    return examination.report()
 
 
 class _Examination:
     """The findings of all rules that are needed, and the ids of what they could not check."""
 
-    def __init__(self, case, rules, ids, asked):
+    def __init__(self, case, rules, ids, asked, early):
         self.case, self.ids, self.asked = case, ids, asked
         self.findings: list[Finding] = []
         self.failed: dict[str, str] = {}
@@ -82,6 +96,8 @@ class _Examination:
             case.progress(f"stage {stage}")
             for rule in rules:
                 self._ask(rule)
+            if early:
+                early(self.report())
         for said in self._absent():
             self._lose(("python-names",), said)
         self._guarded(ids, lambda: self.failed.update(unseen(case, self._open())))
@@ -141,11 +157,12 @@ class _Examination:
     def report(self):
         package, known = self.case.package, vars(self.case)
         is_any = isinstance(self.case, AnyCase)
+        found = copy.deepcopy(self.findings)  # more may be found: then it is asked for again
         if is_any:
-            judging.weigh(self.case, self.findings)
-        findings = causes.told_once(self.findings, known.get("facts"), known.get("nodes"))
+            judging.weigh(self.case, found)
+        findings = causes.told_once(found, known.get("facts"), known.get("nodes"))
         if is_any:
-            findings = judging.judged(self.case, findings, self.findings)
+            findings = judging.judged(self.case, findings, found)
         for finding in findings:
             if finding.change and finding.file and finding.line:
                 patch = diff.of_change(package, finding.file, finding.line, finding.change)
@@ -169,6 +186,7 @@ class _Examination:
             reason=" ".join(self.reasons),
             unseen={id_: unseen[id_] for id_ in self.ids if id_ in unseen},
             left_out=[id_ for id_ in REQUIREMENTS if id_ not in self.asked],
+            console=_console(known.get("observed")),
         )
 
 
@@ -194,6 +212,12 @@ def _folded(findings, facts):
             group = [first]
         kept += group
     return kept
+
+
+def _console(observed):
+    """Return the lines that roslaunch and its nodes printed, as far as they ran."""
+    launched = observed.launch if observed else None
+    return [line for _, _, line in launched.lines] if launched else []
 
 
 def unseen(case, ids):

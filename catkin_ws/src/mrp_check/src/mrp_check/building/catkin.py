@@ -110,6 +110,8 @@ class Catkin:
     @functools.cached_property
     def configured(self) -> Step:
         """The Step of `catkin_make`'s first half: CMake."""
+        if self.workspace.configured:
+            return Step(*self.workspace.configured)
         self.workspace.progress("configuring with CMake")
         return self._step(self._catkin_make("help"))
 
@@ -123,7 +125,17 @@ class Catkin:
     def start_building(self) -> None:
         """Begin to build in the background, if CMake succeeded."""
         if self._building is None and self.configured.ok:
-            self._building = self.workspace.submit(self._catkin_make, "-k", "-j2")
+            self._building = self.workspace.submit(self._build)
+
+    def _build(self) -> confine.Result:
+        if self.workspace.compiles_again:
+            # An executable of an earlier build must not stand in for one that cannot be built now.
+            made = ["find", "devel/lib", "-type", "f", "-newer", "build/Makefile", "-delete"]
+            self.workspace.run("env", f"--chdir={self.folder}", *made)
+        result = self._catkin_make("-k", "-j2")
+        if result.ended_by is None:
+            self.workspace.keep(self.configured)
+        return result
 
     @functools.cached_property
     def built(self) -> Step | None:

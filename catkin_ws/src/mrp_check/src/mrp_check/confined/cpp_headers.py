@@ -24,6 +24,8 @@ _SOURCE = ("ros.h", "#include <ros/ros.h>\n")
 
 def make(path: pathlib.Path) -> pathlib.Path:
     """Put the headers into the file `path`, and return it. Without clang or ROS there is none."""
+    if path.exists():
+        return path  # an earlier check has made it
     if os.environ.get(variables.HEADERS):
         shutil.copy(os.environ[variables.HEADERS], path)
     else:

@@ -21,6 +21,7 @@ class Report:
     reason: why it is UNCHECKED, in one sentence
     left_out: the ids of what was not asked, as the package has no contract
     unseen: id -> why nobody can say whether it is met, of those that are UNCHECKED
+    console: the lines that roslaunch and its nodes printed, as far as they ran
     """
 
     package: str
@@ -31,6 +32,7 @@ class Report:
     reason: str = ""
     unseen: dict[str, str] = dataclasses.field(default_factory=dict)
     left_out: list[str] = dataclasses.field(default_factory=list)
+    console: list[str] = dataclasses.field(default_factory=list)
 
 
 def unchecked(reason: str) -> Report:

@@ -18,6 +18,7 @@ def data(report):
         for name in _INNER:
             del finding[name]
         finding["section"] = REQUIREMENTS[finding["id"]].section
+    del result["console"]
     if not report.reason:
         del result["reason"]
     if not report.left_out:

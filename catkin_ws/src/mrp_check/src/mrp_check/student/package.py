@@ -17,7 +17,7 @@ from mrp_check.contract.errors import PackageError
 # What is built or kept by tools, and no part of a package.
 NOT_SOURCES = {".git", ".svn", ".vscode", ".idea", "__pycache__", ".pytest_cache", "CMakeFiles"}
 # What an editor keeps of a file that it has changed.
-_BACKUP = re.compile(r"(~|#|\.(save|bak|orig|old|rej|sw[op]|tmp)(\.\d+)?)$")
+BACKUP = re.compile(r"(~|#|\.(save|bak|orig|old|rej|sw[op]|tmp)(\.\d+)?)$")
 MAX_FILES = 2000
 MAX_BYTES = 50_000_000  # in all
 MAX_TEXT = 1_000_000  # of one file that is read as text
@@ -120,7 +120,7 @@ class Package:
         name = path.rsplit("/", 1)[-1]
         if name == "CMakeLists.txt":
             return "cmake"
-        if _BACKUP.search(name):
+        if BACKUP.search(name):
             return "other"
         kind = KINDS.get(pathlib.PurePosixPath(path).suffix)
         if kind is None and "python" in (self.shebang(path) or ""):

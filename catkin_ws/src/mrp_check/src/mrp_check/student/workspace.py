@@ -1,9 +1,16 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A scratch workspace with a copy of a package, in which the package's programs run, confined."""
+"""A scratch workspace with a copy of a package, in which the package's programs run, confined.
+
+Another check may have left it, with what it has built. If nothing has changed since then that CMake
+reads, only the files that are different are copied, and only what needs them is built again.
+"""
 
 from __future__ import annotations
 
 import concurrent.futures
+import filecmp
+import hashlib
+import json
 import pathlib
 import shutil
 from typing import Callable, Mapping, Sequence, TypeVar
@@ -18,6 +25,8 @@ T = TypeVar("T")
 # Of this machine's own ROS, whatever workspace the user's shell has sourced.
 NOETIC = pathlib.Path("/opt/ros/noetic/setup.bash")
 _AT_ONCE = 3  # commands that run in the background at the same time
+_BUILT = ("cpp", "header", "launch")  # kinds of files that CMake does not read
+_OF_RUNS = variables.FOLDERS.values()  # folders that the commands of one check write to
 
 
 class Workspace:
@@ -27,6 +36,8 @@ class Workspace:
     folder: a catkin workspace, in which the package's own programs can write
     given: the folder of what the checker itself writes
     package_folder: the copy of the package
+    configured: what came of CMake when the copy was configured, if it need not be done again
+    compiles_again: whether a C++ file is different from that of the last check
     timeout: seconds that the whole check may take
     progress: called with a sentence that says what is being done
     """
@@ -40,14 +51,48 @@ class Workspace:
     ) -> None:
         self.package, self.timeout, self.progress = package, timeout, progress
         self.folder, self.given = folder / "workspace", folder / "given"
-        self.given.mkdir()
-        self.folder.mkdir(mode=0o700)
         self.package_folder = self.folder / "src" / package.root.resolve().name
-        for path in package.files:
-            target = self.package_folder / path
-            target.parent.mkdir(parents=True, exist_ok=True)
-            shutil.copy2(package.root / path, target)
+        self.given.mkdir(exist_ok=True)
+        self._kept = self.given / "kept.json"
+        self._read_by_cmake = _read_by_cmake(package)  # before it is copied: it may change then
+        self.configured = self._take_kept()
+        if not self.configured and self.folder.exists():
+            confine.remove(self.folder)
+        self.folder.mkdir(mode=0o700, exist_ok=True)
+        copied = [path for path in package.files if self._copy(path)]
+        changed = {package.kind(path) for path in copied if self.configured}
+        self.compiles_again = bool(changed & {"cpp", "header"})
         self._pool = concurrent.futures.ThreadPoolExecutor(max_workers=_AT_ONCE)
+
+    def _copy(self, path: str) -> bool:
+        """Copy a file of the package unless it is there as it is; return whether it was copied.
+
+        It gets a new time, even where an old file is put back: so make builds it again.
+        """
+        source, target = self.package.root / path, self.package_folder / path
+        if self.configured and target.is_file() and filecmp.cmp(source, target, shallow=False):
+            return False
+        target.parent.mkdir(parents=True, exist_ok=True)
+        target.unlink(missing_ok=True)
+        shutil.copy(source, target)
+        return True
+
+    def _take_kept(self) -> tuple[bool, str, str] | None:
+        """Return what keep() was given, if it fits the package. It holds once: what is built from
+        now on may be cut short."""
+        if not self._kept.exists():
+            return None
+        kept = json.loads(self._kept.read_text())
+        self._kept.unlink()
+        for folder in (*self.folder.glob("nodes_*"), *map(self.folder.joinpath, _OF_RUNS)):
+            if folder.exists():
+                confine.remove(folder)
+        return kept["configured"] if kept["of"] == self._read_by_cmake else None
+
+    def keep(self, configured: tuple[bool, str, str]) -> None:
+        """Let the next check go on with what is built now."""
+        kept = {"of": self._read_by_cmake, "configured": configured}
+        self._kept.write_text(json.dumps(kept))
 
     def close(self) -> None:
         """Wait for what still runs."""
@@ -86,6 +131,19 @@ class Workspace:
         """The ROS_PACKAGE_PATH of the copy and of this machine's own packages."""
         folders = [self.folder / "src", *map(pathlib.Path, SHARES)]
         return ":".join(str(folder) for folder in folders if folder.is_dir())
+
+
+def _read_by_cmake(package: Package) -> str:
+    """Return a digest of the files' names, and of what CMake and catkin read of each file."""
+    read: list[object] = [str(package.root)]
+    for path in package.files:
+        kind = package.kind(path)
+        if kind == "python" and not path.endswith("setup.py"):
+            content: object = package.shebang(path)
+        else:
+            content = kind in _BUILT or package.bytes(path)
+        read.append((path, package.is_executable(path), content))
+    return hashlib.sha256(repr(read).encode()).hexdigest()
 
 
 def search_path() -> str:

@@ -1,0 +1,156 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The exercises: broken packages to fix, and how far somebody has come with them.
+
+An exercise is a defect with a task (defects.py): the tutorial's package with its patch. The student
+edits a copy of it. The patch, reversed, is the solution.
+"""
+
+from __future__ import annotations
+
+import difflib
+import pathlib
+import re
+import shutil
+import subprocess
+import tempfile
+from typing import Iterator, NamedTuple, Sequence
+
+from mrp_check.contract import defects
+from mrp_check.contract.finding import NOTE, Finding
+from mrp_check.contract.verdict import Report
+from mrp_check.report import console
+
+
+class ExerciseError(Exception):
+    """An exercise cannot be laid out; its text is one sentence."""
+
+
+class Exercise(NamedTuple):
+    """One exercise, built from a defect.
+
+    number: its place among all exercises, from 1 on; total: how many there are
+    place: the folder of the student's copy
+    """
+
+    defect: defects.Defect
+    number: int
+    total: int
+    place: pathlib.Path
+
+    @property
+    def name(self) -> str:
+        return _name(self.defect)
+
+    @property
+    def label(self) -> str:
+        return f"Exercise {self.number} of {self.total}"
+
+    def prepare(self) -> bool:
+        """Make the broken package, unless it is there; return whether it was made."""
+        if self.place.exists():
+            return False
+        lay_out(self.defect, self.place)
+        (self.place / "TASK.md").write_text(f"{self.defect.task}\n")
+        return True
+
+    def remove(self) -> None:
+        """Delete the copy, with the student's changes to it."""
+        if self.place.exists():
+            shutil.rmtree(self.place)
+
+    def solution(self) -> list[str]:
+        """Return the lines of a diff: what turns the broken package into the tutorial's."""
+        with tempfile.TemporaryDirectory() as folder:
+            roots = pathlib.Path(folder, "a"), pathlib.Path(folder, "b")
+            lay_out(self.defect, roots[0])
+            _copy_tutorial(self.defect, roots[1])
+            paths = {path.relative_to(root) for root in roots for path in root.rglob("*")}
+            return [line for path in sorted(paths) for line in _diff(path, *roots)]
+
+
+def _diff(path: pathlib.Path, *roots: pathlib.Path) -> Iterator[str]:
+    """Yield the lines of a file's diff: how it differs below the second of two folders."""
+    before, after = (
+        (root / path).read_text().splitlines() if (root / path).is_file() else [] for root in roots
+    )
+    return difflib.unified_diff(before, after, f"a/{path}", f"b/{path}", lineterm="")
+
+
+def _name(defect: defects.Defect) -> str:
+    """Return the number and the title: the defect's own name would say too much."""
+    words = re.findall(r"[a-z0-9]+", defect.title.lower())
+    return "_".join([f"{defect.order:02}", *words])
+
+
+def _copy_tutorial(defect: defects.Defect, folder: pathlib.Path) -> None:
+    tutorial = defect.path.parent.parent / "src" / "mrp"
+    if not (tutorial / "src").is_dir():
+        raise ExerciseError(
+            f"The exercises are built from the tutorial's sources, and there is no {tutorial}:"
+            " call `make learn` in a clone of the repository."
+        )
+    shutil.copytree(tutorial, folder, ignore=shutil.ignore_patterns("doc", "__pycache__"))
+
+
+def lay_out(defect: defects.Defect, folder: pathlib.Path) -> None:
+    """Make the broken package at `folder`. Raises ExerciseError if that cannot be done."""
+    _copy_tutorial(defect, folder)
+    command = ["patch", "-p1", "--fuzz=0", "--silent", f"--input={defect.path}"]
+    try:
+        done = subprocess.run(
+            command, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
+        )
+    except FileNotFoundError:
+        raise ExerciseError("There is no command `patch`: install the package patch.") from None
+    if done.returncode != 0:
+        raise ExerciseError(
+            f"{defect.path} does not fit the tutorial's package. Undo your changes to both."
+            f" The command `patch` says: {done.stdout.strip()}"
+        )
+
+
+class Course:
+    """All exercises, from the easiest on, and which of them are passed.
+
+    folder: of the student's copies; in it passed.txt, with the name of one exercise in each line
+    """
+
+    def __init__(self, folder: pathlib.Path) -> None:
+        self.folder = folder.resolve()
+        self.folder.mkdir(parents=True, exist_ok=True)
+        found = defects.exercises()
+        self.exercises = [
+            Exercise(defect, number, len(found), self.folder / _name(defect))
+            for number, defect in enumerate(found, 1)
+        ]
+        self._file = self.folder / "passed.txt"
+        self._passed = self._file.read_text(errors="replace").split() if self._file.exists() else []
+
+    @property
+    def open(self) -> list[Exercise]:
+        return [exercise for exercise in self.exercises if not self.is_passed(exercise)]
+
+    def is_passed(self, exercise: Exercise) -> bool:
+        return exercise.name in self._passed
+
+    def add(self, exercise: Exercise) -> None:
+        """Keep that an exercise is passed."""
+        if not self.is_passed(exercise):
+            self._passed.append(exercise.name)
+            self._file.write_text("".join(f"{name}\n" for name in self._passed))
+
+
+def wrong(report: Report) -> list[Finding]:
+    """Return what is still wrong: an exercise is passed without errors and without warnings."""
+    return [f for f in report.findings if f.severity != NOTE and not f.consequence_of]
+
+
+def lines_of(findings: Sequence[Finding], report: Report | None) -> list[str]:
+    """Return what a student reads: where it is wrong, what is wrong, and the page that explains it;
+    and not how to fix it."""
+    lines = []
+    for finding in findings:
+        lines += ["", f"{console.where(finding, report)}: {console.plain(finding.message)}"]
+        lines += console.detail_lines(finding, ("expected", "seen"))
+        lines += console.page_lines(finding)
+    return lines

@@ -1,0 +1,103 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The exercises as lines, for `make exercise`, and for `make learn` where there is no terminal."""
+
+from __future__ import annotations
+
+import pathlib
+import sys
+import time
+
+from mrp_check.contract.errors import CannotCheck
+from mrp_check.learning import exercise as exercises
+from mrp_check.learning.watch import INTERVAL, Check, Watched
+from mrp_check.report import console
+
+PASSED, NOT_YET = 0, 1
+
+
+def say(*lines: str) -> None:
+    print(*lines, sep="\n", flush=True)
+
+
+def show_task(exercise: exercises.Exercise, what_then: str) -> None:
+    say(f"{exercise.label}\n\n{exercise.defect.task}\n", f"The package: {exercise.place}")
+    say(f"Fix it, and {what_then}.")
+
+
+def verdict(exercise: exercises.Exercise, check: Check) -> str:
+    return f"{exercise.label}, {exercise.name}: {'passed' if check.passed else 'not yet'}."
+
+
+def run_once(folder: pathlib.Path, hint: bool = False, reset: bool = False) -> int:
+    """Show the next exercise, or check it; return the exit code.
+
+    folder: where the student's copies are
+    hint: show the hint instead
+    reset: make the package again; the student's changes to it are lost
+    """
+    course = exercises.Course(folder)
+    if not course.open:
+        say(f"All {len(course.exercises)} exercises are passed.")
+        return PASSED
+    exercise = course.open[0]
+    if reset:
+        exercise.remove()
+    if exercise.prepare():
+        show_task(exercise, "call `make exercise` again")
+    elif hint:
+        say(exercise.defect.hint)
+    else:
+        shown = console.Progress(sys.stderr)
+        check = Check(exercise.place, say=shown.show)
+        check.run()
+        shown.clear()
+        if check.error:
+            raise CannotCheck(check.error)
+        say(verdict(exercise, check), *exercises.lines_of(check.findings, check.report))
+        if not check.passed:
+            say(f"\nThe task: {exercise.place / 'TASK.md'}", "A hint: make exercise HINT=1")
+            return NOT_YET
+        course.add(exercise)
+        return run_once(folder)
+    return PASSED
+
+
+class Followed:
+    """Prints each exercise, what a check of it finds as soon as it is found, and its verdict."""
+
+    def __init__(self, watched: Watched) -> None:
+        self.watched = watched
+        self._check: Check | None = None
+        self._findings: list[str] = []
+        self._ended = True
+
+    def follow(self) -> None:
+        """Do so until the last exercise is passed."""
+        course = self.watched.course
+        while course.open:
+            exercise = self.watched.exercise
+            show_task(exercise, "save it: then it is checked again")
+            while not course.is_passed(exercise):
+                self.show()
+                time.sleep(INTERVAL)
+            if course.open:
+                self.watched.open(course.open[0])
+        say(f"All {len(course.exercises)} exercises are passed.")
+
+    def show(self) -> None:
+        """Look at the files, and print what is new."""
+        self.watched.look()
+        exercise, check = self.watched.exercise, self.watched.check
+        if check is not self._check:
+            self._check, self._findings, self._ended = check, [], check is None
+            say(*(["", "Checking ..."] if check else []))
+        if check is None or self._ended:
+            return
+        done, lines = check.done, exercises.lines_of(check.findings, check.report)
+        if lines != self._findings:
+            self._findings = lines
+            say(*lines)
+        if done:
+            self._ended = True
+            could_not = f"It could not be checked: {check.error}"
+            say("", could_not if check.error else verdict(exercise, check))

@@ -1,0 +1,178 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""`make learn` as somebody sees it who sits at a terminal, or who reads its lines; and what several
+checks of one package share. The checks are real ones."""
+
+import os
+import signal
+
+import check_sets
+import pexpect
+import pyte
+import pytest
+from mrp_check import check
+from mrp_check.cli import learn
+from mrp_check.contract import defects, spec
+from mrp_check.learning.exercise import Course
+from mrp_check.student.package import Package
+from mrp_testing.process import Process, processes_with
+from mrp_testing.proves import proves
+from mrp_testing.waiting import wait_until
+
+pytestmark = [pytest.mark.slow, pytest.mark.usefixtures("open_folders")]
+
+FIRST = defects.exercises()[0]
+UP = "\x1b[A"
+COMMAND = ("/usr/bin/python3", learn.__file__)
+
+
+@pytest.fixture
+def env(tmp_path):
+    """The environment of the program, whose temporary files lie where the test sees them."""
+    temporary = tmp_path / "tmp"
+    temporary.mkdir(mode=0o711)
+    path = os.pathsep.join(["/usr/bin", os.environ["PATH"]])
+    kept = {k: v for k, v in os.environ.items() if k not in ("NO_COLOR", "MRP_CHECK_CCACHE")}
+    source = str(check_sets.HERE.parent / "src" / "mrp_check" / "src")
+    return {**kept, "PATH": path, "TMPDIR": str(temporary), "TERM": "xterm", "PYTHONPATH": source}
+
+
+def assert_nothing_is_left(tmp_path):
+    """Every process of a check has its scratch folder in its command line, or in that of one that
+    it ends with."""
+    assert processes_with(str(tmp_path)) == {}
+    assert [path.name for path in (tmp_path / "tmp").iterdir()] == []
+
+
+def solve(folder):
+    """Fix the first exercise, as somebody does who edits its file."""
+    place = Course(folder).exercises[0].place
+    check_sets.break_(place, FIRST, "--reverse")
+
+
+class Terminal:
+    """A program at a terminal, and what its screen shows."""
+
+    def __init__(self, env, *command, rows=24, columns=80):
+        self.screen = pyte.Screen(columns, rows)
+        self._stream = pyte.ByteStream(self.screen)
+        self.program = pexpect.spawn(
+            command[0], [*command[1:]], env=env, dimensions=(rows, columns), timeout=0
+        )
+
+    @property
+    def text(self):
+        return "\n".join(line.rstrip() for line in self.screen.display)
+
+    def read(self):
+        try:
+            while True:
+                self._stream.feed(self.program.read_nonblocking(65536))
+        except (pexpect.TIMEOUT, pexpect.EOF):
+            pass
+
+    def wait_for(self, *texts):
+        """Wait until the screen shows all of these."""
+
+        def is_shown():
+            self.read()
+            return all(text in self.text for text in texts)
+
+        wait_until(is_shown, lambda: f"{texts} on the screen:\n{self.text}")
+
+    def press(self, keys, *texts):
+        """Press keys, and wait for what the screen then shows."""
+        self.program.send(keys)
+        self.wait_for(*texts)
+
+    def quit(self, keys):
+        """Press keys that end the program; return its exit code."""
+        self.program.send(keys)
+        wait_until(lambda: self.read() or not self.program.isalive(), "the program's end")
+        return self.program.exitstatus
+
+
+@proves(
+    "It makes a broken copy of the tutorial's package, and shows your task.",
+    "make learn checks your copy each time that you save a file of it.",
+    "It shows what is still wrong, the file and the line, and the page that explains it.",
+    "If your copy meets the contract, without a warning, the exercise is passed.",
+    "These are the keys:",
+    "The next make learn goes on where you were.",
+    "Practise: make learn gives you broken packages to fix, one after the other, and checks each "
+    "when you save it.",
+)
+def test_first_exercise_at_a_terminal(tmp_path, env):
+    mine = tmp_path / "mine"
+    terminal = Terminal(env, *COMMAND, str(mine))
+    terminal.wait_for("A parenthesis", "Exercise 1 of", "| 0 passed")
+    terminal.wait_for("src/subscriber_py_node.py:", "  page:     pages/", "Not yet: 1")
+    terminal.press("h", "Hint", "Count the parentheses")
+    terminal.press("s", "The solution is shown when the exercise is passed.")
+    terminal.press("l", ">   1  open    A parenthesis", "    2  open")
+    terminal.press("l", "Hint")
+    terminal.press("x", "x again deletes your changes")
+    script = Course(mine).exercises[0].place / "src" / "subscriber_py_node.py"
+    broken = script.read_text()
+    solve(mine)
+    terminal.wait_for("Passed. n goes on to the next.", "| 1 passed")
+    terminal.press("s", "+++ b/src/subscriber_py_node.py")
+    terminal.press("r", "[SUBSCRIBER PY NODE] received message with data = ")
+    terminal.press("n", "Exercise 2 of", "Checking: ")
+    terminal.press("l", ">   2  open", "    1  passed")
+    terminal.press(UP, ">   1  passed")
+    terminal.press("\r", "Exercise 1 of", "Checking: ")
+    terminal.press("x", "x again deletes your changes")
+    terminal.press("x", "Checking: ")
+    wait_until(lambda: script.read_text() == broken, "the exercise as it was")
+    assert terminal.quit("q") == 0
+    assert_nothing_is_left(tmp_path)
+    # The next call goes on where this one ended.
+    terminal = Terminal(env, *COMMAND, str(mine))
+    terminal.wait_for("Exercise 2 of", "| 1 passed", "Checking: ")
+    assert terminal.quit("\x03") == 0
+    assert_nothing_is_left(tmp_path)
+
+
+def test_lines_without_a_terminal_and_the_end_by_a_signal(tmp_path, env):
+    with Process(*COMMAND, str(tmp_path / "mine"), env=env) as program:
+        found = "src/subscriber_py_node.py:"
+        program.wait_for(lambda: any(line.startswith(found) for line in program.lines), found)
+        assert program.stop(signal.SIGINT) == 1
+    assert "# A parenthesis" in program.lines
+    assert "learn: stopped before its end; what it ran has ended, too." == program.lines[-1]
+    assert_nothing_is_left(tmp_path)
+
+
+@proves("What has not changed is not built again.")
+def test_what_has_not_changed_is_not_built_again(tmp_path):
+    """An old file that is put back is new to make; and an executable of the build before does not
+    stand in for one that cannot be built now."""
+    said, place = [], tmp_path / "package"
+    source = place / "src" / "publisher_cpp_node.cpp"
+    check_sets.lay_out("mrp", place)
+    correct, times = source.read_bytes(), source.stat()
+    with check.scratch_folder() as scratch:
+        devel = scratch / "workspace" / "devel" / "lib" / "mrp"
+
+        def checked():
+            """Return the ids of the findings, what was done, and what is built: name -> time."""
+            said.clear()
+            contract = spec.read(spec.find("pub_sub"))
+            report = check.check(
+                Package(place), contract, ("compile",), progress=said.append, kept=scratch
+            )
+            built = {path.name: path.stat().st_mtime_ns for path in devel.glob("*_cpp_node")}
+            return [f.id for f in report.findings], "configuring with CMake" in said, built
+
+        found, configured, first = checked()
+        assert (found, configured, len(first)) == ([], True, 2)
+        assert checked() == ([], False, first)
+        source.write_bytes(correct.replace(b";", b"", 1))
+        assert checked()[:2] == (["compile"], False)
+        assert "publisher_cpp_node" not in checked()[2]
+        source.write_bytes(correct)
+        os.utime(source, ns=(times.st_atime_ns, times.st_mtime_ns))
+        found, configured, again = checked()
+        assert (found, configured, {*again}) == ([], False, {*first})
+        (place / "CMakeLists.txt").open("a").write("# Another line.\n")
+        assert checked()[:2] == ([], True)
