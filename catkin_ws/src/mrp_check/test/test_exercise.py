@@ -41,7 +41,7 @@ def checked(monkeypatch):
     return findings
 
 
-@proves("The first call prints your task.")
+@proves("make exercise makes one step, and ends: the first call prints your task.")
 def test_first_call_shows_the_task_and_makes_the_package(tmp_path, capsys, checked):
     assert plain.run_once(tmp_path / "mine") == plain.PASSED
     printed = capsys.readouterr().out

@@ -32,7 +32,7 @@ class _Screen:
 
     view: what is shown: task, list, nodes or solution
     top: the first line of it that is shown
-    note: what is said in place of the exercise's state, until the next key or the next news
+    note: what is said in place of the exercise's state, until the next key or verdict
     """
 
     def __init__(self, watched: Watched) -> None:
@@ -208,6 +208,7 @@ class _Screen:
             check = self.watched.check
             now = check and (check, check.doing, check.report, check.done)
             if now != before:
-                before, self.note = now, ""
+                before = now
+                self.note = "" if check and check.done else self.note
                 self.app.invalidate()
             await asyncio.sleep(INTERVAL)
