@@ -25,6 +25,7 @@ LAYERS = (
     ("rules",),
     ("report", "causes", "judging"),
     ("check",),
+    ("learning",),
     ("cli",),
 )
 

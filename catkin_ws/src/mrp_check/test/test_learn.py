@@ -16,12 +16,13 @@ from mrp_check.learning.exercise import Course
 from mrp_check.student.package import Package
 from mrp_testing.process import Process, processes_with
 from mrp_testing.proves import proves
-from mrp_testing.waiting import wait_until
+from mrp_testing.waiting import wait_until, within
 
 pytestmark = [pytest.mark.slow, pytest.mark.usefixtures("open_folders")]
 
 FIRST = defects.exercises()[0]
 UP = "\x1b[A"
+CHECK = 240  # seconds that a whole check has: ten times what it takes on a machine that is idle
 COMMAND = ("/usr/bin/python3", learn.__file__)
 
 
@@ -77,7 +78,7 @@ class Terminal:
             self.read()
             return all(text in self.text for text in texts)
 
-        wait_until(is_shown, lambda: f"{texts} on the screen:\n{self.text}")
+        assert within(CHECK, is_shown), f"{texts} are not on the screen:\n{self.text}"
 
     def press(self, keys, *texts):
         """Press keys, and wait for what the screen then shows."""
