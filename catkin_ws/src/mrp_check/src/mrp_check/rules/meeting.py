@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import difflib
 import re
 import typing
 from typing import Iterable, Iterator
@@ -13,6 +12,7 @@ from mrp_check.confined.places import Kind
 from mrp_check.confined.seen import Seen
 from mrp_check.contract.finding import ERROR, NOTE, WARNING, Finding
 from mrp_check.contract.requirements import ANY, Rule
+from mrp_check.contract.words import nearest
 
 _OF_ROS = {"/rosout", "/rosout_agg", "/clock", "/tf", "/tf_static", "/diagnostics"}
 _ALIKE = 0.85
@@ -137,8 +137,8 @@ def _is_meant(one: End, other: End) -> bool:
     """Return whether two names are so alike that one of them is misspelt, or in another group."""
     if one.type != other.type:
         return False
-    ratio = difflib.SequenceMatcher(None, one.topic.lower(), other.topic.lower()).ratio()
-    return _is_moved(one, other) or ratio >= _ALIKE
+    near = nearest(other.topic.lower(), [one.topic.lower()], _ALIKE)
+    return _is_moved(one, other) or near is not None
 
 
 def _is_moved(one: End, other: End) -> bool:

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from typing import Callable, Iterator
+from typing import Iterator, NamedTuple
 
 from mrp_check.case import Case
 from mrp_check.contract.finding import NOTE, WARNING, Finding
@@ -15,14 +15,34 @@ from mrp_check.sources.asked import Said
 _ALIKE = 0.8
 
 
+class _Words(NamedTuple):
+    """How to say what is waited for: nobody gives it, or the package gives another name."""
+
+    what: str
+    nobody: str
+    other: str
+
+
+_SERVICE = _Words(
+    "service",
+    "no node of this package offers it.",
+    "the package offers {near}, which nobody asks for.",
+)
+_PARAMETER = _Words(
+    "parameter",
+    "no launch file and no node of this package sets it.",
+    "the package sets {near}, which nobody reads.",
+)
+
+
 def _findings(case: Case) -> Iterator[Finding]:
     said = {node: [*asked.of(case.package, files)] for node, files in case.facts.sources.items()}
     every = [one for found in said.values() for one in found]
     params = {name.rsplit("/", 1)[-1] for name in (case.launch.params if case.launch else {})}
     services = {one.base for one in every if one.what == "offers"}
     given = params | {one.base for one in every if one.what == "sets"}
-    yield from _lacking(said, "asks", services, every, _service)
-    yield from _lacking(said, "reads", given, every, _parameter)
+    yield from _lacking(said, "asks", services, every, _SERVICE)
+    yield from _lacking(said, "reads", given, every, _PARAMETER)
 
 
 def _lacking(
@@ -30,7 +50,7 @@ def _lacking(
     what: str,
     given: set[str],
     every: list[Said],
-    of: Callable[[str, Said, str | None], Finding],
+    words: _Words,
 ) -> Iterator[Finding]:
     """Yield a Finding for each name that is asked for, and that nothing of the package gives."""
     taken = {one.base for one in every if one.what in (what, "knows")}
@@ -40,37 +60,16 @@ def _lacking(
             if one.what == what and one.base not in given | told:
                 told.add(one.base)
                 # What somebody asks for is not misspelt.
-                yield of(node, one, nearest(one.base, given - taken, _ALIKE))
+                yield _finding(node, one, nearest(one.base, given - taken, _ALIKE), words)
 
 
-def _service(node: str, one: Said, near: str | None) -> Finding:
+def _finding(node: str, one: Said, near: str | None, words: _Words) -> Finding:
+    head = f"{node} waits for the {words.what} {one.name}: "
     if near is None:
-        message = f"{node} waits for the service {one.name}: no node of this package offers it."
-        return Finding("starts", message, one.file, one.line, NOTE, node=node)
+        return Finding("starts", head + words.nobody, one.file, one.line, NOTE, node=node)
     return Finding(
         "starts",
-        f"{node} waits for the service {one.name}: the package offers {near}, which nobody asks"
-        " for.",
-        one.file,
-        one.line,
-        WARNING,
-        expected=near,
-        seen=one.name,
-        fix="Give both one name.",
-        node=node,
-    )
-
-
-def _parameter(node: str, one: Said, near: str | None) -> Finding:
-    if near is None:
-        message = (
-            f"{node} waits for the parameter {one.name}: no launch file and no node of this package"
-            " sets it."
-        )
-        return Finding("starts", message, one.file, one.line, NOTE, node=node)
-    return Finding(
-        "starts",
-        f"{node} waits for the parameter {one.name}: the package sets {near}, which nobody reads.",
+        head + words.other.format(near=near),
         one.file,
         one.line,
         WARNING,
