@@ -47,7 +47,8 @@ def read(path):
 
 
 def faults(sentences, lists=None):
-    """Return the faults of these sentences, as the build of the pages finds them.
+    """Return the faults of these sentences, as the build of the pages finds them; but those of
+    their order, which claims.moved() finds.
 
     lists: what claims.read_lists returns, if it is known already
     """

@@ -44,8 +44,9 @@ FOUND = [
     "It reported 17 of these in full and 10 in part, and 7 errors that are none.",
 )
 def test_first_trial_on_packages_by_strangers():
-    """strangers.csv has what was listed, or `none` for an error that is none, and what was found:
-    as what it was reported, `partly`, `elsewhere` (what follows from it), or `missed`."""
+    """A row of strangers.csv is a defect that somebody listed. The label `none` means that the
+    checker reported an error that is none. The column `found` says how it was reported: as an error
+    or a warning, `partly`, `elsewhere` (only what follows from it), or `missed`."""
     file = pathlib.Path(__file__).with_name("strangers.csv")
     rows = [*csv.DictReader(file.read_text().splitlines())]
     found = [row["found"] for row in rows if row["label"] == "error"]

@@ -110,7 +110,7 @@ def read_list(path):
 
 
 def read_order(path):
-    """Return the order that ends a list, or [] if there is none."""
+    """Return the digits of the page's order, which stand last in a list. [] without them."""
     text = path.read_text() if path.exists() else ""
     return text.partition(f"[{_ORDER}]")[2].split()
 

@@ -38,7 +38,7 @@ _ENDED = ("KeyboardInterrupt", "ROSInterruptException")
 
 
 def weigh(case: Case, findings: Iterable[Finding]) -> None:
-    """Give what was seen of the nodes its severity: before one cause is told once."""
+    """Set the severity of what was seen of the nodes. Call it before causes.told_once()."""
     for finding in findings:
         if finding.severity == ERROR and finding.stage in ("run", "stop"):
             _of_run(case, finding)
@@ -47,7 +47,7 @@ def weigh(case: Case, findings: Iterable[Finding]) -> None:
 def judged(case: Case, findings: Iterable[Finding], seen: Iterable[Finding]) -> list[Finding]:
     """Return the findings with the severity that each has for a package without a contract.
 
-    findings: what is told; seen: all that was found, also what is not told twice
+    findings: what the report tells; seen: all that was found, with what the report leaves out
     """
     findings = list(findings)
     for finding in findings:
@@ -77,7 +77,7 @@ def judged(case: Case, findings: Iterable[Finding], seen: Iterable[Finding]) -> 
 def _is_of_scripts(case: Case, finding: Finding) -> bool:
     """Return whether a finding can follow from one about a script.
 
-    What kept Linux from starting it is mended in the copy that ran: see any_case.py.
+    The copy that ran was mended where Linux could not start it: see any_case.py.
     """
     if finding.stage not in ("run", "stop"):
         return any(script.path not in case.package.files for script in case.model.scripts)
