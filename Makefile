@@ -88,7 +88,7 @@ $(BUILT_TUTORIAL): $(call sources,catkin_ws/src/mrp)
 .PHONY: test
 test: packages-test $(BUILT_WHOLE)  ## build, run the tests that matter most, and print one summary
 	@rm -rf $(RESULTS)
-	@$(IN_WORKSPACE) $(ALONE) source devel/setup.bash; tools/run_tests.sh quick
+	@$(IN_WORKSPACE) $(ALONE) source devel/setup.bash; tools/timed.py "tests, quick" tools/run_tests.sh quick
 
 .PHONY: test-all
 test-all: test test-rest  ## run every test
@@ -96,7 +96,7 @@ test-all: test test-rest  ## run every test
 # Its summary is that of all: what `make test` left is still there.
 .PHONY: test-rest
 test-rest: packages-test-all $(BUILT_WHOLE)  ## run the tests that make test leaves out
-	@$(IN_WORKSPACE) $(ALONE) source devel/setup.bash; tools/run_tests.sh slow
+	@$(IN_WORKSPACE) $(ALONE) source devel/setup.bash; tools/timed.py "tests, slow" tools/run_tests.sh slow
 
 .PHONY: labs
 labs:  ## list the labs: each is a launch file that shows one claim

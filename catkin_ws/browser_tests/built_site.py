@@ -5,6 +5,7 @@ import contextlib
 import re
 import sys
 
+import pytest
 from mrp_testing.process import Process
 from mrp_testing.workspace import WORKSPACE
 
@@ -18,6 +19,15 @@ def pages_with(text):
     pages = [page for page in PAGES if text in (SITE / page).read_text()]
     assert pages, f"no page has {text}"
     return pages
+
+
+def by_page(values):
+    """Return the values, pages or tuples that end in one, as parameters of tests: those of a page run
+    in one worker, which need not open it again for each of them."""
+    return [
+        pytest.param(one, marks=pytest.mark.xdist_group(one if isinstance(one, str) else one[-1]))
+        for one in values
+    ]
 
 
 @contextlib.contextmanager

@@ -2,10 +2,10 @@
 """The copy buttons: what they copy is the code, to the last character."""
 
 import pytest
-from built_site import pages_with
+from built_site import by_page, pages_with
 
 
-@pytest.fixture(params=pages_with('class="highlight"'))
+@pytest.fixture(scope="module", params=by_page(pages_with('class="highlight"')))
 def page(request, browser, addresses):
     # A browser lets no script read the clipboard from a file.
     browser.open(addresses["served"] + request.param)

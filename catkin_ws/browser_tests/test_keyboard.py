@@ -2,7 +2,7 @@
 """Without a mouse: the Tab key reaches all there is to press, and the phone's menu opens."""
 
 import pytest
-from built_site import PAGES
+from built_site import PAGES, by_page
 from selenium.webdriver.common.keys import Keys
 
 _MISSED = """
@@ -14,7 +14,7 @@ return [...document.querySelectorAll("a[href], button, input:not([type=hidden]),
 """
 
 
-@pytest.mark.parametrize("page", PAGES)
+@pytest.mark.parametrize("page", by_page(PAGES))
 def test_the_tab_key_reaches_everything(browser, addresses, page):
     browser.open(addresses["file"] + page)
     number = browser.run(

@@ -2,11 +2,11 @@
 """The tabs: a choice of one applies to all of that name on the page, by mouse and by keyboard."""
 
 import pytest
-from built_site import pages_with
+from built_site import by_page, pages_with
 from selenium.webdriver.common.keys import Keys
 
 
-@pytest.fixture(params=pages_with('class="tab-set'))
+@pytest.fixture(params=by_page(pages_with('class="tab-set')))
 def page(request, browser, addresses):
     browser.open(addresses["file"] + request.param)
 

@@ -5,8 +5,8 @@
 # marked so; then prints a summary of all results. After the slow ones, each proof that the pages name
 # must have passed. The workspace is built, and sourced.
 #
-# A rostest waits more than it works, and each has a master of its own. ROS's tools report success
-# over failures: so the result files decide.
+# A rostest waits more than it works, and each has a master of its own: so several run at once, beside
+# pytest. ROS's tools report success over failures: so the result files decide.
 set -uo pipefail
 cd "$(dirname "$0")/.." || exit 1
 level=$1
@@ -26,11 +26,16 @@ if [ -n "$rostests" ]; then
   # One that is listed and not built would be left out in silence.
   diff <("${chosen[@]}" --show-only | sed -n 's/^ *Test .*: //p' | sort) \
     <(tr '|' '\n' <<< "$rostests" | sort) || status=1
-  tools/timed.py "rostests, $level" "${chosen[@]}" --parallel $((3 * processors)) \
-    --output-on-failure || status=1
+  # What a shell starts beside itself is deaf to Ctrl-C, and nodes would inherit that.
+  (trap - INT; exec "${chosen[@]}" --parallel $((2 * processors)) --output-on-failure) \
+    > build/rostests.log 2>&1 &
 fi
-tools/timed.py "pytest, $level" /usr/bin/python3 -m pytest -n $((processors + 1)) --dist loadgroup -m "$level" \
+/usr/bin/python3 -m pytest -n $((processors + 1)) --dist loadgroup -m "$level" \
   --junit-xml="$results/pytest_$level.xml" || status=1
+if [ -n "$rostests" ]; then
+  wait $! || status=1
+  cat build/rostests.log
+fi
 catkin_test_results "$results" > /dev/null || status=1
 [ "$level" = quick ] || tools/quote_claims.py ran || status=1
 tools/test_summary.py "$results" || status=1
