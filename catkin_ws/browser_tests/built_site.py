@@ -22,8 +22,10 @@ def pages_with(text):
 
 
 def by_page(values):
-    """Return the values, pages or tuples that end in one, as parameters of tests: those of a page run
-    in one worker, which need not open it again for each of them."""
+    """Return the values, pages or tuples that end in one, as parameters of tests.
+
+    Those of a page run in one worker, which need not open it again for each of them.
+    """
     return [
         pytest.param(one, marks=pytest.mark.xdist_group(one if isinstance(one, str) else one[-1]))
         for one in values
