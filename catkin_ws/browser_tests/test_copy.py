@@ -9,6 +9,7 @@ from built_site import by_page, pages_with
 def page(request, browser, addresses):
     # A browser lets no script read the clipboard from a file.
     browser.open(addresses["served"] + request.param)
+    browser.command("Page.bringToFront")  # a page without the focus has no clipboard, either
 
 
 def test_code_has_a_copy_button_and_what_was_printed_has_none(page, browser):
