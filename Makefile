@@ -309,4 +309,4 @@ docker-check: need-docker  ## check the package at PKG in a container without a 
 docker-containers: docker-build-ssh
 	@/usr/bin/python3 -c 'import pytest, xdist' 2> /dev/null || \
 	  catkin_ws/tools/install_packages.sh <(printf '%s\n' '# to test the containers' python3-pytest-xdist)
-	@/usr/bin/python3 -m pytest -n 3 --dist loadfile --junit-xml=$(DOCKER_RESULTS)/containers.xml docker/test
+	@/usr/bin/python3 -m pytest -n 4 --dist loadgroup --junit-xml=$(DOCKER_RESULTS)/containers.xml docker/test

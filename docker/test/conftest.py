@@ -11,6 +11,14 @@ for name in ("MAKEFLAGS", "MAKELEVEL", "MFLAGS"):
     os.environ.pop(name, None)
 
 
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection_modifyitems(items):
+    """One worker takes a whole file, whose tests share containers; a fault has its own."""
+    for item in items:
+        if item.path.stem != "test_faults":
+            item.add_marker(pytest.mark.xdist_group(item.path.stem))
+
+
 @pytest.fixture(scope="session")
 def image():
     """The image under test: the one that `make docker-build` made."""
