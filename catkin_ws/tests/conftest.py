@@ -4,7 +4,16 @@
 import socket
 
 import pytest
+import run_page
 from doctor_patient import Patient
+
+
+@pytest.fixture(scope="session")
+def site(tmp_path_factory):
+    """The folder of the site, built with every warning as an error."""
+    folder = tmp_path_factory.mktemp("site")
+    run_page.build(folder)
+    return folder
 
 
 @pytest.fixture

@@ -3,8 +3,6 @@
 
 import html.parser
 import re
-import subprocess
-import sys
 import urllib.parse
 
 import pytest
@@ -12,22 +10,8 @@ from mrp_testing.proves import proves
 from mrp_testing.workspace import ROOT, WORKSPACE
 from mrp_view import findings
 
-# One worker of pytest builds for all of these tests.
-pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("docs")]
-
-
-@pytest.fixture(scope="module")
-def site(tmp_path_factory):
-    """The folder of the site, built for these tests."""
-    folder = tmp_path_factory.mktemp("site")
-    done = subprocess.run(
-        [sys.executable, "-m", "sphinx", "-q", "-W", WORKSPACE / "src/mrp/doc", folder],
-        stdout=subprocess.PIPE,
-        stderr=subprocess.STDOUT,
-        text=True,
-    )
-    assert done.returncode == 0, done.stdout
-    return folder
+# One worker of pytest builds the site for these tests and for those of what the pages show.
+pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("page")]
 
 
 class Page(html.parser.HTMLParser):

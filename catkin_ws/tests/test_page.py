@@ -13,14 +13,6 @@ pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("page")]
 
 
 @pytest.fixture(scope="module")
-def site(tmp_path_factory):
-    """The site, built with every warning as an error."""
-    folder = tmp_path_factory.mktemp("site")
-    run_page.build(folder)
-    return folder
-
-
-@pytest.fixture(scope="module")
 def shown(site, tmp_path_factory):
     """What they see who do all that the pages say."""
     return run_page.read(run_page.steps(site), tmp_path_factory.mktemp("home"))
