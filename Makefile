@@ -33,8 +33,9 @@ PACKAGES_build := $(PACKAGES_run) build
 PACKAGES_check := $(PACKAGES_run) check
 PACKAGES_learn := $(PACKAGES_check) learn
 PACKAGES_view := $(PACKAGES_build) view
+PACKAGES_debug := $(PACKAGES_run) debug
 PACKAGES_test := $(PACKAGES_build) check learn view bench test
-PACKAGES_test-all := $(PACKAGES_test) docs test-all
+PACKAGES_test-all := $(PACKAGES_test) docs debug test-all
 PACKAGES_test-browser := $(PACKAGES_view) docs test browser
 PACKAGES_bench := $(PACKAGES_build) bench
 PACKAGES_docs := docs
@@ -43,9 +44,12 @@ PACKAGES_lint := $(PACKAGES_test-all) lint
 
 # `make run` builds the tutorial alone. Once the whole workspace has been built, it stays whole. With -j,
 # catkin_make does not add -l: a machine that was busy a minute ago would build one file at a time.
-CATKIN_MAKE := catkin_make -j$(shell nproc) -DPYTHON_EXECUTABLE=/usr/bin/python3 -DCMAKE_BUILD_TYPE=RelWithDebInfo
+CATKIN_MAKE := catkin_make -j$(shell nproc) -DPYTHON_EXECUTABLE=/usr/bin/python3 \
+  -DCMAKE_BUILD_TYPE=RelWithDebInfo -DCMAKE_EXPORT_COMPILE_COMMANDS=ON
 TUTORIAL := -DCATKIN_WHITELIST_PACKAGES=mrp -DCATKIN_ENABLE_TESTING=OFF
 WHOLE := -DCATKIN_WHITELIST_PACKAGES= -DCATKIN_ENABLE_TESTING=ON
+# What an editor reads: how each C++ file is compiled, and which fields each message has.
+FOR_EDITORS := ln -sf build/compile_commands.json .; source devel/setup.bash; tools/make_stubs.py build/stubs
 BUILT_TUTORIAL := catkin_ws/devel/.built_tutorial
 BUILT_WHOLE := catkin_ws/devel/.built_whole
 sources = $(shell find $(1) -type f -not -name '*.pyc' -not -path '*/doc/*' -not -path catkin_ws/src/CMakeLists.txt)
@@ -77,12 +81,17 @@ build: packages-build $(BUILT_WHOLE)  ## build the whole workspace with catkin_m
 run: packages-run $(BUILT_TUTORIAL)  ## run the four nodes; end them with Ctrl-C
 	@$(IN_WORKSPACE) $(LOCAL) source devel/setup.bash; exec roslaunch mrp pub_sub.launch
 
+.PHONY: debug
+debug: packages-debug $(BUILT_TUTORIAL)  ## start one node, NODE=publisher_cpp_node, under gdb or pdb, beside make run
+	@$(IN_WORKSPACE) $(LOCAL) source devel/setup.bash; exec tools/debug.sh "$(NODE)"
+
 $(BUILT_WHOLE): $(call sources,catkin_ws/src)
-	@$(IN_WORKSPACE) tools/timed.py build env $$($(CACHE)) $(CATKIN_MAKE) $(WHOLE)
+	@$(IN_WORKSPACE) tools/timed.py build env $$($(CACHE)) $(CATKIN_MAKE) $(WHOLE); $(FOR_EDITORS)
 	@touch $@ $(BUILT_TUTORIAL)
 
 $(BUILT_TUTORIAL): $(call sources,catkin_ws/src/mrp)
-	@$(IN_WORKSPACE) $(CATKIN_MAKE) $(if $(wildcard $(BUILT_WHOLE)),$(WHOLE),$(TUTORIAL))
+	@$(IN_WORKSPACE) $(CATKIN_MAKE) $(if $(wildcard $(BUILT_WHOLE)),$(WHOLE),$(TUTORIAL)); \
+	$(FOR_EDITORS)
 	@touch $@
 
 .PHONY: test
@@ -154,7 +163,7 @@ view: packages-view $(BUILT_WHOLE)  ## watch the graph and the messages in a bro
 	exec rosrun mrp_view view_node.py --tutorial $(SITE) $(VIEW_OPTIONS)
 
 .PHONY: lint
-lint: packages-lint  ## check the style of all sources
+lint: packages-lint $(BUILT_TUTORIAL)  ## check the style of all sources
 	@$(IN_WORKSPACE) tools/lint.sh
 
 # Made anew each time: otherwise Sphinx keeps pages that are no more, and warns of a page only once.
@@ -211,7 +220,7 @@ why:  ## say what an error text means, and how to fix it: TEXT="...", or piped i
 .PHONY: clean
 clean:  ## delete all that was built
 	rm -rf catkin_ws/build catkin_ws/devel catkin_ws/install
-	rm -f catkin_ws/src/CMakeLists.txt catkin_ws/.catkin_workspace
+	rm -f catkin_ws/src/CMakeLists.txt catkin_ws/.catkin_workspace catkin_ws/compile_commands.json
 
 # Containers. DEBIAN names the release that the images are made of: bookworm (12) or trixie (13).
 export DEBIAN ?= bookworm
