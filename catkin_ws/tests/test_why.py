@@ -3,6 +3,7 @@
 
 import contextlib
 import itertools
+import multiprocessing
 import os
 import pathlib
 import re
@@ -14,13 +15,15 @@ import sysconfig
 import check_sets
 import doctor
 import pytest
+import rosgraph
+import rosmaster.main
 import rospkg
 import why
 from front_door import environment, make
 from mrp_check.building import configuring, cpp_words
 from mrp_check.rules import launch_file
 from mrp_check.sources import python_read
-from mrp_testing.master import master, uri_of
+from mrp_testing.master import uri_of
 from mrp_testing.ports import free_port
 from mrp_testing.process import LIVE, Process
 from mrp_testing.proves import proves
@@ -52,6 +55,10 @@ PACKAGE_XML = """<package format="2">
 """
 RELEASE = pathlib.Path("/etc/debian_version").read_text().split(".")[0]
 ENDING = 10.0  # seconds that a program has to end after Ctrl-C
+
+# Python takes longer to load the master than it lives here: it is loaded once, and then copied.
+MASTERS = multiprocessing.get_context("forkserver")
+MASTERS.set_forkserver_preload(["rosmaster.main"])
 
 
 @pytest.fixture(scope="session")
@@ -107,6 +114,20 @@ def env(request, tmp_path, known_compiler, roscore):
         env["SETUPTOOLS_USE_DISTUTILS"] = "stdlib"
     with master(port) if "master" in needs else contextlib.nullcontext():
         yield env
+
+
+@contextlib.contextmanager
+def master(port):
+    """Have a master at a port, as the program rosmaster starts it."""
+    arguments = ["rosmaster", "--core", "-p", str(port)]
+    process = MASTERS.Process(target=rosmaster.main.rosmaster_main, args=(arguments,))
+    process.start()
+    try:
+        wait_until(lambda: rosgraph.is_master_online(uri_of(port)), "a master".__str__)
+        yield
+    finally:
+        process.kill()
+        process.join()
 
 
 def missing(entry, lines):

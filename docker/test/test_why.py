@@ -30,5 +30,6 @@ def test_text_is_printed(entry, image):
     )
     printed = why.mask(done.stdout.replace(PREFIX + "why", "mrp"))
     for text in entry.shows:
-        for line in why.shown_on(text):
-            assert why.mask(line) in printed
+        # Which Docker runs is no matter of this machine's Debian.
+        texts = [why.shown_on(text, release) for release in ("12", "13")]
+        assert any(all(why.mask(line) in printed for line in lines) for lines in texts), text
