@@ -208,7 +208,7 @@ test-browser: packages-test-browser $(BUILT_WHOLE) docs  ## open every page in C
 doctor:  ## find what keeps the tutorial from running on this machine
 	@test -x /usr/bin/python3 || { echo "[FAIL] expected /usr/bin/python3; there is none"; \
 	  echo "       mend: make deps"; exit 1; }
-	@/usr/bin/python3 -I catkin_ws/tools/doctor.py
+	@/usr/bin/python3 -IB catkin_ws/tools/doctor.py
 
 # A text may have quotes, and $(...) of a launch file, which make must not read.
 .PHONY: why

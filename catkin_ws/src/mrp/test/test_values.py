@@ -69,18 +69,23 @@ class TestValues(unittest.TestCase):
             self.assertLessEqual(len(values), periods, f"too many: {values}")
 
             # Not latched: a late subscriber hears the next value first, not the last one again.
-            before = connections_to_test(publisher)
-            subscriber.unregister()
-            late = []
-            self.subscribe(late)
-            process.wait_for(
-                lambda: connections_to_test(publisher) - before, "the late subscriber is connected"
-            )
-            self.turn_clock(periods + 1)
-            process.wait_for(lambda: late, "the late subscriber hears a value")
+            late = self.hear_late(publisher, process, subscriber, periods + 1)
         first = contract.FIRST_VALUE[publisher]
         self.assertEqual(values, [first + i * contract.STEP for i in range(len(values))])
-        self.assertEqual(late[0], values[-1] + contract.STEP, "what the late subscriber hears")
+        self.assertEqual(late, values[-1] + contract.STEP, "what the late subscriber hears")
+
+    def hear_late(self, publisher, process, subscriber, periods):
+        """Return the first value that is heard in so many periods, in place of the subscriber."""
+        before = connections_to_test(publisher)
+        subscriber.unregister()
+        late = []
+        self.subscribe(late)
+        process.wait_for(
+            lambda: connections_to_test(publisher) - before, "the late subscriber is connected"
+        )
+        self.turn_clock(periods)
+        process.wait_for(lambda: late, "the late subscriber hears a value")
+        return late[0]
 
     @proves(
         "The C++ publisher sends 2, 4, 6 and so on, one number every 0.5 seconds.",

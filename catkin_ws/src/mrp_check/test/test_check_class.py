@@ -1,19 +1,15 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """A class at once: one table, and a broken submission never stops the rest."""
 
-import contextlib
 import csv
 import dataclasses
 import html.parser
 import os
 import pathlib
-import signal
-import subprocess
-import sys
 import threading
-import uuid
 
 import pytest
+from check_rules import hand_in
 from mrp_check import check
 from mrp_check.cli import check as check_command
 from mrp_check.cli import classroom
@@ -22,26 +18,12 @@ from mrp_check.contract.verdict import unchecked
 from mrp_check.report import class_table, json_
 from mrp_check.rules import REQUIREMENTS
 from mrp_check.student import package, submissions
-from mrp_testing.process import processes_with
 from mrp_testing.proves import proves
-from mrp_testing.waiting import DEADLINE, wait_until
+from mrp_testing.waiting import DEADLINE
 
 pytestmark = pytest.mark.quick
 
-MANIFEST = """<package format="3"><name>{name}</name><version>0.1.0</version>
-<description>d</description><maintainer email="a@mrp.example">A</maintainer><license>BSD</license>
-<buildtool_depend>catkin</buildtool_depend></package>
-"""
 SPEC_FILE = spec.find("pub_sub")
-
-
-def hand_in(folder, name, cmake="cmake_minimum_required(VERSION 3.10)\n"):
-    """Make a submission that has little more than a manifest; return its folder."""
-    made = folder / name
-    made.mkdir(parents=True)
-    (made / "package.xml").write_text(MANIFEST.format(name="student_pkg"))
-    (made / "CMakeLists.txt").write_text(cmake)
-    return made
 
 
 class Room(classroom.Classroom):
@@ -332,89 +314,3 @@ def test_html(results, tmp_path):
     assert "<b>anna" in page.texts
     assert "src/a.py:3: publishes <2>" in page.texts
     assert page.texts.count("✗") == 2
-
-
-def test_a_name_that_is_no_text_is_shown(tmp_path):
-    """Bytes that are no UTF-8, and what would clear the screen."""
-    (tmp_path / "class" / os.fsdecode(b"z\xff\x1b[2J")).mkdir(parents=True)
-    tables = tmp_path / "table.csv", tmp_path / "table.html"
-    options = ("--csv", tables[0], "--html", tables[1])
-    with command("--class", tmp_path / "class", *options) as checker:
-        output, said = checker.communicate()
-    assert checker.returncode == 1, said
-    for text in (output, said, *(table.read_text() for table in tables)):
-        assert "z\ufffd\ufffd[2J" in text
-
-
-@pytest.fixture
-def seconds():
-    """For how long the submission sleeps: a number that no other test on this machine has."""
-    return f"10000.{uuid.uuid4().int}"
-
-
-def hanging(seconds):
-    return f"""cmake_minimum_required(VERSION 3.10)
-project(student_pkg)
-execute_process(COMMAND sleep {seconds})
-"""
-
-
-@contextlib.contextmanager
-def command(*arguments):
-    """The checker's command, running; whatever becomes of the test, it ends with it."""
-    program = "from mrp_check.cli.check import main; main()"
-    env = {**os.environ, "PYTHONPATH": ":".join(sys.path)}
-    with subprocess.Popen(
-        ["/usr/bin/python3", "-c", program, *map(str, arguments)],
-        env=env,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-    ) as checker:
-        try:
-            yield checker
-        finally:
-            checker.kill()
-
-
-@proves("rosrun mrp_check check PATH checks one package; --class checks a folder of them.")
-@pytest.mark.slow
-def test_one_that_hangs(tmp_path, seconds):
-    """The real command: one submission's CMake never ends, another is an empty folder."""
-    hand_in(tmp_path / "class", "anna", hanging(seconds))
-    (tmp_path / "class" / "berta").mkdir()
-    table = tmp_path / "table.csv"
-    page = tmp_path / "table.html"
-    arguments = ("--class", tmp_path / "class", "--timeout", 5, "--csv", table, "--html", page)
-    with command(*arguments) as checker:
-        output, errors = checker.communicate()
-    assert checker.returncode == 1, errors
-    rows = list(csv.DictReader(table.read_text().splitlines()))
-    assert [row["submission"] for row in rows] == ["anna", "berta"]
-    assert rows[0]["verdict"] in (check.FINDINGS, check.UNCHECKED)
-    assert rows[1]["verdict"] == check.UNCHECKED
-    assert "berta" in output
-    assert "2 of 2: " in errors
-    assert "berta" in page.read_text()
-    assert not processes_with(seconds)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-@pytest.mark.parametrize("what", [["--class"], []], ids=["class", "package"])
-def test_a_signal_ends_all(tmp_path, monkeypatch, seconds, what, number):
-    """What runs at that moment is ended, and nothing is left of it, in no folder either."""
-    scratch = tmp_path / "scratch"
-    scratch.mkdir()
-    monkeypatch.setenv("TMPDIR", str(scratch))
-    hand_in(tmp_path / "class", "anna", hanging(seconds))
-    folder = tmp_path / "class" if what else tmp_path / "class" / "anna"
-    with command(*what, folder) as checker:
-        wait_until(lambda: processes_with(seconds), "the submission's CMake runs")
-        checker.send_signal(number)
-        _, errors = checker.communicate()
-    assert checker.returncode == 1
-    assert "stopped before its end" in errors
-    assert "Traceback" not in errors
-    assert list(scratch.iterdir()) == []
-    assert not processes_with(seconds)

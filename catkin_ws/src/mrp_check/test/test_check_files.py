@@ -7,7 +7,6 @@ import re
 import check_rules
 import pytest
 from check_rules import CMAKE, MANIFEST, file_findings, told
-from mrp_check.building import compiler, configuring, cpp_words
 from mrp_check.rules import cmake as cmake_rule
 from mrp_check.rules import dependencies, manifest, messages, package_name, scripts, targets, text
 from mrp_check.sources import uses
@@ -236,69 +235,6 @@ def test_script_that_hides_a_module_of_rospys(tmp_path):
     assert [(f.file, f.severity) for f in findings] == [("src/logging.py", "error")]
 
 
-CPP = """#include <ros/ros.h>
-int main()
-{
-  if (true)
-  {
-    f();
-  return 0;
-}
-"""
-
-
-def test_unbalanced_brace_is_found_by_the_indentation():
-    assert cpp_words.unbalanced_brace(CPP.splitlines()) == (5, "}")
-    assert cpp_words.unbalanced_brace(CPP.replace("f();", "f(); }").splitlines()) is None
-    assert cpp_words.unbalanced_brace(["}", "// {"]) == (1, "{")
-
-
-@pytest.mark.parametrize(
-    ("error", "says"),
-    [
-        ("expected ‘;’ before ‘return’", "a semicolon is missing"),
-        ("‘ros’ has not been declared", "#include <ros/ros.h> is missing"),
-        ("‘uint32_t’ was not declared in this scope", "#include <cstdint> is missing"),
-        ("‘countr’ was not declared in this scope; did you mean ‘counter’?", "counter is meant"),
-        ("std_msgs/UInt23.h: No such file or directory", "std_msgs/UInt32.h is meant"),
-        (
-            "no matching function for call to ‘ros::NodeHandle::subscribe(const char [2])’",
-            "arguments of subscribe() do not fit",
-        ),
-        (
-            "binding reference of type ‘ros::ParameterAdapter<std_msgs::UInt32_<std::allocator<"
-            "void> >&>::Parameter’ {aka ‘std_msgs::UInt32_<std::allocator<void> >&’} to ‘const"
-            " std_msgs::UInt32_<std::allocator<void> >’ discards qualifiers",
-            "a std_msgs::UInt32& that is not const",
-        ),
-        ("something that nobody has seen before", "something that nobody has seen before"),
-    ],
-    ids=range(8),
-)
-def test_compilers_errors_in_plain_words(error, says, tmp_path):
-    package = check_rules.make(tmp_path / "src" / "some_pkg", src__a_DOT_cpp=CPP)
-    output = (
-        f"{package.root}/src/a.cpp:6:5: error: {error}\n{package.root}/src/a.cpp:7:1: error: x\n"
-    )
-    (problem,) = compiler.problems(output, package.root)
-    finding = compiler.finding(package, problem)
-    assert (finding.id, finding.file, finding.line) == ("compile", "src/a.cpp", 6)
-    assert says in finding.message
-
-
-def test_error_in_a_header_of_ros_is_where_the_package_uses_it(tmp_path):
-    package = check_rules.make(tmp_path / "src" / "some_pkg", src__a_DOT_cpp=CPP)
-    output = (
-        "In file included from /usr/include/ros/ros.h:1,\n"
-        f"                 from {package.root}/src/a.cpp:1:\n"
-        "/usr/include/ros/x.h: In instantiation of ‘void f()’:\n"
-        f"{package.root}/src/a.cpp:6:5:   required from here\n"
-        "/usr/include/ros/x.h:9:1: error: no type\n"
-    )
-    (problem,) = compiler.problems(output, package.root)
-    assert (problem.file, problem.line) == ("src/a.cpp", 6)
-
-
 @pytest.mark.parametrize("name", ["odd.py.save.1", "odd.py~", "odd.py.bak", "#odd.py#"])
 def test_what_an_editor_keeps_is_no_script(name, tmp_path):
     package = check_rules.make(
@@ -359,39 +295,6 @@ def test_own_service_is_made_before_it_is_used(without, file, says, tmp_path):
     ]
     assert len(found) == bool(without)
     assert all(one.startswith(file) and says in one for one in found), found
-
-
-@pytest.mark.parametrize(
-    ("said", "words"),
-    [
-        ("Messages depends on unknown pkg: odd_msgs (Missing find_package(odd_msgs?))", "odd_msgs"),
-    ],
-)
-def test_what_catkin_says_in_plain_words(said, words, tmp_path):
-    package = check_rules.make(tmp_path, CMakeLists_DOT_txt=CMAKE)
-    output = (
-        "CMake Error at /usr/share/catkin/cmake/catkin_package.cmake:302 (message):\n"
-        f"  {said}\nCall Stack (most recent call first):\n"
-        f"  {tmp_path}/CMakeLists.txt:4 (catkin_package)\n"
-    )
-    found = configuring.finding(package, output, tmp_path, check_rules.model_of(package))
-    assert (found.file, found.line) == ("CMakeLists.txt", 4)
-    assert words in found.message + found.fix + found.seen and "the page" not in found.fix
-
-
-def test_package_that_this_machine_has_not_is_not_the_students_fault(tmp_path):
-    package = check_rules.make(
-        tmp_path,
-        package_DOT_xml=MANIFEST.replace("</package>", "<depend>cv_bridge</depend></package>"),
-    )
-    said = 'Could not find a package configuration file provided by "{}" with any of'
-    assert configuring.absent(package, said.format("cv_bridge")) == "cv_bridge"
-    # Nobody asks for this one, and that one is misspelt.
-    assert configuring.absent(package, said.format("tf2")) is None
-    assert configuring.absent(package, said.format("rospyy")) is None
-    # Without a contract, CMakeLists.txt may ask for more.
-    assert configuring.absent(package, said.format("tf2"), is_contract=False) == "tf2"
-    assert configuring.absent(package, said.format("rospyy"), is_contract=False) is None
 
 
 @pytest.mark.parametrize(

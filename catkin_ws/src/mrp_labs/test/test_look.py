@@ -100,7 +100,7 @@ class TestLook(unittest.TestCase):
             self.check_roswtf(running)
 
     def check_commands_that_end(self):
-        nodes, ping, publisher, subscriber, topics, verbose, info, type_, echo = typed(
+        nodes, ping, publisher, subscriber, *of_topics = typed(
             "rosnode list",
             "rosnode ping -c 1 /look/publisher_py",
             "rosnode info /look/publisher_cpp",
@@ -123,7 +123,14 @@ class TestLook(unittest.TestCase):
         self.assertIn(f"Subscriptions:\n* {TOPIC} [std_msgs/UInt32]\n", text)
         for one in PUBLISHERS:
             self.assertIn(f"* topic: {TOPIC}\n* to: {one}\n* direction: inbound", text)
+        self.check_topics(*of_topics)
+        # The port at which a C++ node is called listens to all machines, that of a Python one not.
+        listening = [one.split()[1] for one in open("/proc/net/tcp") if one.split()[3] == "0A"]
+        for one, address in zip(PUBLISHERS, ("00000000", "0100007F")):
+            port = urllib.parse.urlparse(rosgraph.Master("/test_look").lookupNode(one)).port
+            self.assertIn(f"{address}:{port:04X}", listening, one)
 
+    def check_topics(self, topics, verbose, info, type_, echo):
         self.assertIn(TOPIC, topics)
         self.assertIn(f"* {TOPIC} [std_msgs/UInt32] 2 publishers", verbose)
         self.assertTrue(any(line.startswith(f"* {TOPIC} [std_msgs/UInt32] ") for line in verbose))
@@ -135,12 +142,6 @@ class TestLook(unittest.TestCase):
             + ["Subscribers:"]
             + [f"* {one}" for one in SUBSCRIBERS],
         )
-        # The port at which a C++ node is called listens to all machines, that of a Python one not.
-        listening = [one.split()[1] for one in open("/proc/net/tcp") if one.split()[3] == "0A"]
-        for one, address in zip(PUBLISHERS, ("00000000", "0100007F")):
-            port = urllib.parse.urlparse(rosgraph.Master("/test_look").lookupNode(one)).port
-            self.assertIn(f"{address}:{port:04X}", listening, one)
-
         # Both counts, each without a gap.
         values = [int(line[len("data: ") :]) for line in echo if line.startswith("data: ")]
         self.assertEqual(len(values), 6)

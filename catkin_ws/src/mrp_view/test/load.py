@@ -65,13 +65,33 @@ def deaf_browser(address):
         yield
 
 
-def main():
+def options():
     parser = argparse.ArgumentParser()
     parser.add_argument("--seconds", type=int, default=60)
     parser.add_argument("--rate", type=int, default=1000)
     parser.add_argument("--nodes", type=int, default=50)
     parser.add_argument("--browsers", type=int, default=10)
-    chosen = parser.parse_args()
+    return parser.parse_args()
+
+
+def watch(pid, pages, seconds):
+    """Print every ten seconds what the viewer takes, and what it has counted."""
+    for second in range(0, seconds, 10):
+        before, at = cpu_seconds(pid), time.monotonic()
+        time.sleep(10)
+        share = (cpu_seconds(pid) - before) / (time.monotonic() - at)
+        row = pages[0].rows.get(("/fast", "/load"), {}) if pages else {}
+        print(
+            f"{second + 10:4} s: {share:5.1%} of a core, {megabytes(pid):6.1f} MB, "
+            f"{row.get('rate')} messages a second, {row.get('count')} in all, "
+            f"{pages[0].samples['/fast'] if pages else 0} looked into; "
+            f"{sum(one.ticks for one in pages)} messages to browsers",
+            flush=True,
+        )
+
+
+def main():
+    chosen = options()
     port = free_port()
     os.environ["ROS_MASTER_URI"] = f"http://localhost:{port}"
     with contextlib.ExitStack() as stack:
@@ -96,19 +116,7 @@ def main():
         last = []
         thread = threading.Thread(target=lambda: last.append(publish(publisher, chosen.rate, stop)))
         thread.start()
-        pid = viewer.pid
-        for second in range(0, chosen.seconds, 10):
-            before, at = cpu_seconds(pid), time.monotonic()
-            time.sleep(10)
-            share = (cpu_seconds(pid) - before) / (time.monotonic() - at)
-            row = pages[0].rows.get(("/fast", "/load"), {}) if pages else {}
-            print(
-                f"{second + 10:4} s: {share:5.1%} of a core, {megabytes(pid):6.1f} MB, "
-                f"{row.get('rate')} messages a second, {row.get('count')} in all, "
-                f"{pages[0].samples['/fast'] if pages else 0} looked into; "
-                f"{sum(one.ticks for one in pages)} messages to browsers",
-                flush=True,
-            )
+        watch(viewer.pid, pages, chosen.seconds)
         stop.set()
         thread.join()
         if pages:

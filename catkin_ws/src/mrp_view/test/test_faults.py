@@ -94,24 +94,21 @@ class TestFaults(unittest.TestCase):
                     lambda: set(publishers) <= set(log_senders(page)), "both logs are heard"
                 )
                 with Process(*late, "_type:=std_msgs/Int32", extra_env=LIVE):
-                    page.wait_for(
-                        lambda: page.edges().get((topic, "/mismatch/late")) == "mismatch",
-                        "a red edge",
-                    )
-                    for publisher in publishers:
-                        page.wait_for(
-                            lambda: (
-                                page.link_states()[topic, publisher, "/mismatch/late"]
-                                == (
-                                    "mismatch",
-                                    f"{publisher} refuses /mismatch/late: it publishes "
-                                    "std_msgs/UInt32, and /mismatch/late expects std_msgs/Int32",
-                                )
-                            ),
-                            "the reason",
-                        )
+                    self.check_reason(page, topic, publishers)
                     page.wait_for_finding("mismatch")
                     self.assertEqual(page.edges()[topic, "/mismatch/subscriber_cpp"], "ok")
+
+    def check_reason(self, page, topic, publishers):
+        page.wait_for(
+            lambda: page.edges().get((topic, "/mismatch/late")) == "mismatch", "a red edge"
+        )
+        for publisher in publishers:
+            reason = (
+                f"{publisher} refuses /mismatch/late: it publishes std_msgs/UInt32, and"
+                " /mismatch/late expects std_msgs/Int32"
+            )
+            link = topic, publisher, "/mismatch/late"
+            page.wait_for(lambda: page.link_states()[link] == ("mismatch", reason), "the reason")
 
     @proves("namespaces_private.launch: each node is alone on its topic.")
     def test_private_names_are_islands(self):

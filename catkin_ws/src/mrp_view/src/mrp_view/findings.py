@@ -24,69 +24,81 @@ def findings(graph, counts, rows, viewer):
 
     graph: as graph.build returns it; counts: as graph.counts does; rows: as Listener.look does
     """
-    found = []
     # Of the log, and of the viewer itself, there is nothing to learn.
     counts = [one for one in counts if one["topic"] not in _LOG and one["to"] != viewer]
     rows = [one for one in rows if one["topic"] not in _LOG]
     edges = [one for one in graph["edges"] if viewer not in (one["from"], one["to"])]
-
-    def add(kind, text):
-        if sum(one["kind"] == kind for one in found) < MOST:
+    told = (
+        *_of_nodes(graph["nodes"]),
+        *_of_links(graph["links"]),
+        *_of_counts(counts),
+        *_of_topics(graph["topics"]),
+        *_of_islands(edges),
+        *_of_rows(rows),
+    )
+    found, number = [], collections.Counter()
+    for kind, text in told:
+        number[kind] += 1
+        if number[kind] <= MOST:
             found.append({"kind": kind, "page": PAGES[kind], "text": text})
+    return found
 
-    dead = [one["name"] for one in graph["nodes"] if one["state"] == "dead"]
-    if dead:
-        add(
-            "dead",
-            f"{_names(dead)} died without taking themselves off the master's list"
-            if len(dead) > 1
-            else f"{dead[0]} died without taking itself off the master's list",
-        )
-    for link in graph["links"]:
-        if link["state"] == "mismatch":
-            add("mismatch", link["why"])
-    for link in graph["links"]:
-        if link["state"] == "none":
-            add("none", link["why"])
+
+def _of_nodes(nodes):
+    dead = [one["name"] for one in nodes if one["state"] == "dead"]
+    if len(dead) > 1:
+        yield "dead", f"{_names(dead)} died without taking themselves off the master's list"
+    elif dead:
+        yield "dead", f"{dead[0]} died without taking itself off the master's list"
+
+
+def _of_links(links):
+    for state in ("mismatch", "none"):
+        yield from ((state, link["why"]) for link in links if link["state"] == state)
+
+
+def _of_counts(counts):
     for one in counts:
         where = f"from {one['from']} to {one['to']} on {one['topic']}"
         if one["dropped"]:
-            add(
+            yield (
                 "dropped",
                 f"{one['to']} has dropped {one['dropped']} of {one['received']} messages: its "
                 f"queue was full ({where})",
             )
         elif one["missing"]:
-            add(
+            yield (
                 "missing",
                 f"{one['missing']} of {one['sent']} messages {where} have not come out of "
                 "its queue: dropped, or still under way",
             )
-    latched = [one["name"] for one in graph["topics"] if one["latched"] and one["name"] not in _LOG]
+
+
+def _of_topics(topics):
+    latched = [one["name"] for one in topics if one["latched"] and one["name"] not in _LOG]
     if latched:
-        add(
-            "latched",
-            f"latched: who comes late to {_names(latched)} gets the last message",
-        )
+        yield "latched", f"latched: who comes late to {_names(latched)} gets the last message"
+
+
+def _of_islands(edges):
     for names in _islands(edges):
-        add(
-            "islands",
-            f"{len(names)} islands, as their topics are private: {_names(names)}",
-        )
+        yield "islands", f"{len(names)} islands, as their topics are private: {_names(names)}"
+
+
+def _of_rows(rows):
     for row in rows:
         if row["gone"] and row["rate"]:
-            add(
+            yield (
                 "forgotten",
                 f"{row['from']} goes on publishing {row['topic']}, but the master does not know "
                 "it: it has been restarted since",
             )
         if row["missing"] and row["missing"][0]:
-            add(
+            yield (
                 "gap",
                 f"{row['missing'][0]} values are missing in what {row['from']} counts on "
                 f"{row['topic']}",
             )
-    return found
 
 
 def _names(names):

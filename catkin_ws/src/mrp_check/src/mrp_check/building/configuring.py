@@ -28,17 +28,8 @@ def finding(package: Package, output: str, copy: pathlib.Path, model: Model) -> 
     match = _CMAKE_ERROR.search(output)
     if not match:
         return None
-    rest = output[match.end() :]
-    following = re.search(r"^CMake Error|^-- Configuring incomplete", rest, re.MULTILINE)
-    block = rest[: following.start()] if following else rest[:4000]
-    file, line = _relative_any(match.group("file"), copy), int(match.group("line"))
-    command = match.group("command") or ""
-    if file is None:
-        for caller in _STACK.finditer(block):
-            own = _relative_any(caller.group("file"), copy)
-            if own:
-                file, line, command = own, int(caller.group("line")), caller.group("command")
-                break
+    block = _block(output, match)
+    file, line, command = _place(match, block, copy)
     text = " ".join(block.split("Call Stack")[0].split())
     if file is None or file not in package.files:
         file, line = "CMakeLists.txt", 1
@@ -64,6 +55,22 @@ def finding(package: Package, output: str, copy: pathlib.Path, model: Model) -> 
         fix=fix,
         why=why,
     )
+
+
+def _block(output: str, error: re.Match[str]) -> str:
+    """Return what CMake prints of an error, up to the next one."""
+    rest = output[error.end() :]
+    following = re.search(r"^CMake Error|^-- Configuring incomplete", rest, re.MULTILINE)
+    return rest[: following.start()] if following else rest[:4000]
+
+
+def _place(error: re.Match[str], block: str, copy: pathlib.Path) -> tuple[str | None, int, str]:
+    """Return (file, line, command) of an error: those of the package that led to it, if any."""
+    for place in (error, *_STACK.finditer(block)):
+        file = _relative_any(place.group("file"), copy)
+        if file is not None:
+            return file, int(place.group("line")), place.group("command") or ""
+    return None, 1, error.group("command") or ""
 
 
 def _undeclared(package: Package, name: str, text: str) -> Finding:

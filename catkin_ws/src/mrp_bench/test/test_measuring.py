@@ -1,0 +1,337 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""make bench: every way's messages, and what is left when a measurement ends."""
+
+import os
+import signal
+import subprocess
+import sys
+import threading
+import uuid
+
+import pytest
+import rosgraph
+import yaml
+from mrp_bench import fan_figures, fans, launches, plans, rounds
+from mrp_bench.comparisons import COMPARISONS
+from mrp_bench.master import Master
+from mrp_bench.processes import cpu
+from mrp_bench.programs import ProgramError, Running, Slice
+from mrp_bench.ways import LIMITS, WAYS, Way
+from mrp_testing.process import Process, processes_with
+from mrp_testing.proves import proves
+from mrp_testing.waiting import wait_until
+from rospy.impl import tcpros_pubsub
+
+pytestmark = pytest.mark.quick
+
+
+@pytest.mark.parametrize("plan", [plans.QUICK, plans.FULL])
+def test_every_way_is_measured_beside_its_limit(plan):
+    assert {step.way for step in plan} <= set(WAYS)
+    for step in plan:
+        beside = {one.way for one in plan if one.piece[:2] == step.piece[:2]}
+        assert {"raw_cpp", "raw_py"} <= beside, step
+    assert len({(step.way, *step.piece[:2]) for step in plan}) == len(plan), (
+        "something is there twice"
+    )
+
+
+@proves("make bench QUICK=1 measures less.")
+def test_full_plan_has_every_way():
+    assert {step.way for step in plans.FULL} == set(WAYS)
+    assert len(plans.QUICK) < len(plans.FULL)
+
+
+@pytest.fixture
+def master(tmp_path, monkeypatch):
+    monkeypatch.setenv("ROS_MASTER_URI", os.environ.get("ROS_MASTER_URI", ""))
+    with Master(tmp_path / "master.log"):
+        yield
+
+
+@proves("Every way delivers every message in order, as long as the queues are unlimited.")
+@pytest.mark.slow
+def test_every_way_delivers_every_message_in_order(master, tmp_path):
+    plan = rounds.steps(WAYS, (8, 200, 10))
+    plan += rounds.steps([way for way in WAYS if "rostopic" not in way], (70000, 0, 3))
+    results = rounds.Results(tmp_path)
+    results.begin(plan, 1, resume=False)
+    rounds.run(plan, 1, results, print)
+    found = results.measurements()
+    assert len(found) == len(plan)
+    for one in found:
+        assert len(one["received"]) == WAYS[one["way"]].receivers
+        for pairs in one["received"]:
+            assert pairs[::2] == one["sent"], one["way"]
+            assert all(arrival > stamp for stamp, arrival in zip(pairs[::2], pairs[1::2]))
+        assert one["sender_cpu"] > 0
+        assert WAYS[one["way"]].receiver is None or one["receiver_cpu"] > 0
+
+
+@proves(
+    "It also prints how long it will still take.",
+    "It measures all ways in turns, round after round, so that background load affects all of "
+    "them equally.",
+    "If you stop a run, make bench RESUME=1 continues it.",
+)
+@pytest.mark.slow
+def test_a_run_goes_on_where_it_ended(tmp_path):
+    plan = rounds.steps(LIMITS, (8, 200, 10), (70000, 0, 3))
+    results = rounds.Results(tmp_path)
+    results.begin(plan, 4, resume=False)
+    with pytest.raises(KeyboardInterrupt):
+        rounds.run(plan, 4, results, interrupt_at("[5/"))
+    kept = {path: path.stat().st_mtime_ns for path in tmp_path.glob("samples/*/*")}
+    assert len(kept) == 5
+
+    results.begin(plan, 4, resume=True)
+    lines = []
+    rounds.run(plan, 4, results, lines.append)
+    steps = [line for line in lines if line.startswith("[")]
+    assert [line.split(" of 4")[0][-1] for line in steps] == [*"2223333", *"4444"]
+    assert [line.split(": ")[1].split(",")[0] for line in steps[3:7]] == [*LIMITS] * 2
+    assert all(line.endswith(" s left") for line in steps)
+    assert steps[-1].startswith("[11/11] round 4 of 4: raw_py, 68 kB as fast as it goes")
+    assert {path: path.stat().st_mtime_ns for path in kept} == kept
+    assert len(results.measurements()) == 16
+
+
+def interrupt_at(beginning):
+    """Return a function that raises KeyboardInterrupt when it is called with such a line."""
+
+    def say(line):
+        if line.startswith(beginning):
+            raise KeyboardInterrupt
+
+    return say
+
+
+def test_another_plan_cannot_be_resumed(tmp_path):
+    results = rounds.Results(tmp_path)
+    results.begin(rounds.steps(["raw_cpp"], (8, 0, 1)), 1, resume=False)
+    with pytest.raises(rounds.PlanError, match="found another plan: begin anew"):
+        results.begin(rounds.steps(["raw_cpp"], (8, 0, 2)), 1, resume=True)
+
+
+@pytest.mark.slow
+def test_program_that_ends_is_an_error(tmp_path, monkeypatch):
+    ends = Way("ends", "ends", ("bench_raw", "send=1"), ("bench_raw.py", "receive=1"))
+    monkeypatch.setitem(WAYS, "ends", ends)
+    results = rounds.Results(tmp_path)
+    results.begin([], 1, resume=False)
+
+    class Broken(rounds.Running):
+        def measure(self, piece):
+            self.senders[0].signal(signal.SIGKILL)
+            return super().measure(piece)
+
+    monkeypatch.setattr(rounds, "Running", Broken)
+    with pytest.raises(ProgramError, match="expected of 'bench_raw send=.*' the answer 'sent'"):
+        rounds.run(rounds.steps(["ends"], (8, 0, 1)), 1, results, print)
+
+
+@proves("The same with nodelets, which one manager loads.")
+@pytest.mark.slow
+def test_nodelets_are_loaded_by_one_manager(master, tmp_path):
+    with Running(WAYS["cpp_nodelet"], tmp_path / "log") as running:
+        running.start()
+        running.connect()
+        running.signal(signal.SIGCONT)
+        services = subprocess.check_output(["rosservice", "list"], text=True).split()
+        (manager,) = {name[: -len("/list")] for name in services if name.endswith("/list")}
+        listed = subprocess.check_output(["rosservice", "call", manager + "/list"], text=True)
+        nodes = subprocess.check_output(["rosnode", "list"], text=True).split()
+    assert yaml.safe_load(listed) == {"nodelets": [manager + "_Receiver", manager + "_Sender"]}
+    assert nodes == [manager, "/rosout"]
+
+
+@pytest.mark.parametrize("name", COMPARISONS)
+def test_comparison_has_ways_that_exist(name):
+    _, (size, rate, count), ways = COMPARISONS[name]
+    assert size >= 8 and rate >= 0 and count > 0
+    assert set(ways) <= set(WAYS) and len(ways) >= 2
+
+
+@proves("compare.py compares one way with the tutorial's plain code, and prints a table.")
+@pytest.mark.slow
+def test_comparison_prints_a_table():
+    with Process("rosrun", "mrp_bench", "compare.py", "direct_queue") as comparing:
+        assert comparing.wait() == 0, str(comparing)
+    lines = [line for line in comparing.lines if line.startswith("| C++")]
+    texts = [WAYS[name].text for name in ("cpp_cpp", "cpp_direct")]
+    assert [line.split(" | ")[0] for line in lines] == ["| " + text for text in texts]
+    assert all(line.split(" | ")[7:9] == ["0", "kept"] for line in lines), lines
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    "arguments", ["", "direct", "8 9 x cpp_cpp", "8 9 5 cpp_cppp", "7 9 5 cpp_cpp"]
+)
+def test_compare_says_what_it_expects(arguments):
+    command = ["rosrun", "mrp_bench", "compare.py", *arguments.split()]
+    done = subprocess.run(command, stderr=subprocess.PIPE, text=True)
+    assert done.returncode == 1
+    assert "Usage: compare.py NAME, as in `compare.py direct_queue`\n" in done.stderr
+    assert "\n  unqueued         rospy's queue_size=None: " in done.stderr
+    assert "The ways are: raw_cpp, raw_py, cpp_cpp, " in done.stderr
+    assert "Traceback" not in done.stderr
+
+
+@proves(
+    "make bench starts the tutorial's launch file for up to fifty robots at once, and beside them "
+    "it sends from one node to another.",
+)
+@pytest.mark.slow
+def test_robots_start_and_stop(master, tmp_path):
+    results = rounds.Results(tmp_path)
+    launches.run([2], 1, results, print)
+    (found,) = launches.load(results)
+    names = {
+        f"robot{number}/{kind}_{language}_node"
+        for number in (1, 2)
+        for kind in ("publisher", "subscriber")
+        for language in ("cpp", "py")
+    }
+    for what in ("started", "ready", "stopping"):
+        assert {name for _, of, name in found["events"] if of == what} == names, what
+    assert found["up"] < found["stop"] < found["end"]
+    assert 0 < found["cpp_megabytes"] < found["py_megabytes"]
+    assert found["cores"] > 0
+    assert len(found["pair"]["sent"]) == launches.PIECE.count
+    assert found["pair"]["received"][::2] == found["pair"]["sent"]
+
+    launches.run([2], 1, results, pytest.fail)
+
+
+@pytest.fixture
+def mark(monkeypatch):
+    """An environment variable that no process has but those that are started from now on.
+
+    What is left of them at the end is killed.
+    """
+    variable = f"MRP_TEST_MARK={uuid.uuid4()}"
+    monkeypatch.setenv(*variable.split("="))
+    yield variable
+    for pid in processes_with(variable):
+        os.kill(pid, signal.SIGKILL)
+
+
+@proves(
+    "make bench also measures fans: up to a hundred publishers to one subscriber, and one "
+    "publisher to up to a hundred subscribers.",
+    "All queues are unlimited, so messages are late and not lost.",
+)
+@pytest.mark.slow
+def test_fans_deliver_every_message_and_leave_nothing_behind(master, mark, tmp_path, monkeypatch):
+    monkeypatch.setattr(fans, "PIECE", Slice(size=8, rate=100, count=5))
+    results = rounds.Results(tmp_path)
+    fans.run([1, 2], results, print)
+    found = fans.load(results)
+    assert sorted((one["language"], one["publishers"], one["subscribers"]) for one in found) == [
+        (language, *sides) for language in ("cpp", "py") for sides in ((1, 1), (1, 2), (2, 1))
+    ]
+    for one in found:
+        assert len(one["sent"]) == 5 * one["publishers"]
+        assert len(one["received"]) == one["subscribers"]
+        for received in one["received"]:
+            assert sorted(received[::2]) == sorted(one["sent"])
+            assert all(arrival > stamp for stamp, arrival in zip(received[::2], received[1::2]))
+        assert fan_figures.figures(one)["lost"] == 0
+        assert one["up"] > 0 and one["sender_cpu"] > 0 and one["receiver_cpu"] > 0
+        assert one["publisher_megabytes"] > 1 and one["subscriber_megabytes"] > 1
+    assert not processes_with(mark)
+
+    fans.run([1, 2], results, pytest.fail)
+
+
+@proves(
+    "When a C++ node ends, ros::spin asks the node's queue for callbacks until the master knows "
+    "that the node has gone.",
+    "By then the queue is disabled and answers at once, so each node takes a whole core.",
+    "A node with this function in place of ros::spin waits without work:",
+)
+@pytest.mark.slow
+def test_ros_spin_takes_a_core_while_its_node_ends(master):
+    """And mrp_bench's spin() does not. A master that stands still keeps both from ending."""
+    core = rosgraph.Master("/test_bench")
+    with Process("rosrun", "mrp", "subscriber_cpp_node") as plain:
+        with Process("rosrun", "mrp_bench", "bench_node", "subscribe=1", "only_small=1") as calm:
+            wait_until(
+                lambda: (
+                    {"/great_topic", "/small"} <= {name for name, _ in core.getSystemState()[1]}
+                ),
+                "both have subscribed",
+            )
+            pid = core.getPid()
+            os.kill(pid, signal.SIGSTOP)
+            try:
+                begin = cpu([plain.pid]), cpu([calm.pid])
+                for node in (plain, calm):
+                    os.kill(node.pid, signal.SIGINT)
+                wait_until(lambda: cpu([plain.pid]) - begin[0] > 1, "a second of processor time")
+                assert cpu([calm.pid]) - begin[1] < 0.1
+            finally:
+                os.kill(pid, signal.SIGCONT)
+            assert [plain.wait(), calm.wait()] == [0, 0]
+
+
+BENCH_THAT_WAITS = """
+import pathlib, signal, sys
+from mrp_bench.master import Master
+from mrp_bench.programs import Running
+from mrp_bench.ways import WAYS
+
+log = pathlib.Path(sys.argv[1])
+with Master(log), Running(WAYS["rostopic_pub"], log) as running:
+    running.start()
+    running.connect()
+    print("connected", flush=True)
+    signal.pause()
+"""
+
+
+@pytest.mark.slow
+def test_nothing_outlives_a_bench_that_is_killed(mark, tmp_path):
+    """A master with a child of its own, and programs that stand still, one of them with a child."""
+    with Process(sys.executable, "-c", BENCH_THAT_WAITS, str(tmp_path / "log")) as bench:
+        bench.wait_for(lambda: "connected" in bench.lines, "the programs are connected")
+        commands = processes_with(mark).values()
+        for name in ("rosmaster", "bench_node", "bench_rostopic.py", "rostopic pub"):
+            assert any(name in command for command in commands), (name, commands)
+        os.kill(bench.pid, signal.SIGKILL)
+        wait_until(lambda: not processes_with(mark), "all have ended")
+
+
+@proves(
+    "A Python publisher with a queue calls time.sleep(0) after each message, so that its sending "
+    "thread gets its turn.",
+)
+def test_rospy_sleeps_after_each_message_that_it_queues(monkeypatch):
+    """What the page says of time.sleep(0)."""
+
+    class Connection:
+        done = False
+        written = []
+
+        def set_cleanup_callback(self, callback):
+            self.wake_up = callback
+
+        def write_data(self, data):
+            self.written.append(data)
+
+    connection = Connection()
+    before = threading.enumerate()
+    queued = tcpros_pubsub.QueuedConnection(connection, 0)
+    (sending,) = {*threading.enumerate()} - {*before}
+    sleeps = []
+    monkeypatch.setattr(tcpros_pubsub.time, "sleep", sleeps.append)
+    try:
+        for number in range(3):
+            queued.write_data(number)
+        assert sleeps == [0, 0, 0]
+    finally:
+        monkeypatch.undo()
+        wait_until(lambda: connection.written == [0, 1, 2], "the sending thread has sent all")
+        connection.done = True
+        connection.wake_up(connection)
+        sending.join()
