@@ -8,7 +8,6 @@ import functools
 import pathlib
 import stat
 from concurrent.futures import Future
-from typing import Callable
 
 from mrp_check.case import Case
 from mrp_check.contract.finding import Finding
@@ -17,7 +16,6 @@ from mrp_check.running import observing, unasked
 from mrp_check.sources import executables, uses
 from mrp_check.student import launch as launching
 from mrp_check.student.launch import Launch
-from mrp_check.student.package import Package
 
 _MOST = 12  # launch files that are looked at
 
@@ -25,17 +23,12 @@ _MOST = 12  # launch files that are looked at
 class AnyCase(Case):
     """See above. `launch` is all launch files together."""
 
-    def __init__(
-        self,
-        package: Package,
-        folder: pathlib.Path,
-        timeout: float,
-        progress: Callable[[str], None],
-    ) -> None:
-        super().__init__(package, None, folder, timeout, progress)
-        for path in package.of_kind("python"):
-            if package.shebang(path) and executables.is_script(package, path):
-                _make_startable(self.package_folder / path)
+    def _copy(self, path: str) -> bool:
+        copied, package = super()._copy(path), self.package
+        is_python = package.kind(path) == "python" and package.shebang(path)
+        if is_python and executables.is_script(package, path):
+            _make_startable(self.package_folder / path)
+        return copied
 
     @functools.cached_property
     def spec(self) -> Spec:

@@ -15,6 +15,7 @@ from mrp_check.confined import cpp_headers
 from mrp_check.confined.launch_dump import Started
 from mrp_check.contract.finding import Finding
 from mrp_check.contract.spec import Spec
+from mrp_check.contract.words import last_part
 from mrp_check.running import observing
 from mrp_check.running.node import Node
 from mrp_check.running.places import Places
@@ -106,7 +107,7 @@ class Case(Workspace):
             path: node
             for node in nodes
             for path in self.package.of_kind("python")
-            if node.package == self.package.name and path.rsplit("/", 1)[-1] == node.type
+            if node.package == self.package.name and last_part(path) == node.type
         }
 
     @functools.cached_property

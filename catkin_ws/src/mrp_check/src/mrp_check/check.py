@@ -55,8 +55,7 @@ def check(
     asked = REQUIREMENTS if spec else {id_ for rule in rules for id_ in rule.ids}
     ids = [id_ for id_ in REQUIREMENTS if id_ in asked and (id_ in only or not only)]
     with contextlib.nullcontext(kept) if kept else scratch_folder() as folder:
-        given = folder, timeout, progress
-        case = Case(package, spec, *given) if spec else AnyCase(package, *given)
+        case = (Case if spec else AnyCase)(package, spec, folder, timeout, progress)
         try:
             examination = _Examination(case, rules, ids, asked, early)
         except BaseException:  # such as Ctrl-C

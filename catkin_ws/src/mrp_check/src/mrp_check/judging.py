@@ -92,8 +92,7 @@ def _is_rule(case: Case, finding: Finding) -> bool:
         return finding.file in {f for files in case.facts.sources.values() for f in files}
     if finding.id == "scripts" and is_python:
         # catkin_install_python() makes an executable of what lacks a first line, too.
-        relayed = {s.path for s in case.model.scripts if s.by == "catkin_install_python"}
-        return not (finding.file in relayed and _came_up(case, finding.file))
+        return not (finding.file in case.model.relayed() and _came_up(case, finding.file))
     if finding.id in ("spin", "lifetime") and not is_python:
         return "publisher that" not in finding.message
     if finding.id == "launch-file":

@@ -8,7 +8,7 @@ import typing
 from typing import Callable, Sequence
 
 from mrp_check.contract.finding import Change
-from mrp_check.contract.words import nearest, perhaps
+from mrp_check.contract.words import last_part, nearest, perhaps
 from mrp_check.sources import uses
 from mrp_check.student.package import Package
 
@@ -207,8 +207,8 @@ def _missing_header(error: Error) -> Words:
         near = nearest(header, [f"std_msgs/{name}.h" for name in _MESSAGES] + ["ros/ros.h"], 0.7)
         fix = f"Write {near}." if near else "Correct the name, or install and declare its package."
         return Words(f"there is no header {header}.{perhaps(near)}", fix)
-    own = [path.rsplit("/", 1)[-1][:-4] for path in package.of_kind("message")]
-    name = header.rsplit("/", 1)[-1][:-2]
+    own = [last_part(path)[:-4] for path in package.of_kind("message")]
+    name = last_part(header)[:-2]
     if name in own:
         return Words(
             f"there is no {header} yet: it is made of {name}.msg, and the target does not wait"

@@ -19,7 +19,7 @@ import sys
 import tempfile
 import threading
 
-from mrp_check import confine
+from mrp_check.check import scratch_folder
 from mrp_check.confined import cpp_headers, variables
 from mrp_check.contract import resources
 from mrp_check.contract.errors import CannotCheck, PackageError
@@ -120,17 +120,10 @@ class Classroom:
         package: its folder
         name: the submission's
         """
-        with tempfile.TemporaryDirectory(prefix="mrp_check_class_") as folder:
-            scratch = pathlib.Path(folder)
-            scratch.chmod(0o711)  # for the user that the package's programs run as
-            try:
-                command = self._command(package, name, scratch / "report.json")
-                code, said = self._run(command, self._environment(scratch))
-                report = _read(scratch / "report.json")
-            finally:
-                for left in scratch.iterdir():
-                    if left.is_dir():
-                        confine.remove(left)
+        with scratch_folder() as scratch:
+            command = self._command(package, name, scratch / "report.json")
+            code, said = self._run(command, self._environment(scratch))
+            report = _read(scratch / "report.json")
         if not report:
             raise CannotCheck(said[-1] if said else f"The check ended with {code}.")
         return report

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import functools
 import json
 import os
 import re
@@ -165,26 +166,24 @@ class Unit:
             return self.value(children[1], depth)
         return None
 
-    @property
+    @functools.cached_property
     def changed(self) -> set[int]:
         """Variables that are given a value in more places than their declaration."""
-        if not hasattr(self, "_changed"):
-            self._changed: set[int] = set()
-            kinds = self.kinds
-            for cursor in self.cursors:
-                children = list(cursor.get_children())
-                if not children:
-                    continue
-                assigns = cursor.kind == kinds.COMPOUND_ASSIGNMENT_OPERATOR
-                if cursor.kind == kinds.BINARY_OPERATOR and len(children) == 2:
-                    assigns = self.operator(cursor, children) == "="
-                if cursor.kind == kinds.UNARY_OPERATOR:
-                    tokens = [t.spelling for t in cursor.get_tokens()]
-                    assigns = "++" in tokens or "--" in tokens or "&" in tokens[:1]
-                target = self.peel(children[0]).referenced if assigns else None
-                if target is not None:
-                    self._changed.add(target.hash)
-        return self._changed
+        changed, kinds = set(), self.kinds
+        for cursor in self.cursors:
+            children = list(cursor.get_children())
+            if not children:
+                continue
+            assigns = cursor.kind == kinds.COMPOUND_ASSIGNMENT_OPERATOR
+            if cursor.kind == kinds.BINARY_OPERATOR and len(children) == 2:
+                assigns = self.operator(cursor, children) == "="
+            if cursor.kind == kinds.UNARY_OPERATOR:
+                tokens = [t.spelling for t in cursor.get_tokens()]
+                assigns = "++" in tokens or "--" in tokens or "&" in tokens[:1]
+            target = self.peel(children[0]).referenced if assigns else None
+            if target is not None:
+                changed.add(target.hash)
+        return changed
 
     def operator(self, cursor: Cursor, children: Sequence[Cursor]) -> str:
         end = children[0].extent.end.offset

@@ -17,10 +17,7 @@ GAP = "{}"  # what stands in a text for a part that the source does not say plai
 def number(token: str) -> Number | None:
     """Return the number that a C++ literal stands for, or None."""
     text = token.lower()
-    if text.startswith("0x"):
-        text = text.rstrip("ul")
-    else:
-        text = text.rstrip("ulf")
+    text = text.rstrip("ul" if text.startswith("0x") else "ulf")
     try:
         return int(text, 0) if re.fullmatch(r"0x[0-9a-f]+|\d+", text) else float(text)
     except ValueError:

@@ -10,6 +10,7 @@ from typing import Dict, List, Optional, Tuple
 
 Number = typing.Union[int, float]
 Line = Tuple[float, str, str]  # its time, its stream ("out" or "err"), its text
+_AFTER = 0.5  # seconds in which roslaunch may still show what was printed before it was to end
 
 
 @dataclasses.dataclass(frozen=True)
@@ -100,6 +101,10 @@ class LaunchResult:
     stopped_in: Optional[float] = None
     left: List[Left] = dataclasses.field(default_factory=list)
     latched: Dict[str, List[str]] = dataclasses.field(default_factory=dict)
+
+    def until_asked(self) -> List[str]:
+        """Return the lines that were printed before it was asked to end, or just then."""
+        return [text for time, _, text in self.lines if time <= self.asked + _AFTER]
 
 
 @dataclasses.dataclass

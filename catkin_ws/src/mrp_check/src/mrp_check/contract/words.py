@@ -1,10 +1,15 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Which of several names is meant by one that is misspelt, and how to say so."""
+"""Names: the last part of one, and which of several is meant by one that is misspelt."""
 
 from __future__ import annotations
 
 import difflib
 from typing import Iterable
+
+
+def last_part(name: str) -> str:
+    """Return what stands behind the last slash, of a path or of a name of ROS."""
+    return name.rsplit("/", 1)[-1]
 
 
 def nearest(name: str, names: Iterable[str], alike: float = 0.6) -> str | None:

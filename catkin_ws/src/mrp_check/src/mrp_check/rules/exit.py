@@ -14,6 +14,7 @@ from mrp_check.confined.seen import Alone, LaunchResult
 from mrp_check.contract.finding import Finding, Where
 from mrp_check.contract.requirements import Requirement, Rule
 from mrp_check.contract.spec import Shutdown
+from mrp_check.contract.words import last_part
 from mrp_check.running.node import Node
 from mrp_check.running.places import Traceback
 from mrp_check.running.words import code_text, last_words
@@ -74,7 +75,7 @@ def _of(node: Node, direct: Alone, asked: float, shutdown: Shutdown) -> Iterator
 def _outlives(node: Node, code: int | None) -> tuple[str, Where, str]:
     """Return (message, place, what was seen) of an object that is destroyed after ROS itself."""
     # A publisher at file scope does no harm; a timer does.
-    globals_ = node.places.facts_of(node.name, Kind.GLOBAL, Kind.OWNER)
+    globals_ = node.places.facts.of(node.name, Kind.GLOBAL, Kind.OWNER)
     globals_.sort(key=lambda p: "ros::Timer" not in (p.text, *p.holds))
     what, place = "a ROS object", node.places.of(node.name, Kind.TIMER, Kind.HANDLE)
     if globals_:
@@ -104,7 +105,7 @@ def _runs(node: Node) -> list[tuple[str, LaunchResult | None]]:
     """Return the name of a node under roslaunch, with what was seen there, of each time it ran."""
     observed = node.places.observed
     own: list[tuple[str, LaunchResult | None]] = [
-        (path.rsplit("/", 1)[-1], launched.seen)
+        (last_part(path), launched.seen)
         for launched in observed.launches
         for path, name in launched.nodes.items()
         if name == node.name

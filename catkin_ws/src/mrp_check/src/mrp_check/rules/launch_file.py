@@ -10,7 +10,7 @@ from mrp_check import evidence
 from mrp_check.case import Case
 from mrp_check.contract.finding import WARNING, Finding, Line
 from mrp_check.contract.requirements import Requirement, Rule
-from mrp_check.contract.words import nearest
+from mrp_check.contract.words import last_part, nearest
 from mrp_check.student.launch import Launch
 from mrp_check.student.xml_file import Element
 
@@ -72,7 +72,7 @@ class _Said:
 
 
 def _twice(said: _Said, name: str) -> _Words:
-    name = name.rsplit("/", 1)[-1]
+    name = last_part(name)
     place = [said.start, *said.named("node", name)][-1]
     message = f"Two nodes of the launch file have the name {name}; each needs its own."
     return place, message, "Give each <node> its own name."

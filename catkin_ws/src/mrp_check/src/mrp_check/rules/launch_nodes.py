@@ -11,7 +11,7 @@ from mrp_check.case import Case
 from mrp_check.confined.launch_dump import Started
 from mrp_check.contract.finding import NOTE, Finding
 from mrp_check.contract.requirements import Requirement, Rule
-from mrp_check.contract.words import nearest
+from mrp_check.contract.words import last_part, nearest
 from mrp_check.sources import uses
 from mrp_check.student.cmake import Model
 from mrp_check.student.launch import Launch
@@ -93,8 +93,8 @@ def _last_line(package: Package, launch: Launch) -> int:
 def _executables(package: Package, model: Model) -> set[str]:
     """Return the names that roslaunch can find in the package: built ones and scripts."""
     names = set(model.executables())
-    names |= {script.path.rsplit("/", 1)[-1] for script in model.scripts}
-    names |= {path.rsplit("/", 1)[-1] for path in package.of_kind("python")}
+    names |= {last_part(script.path) for script in model.scripts}
+    names |= {last_part(path) for path in package.of_kind("python")}
     return names
 
 
@@ -166,7 +166,7 @@ def _source_of(package: Package, model: Model, name: str) -> str | None:
     built = {source for target in model.targets.values() for source in target.sources}
     spare = [path for path in package.of_kind("cpp") if path not in built]
     for path in spare:
-        if os.path.splitext(path.rsplit("/", 1)[-1])[0] == name:
+        if os.path.splitext(last_part(path))[0] == name:
             return path
     return spare[0] if len(spare) == 1 else None
 

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import re
 from typing import Iterator
 
 from mrp_check.case import Case
@@ -12,22 +11,20 @@ from mrp_check.contract.finding import NOTE, Finding, Where
 from mrp_check.contract.requirements import ANY, Rule
 from mrp_check.running.observing import Launched
 from mrp_check.running.starting import id_of_error
+from mrp_check.running.traces import DIED
 from mrp_check.running.words import code_text
 
-_DIED = re.compile(r"\[(?P<name>\S+)-\d+\] process has died \[pid \d+, exit code (?P<code>-?\d+)")
 _GIVES_UP = "RLException: "
-_AFTER = 0.5  # seconds in which roslaunch may still show what was printed before it was to end
 
 
 def _findings(case: Case) -> Iterator[Finding]:
     for launched in case.observed.launches:
-        end = launched.seen.asked + _AFTER
-        lines = [text for time, _, text in launched.seen.lines if time <= end]
+        lines = launched.seen.until_asked()
         yield from _gave_up(case, launched, lines)
         yield from _raised(case, launched, lines)
         for text in lines:
-            died = _DIED.search(text)
-            name = died and launched.nodes.get("/" + died["name"])
+            died = DIED.search(text)
+            name = died and died["code"] and launched.nodes.get("/" + died["name"])
             # What ends by itself, too, has been said.
             if died and name and not case.nodes[name].not_up:
                 yield _died(case, launched, name, int(died["code"]))

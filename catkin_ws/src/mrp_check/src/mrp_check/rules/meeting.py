@@ -12,9 +12,9 @@ from mrp_check.confined.places import Kind
 from mrp_check.confined.seen import Seen
 from mrp_check.contract.finding import ERROR, NOTE, WARNING, Finding
 from mrp_check.contract.requirements import ANY, Rule
-from mrp_check.contract.words import nearest
+from mrp_check.contract.words import last_part, nearest
+from mrp_check.running.traces import ROS_TOPICS
 
-_OF_ROS = {"/rosout", "/rosout_agg", "/clock", "/tf", "/tf_static", "/diagnostics"}
 _ALIKE = 0.85
 
 
@@ -34,7 +34,7 @@ class Graph(typing.NamedTuple):
 
 def _findings(case: Case) -> Iterator[Finding]:
     told: set[object] = set()
-    published = {_base(one.topic) for graph, _ in _graphs(case) for one in graph.publishers}
+    published = {last_part(one.topic) for graph, _ in _graphs(case) for one in graph.publishers}
     for graph, nodes in _graphs(case):
         for end in graph.subscribers:
             if end.node not in nodes or (end.node, end.topic) in told:
@@ -76,7 +76,7 @@ def _graph(
 ) -> Graph:
     def ends(records: Iterable[typing.Any]) -> list[End]:
         found = (End(nodes.get(one.node), plain(one.topic), one.type) for one in records)
-        return [end for end in dict.fromkeys(found) if end.topic not in _OF_ROS]
+        return [end for end in dict.fromkeys(found) if end.topic not in ROS_TOPICS]
 
     return Graph(where, ends(seen.publications), ends(seen.subscriptions))
 
@@ -106,7 +106,7 @@ def _alone(case: Case, graph: Graph, end: End, published: set[str]) -> Iterator[
     near.sort(key=lambda one: one.topic in heard)
     file, line = case.places.of_topic(end.node or "", Kind.SUBSCRIBER, end.topic)
     if not near:
-        nobody = "nobody" if _base(end.topic) in published else "no node of this package"
+        nobody = "nobody" if last_part(end.topic) in published else "no node of this package"
         yield Finding(
             "topic",
             f"{graph.where}, {end.node} waits for messages on {end.topic}: {nobody} publishes any.",
@@ -143,11 +143,7 @@ def _is_meant(one: End, other: End) -> bool:
 
 def _is_moved(one: End, other: End) -> bool:
     """Return whether two names differ in their namespaces alone."""
-    return _base(one.topic) == _base(other.topic)
-
-
-def _base(topic: str) -> str:
-    return topic.rsplit("/", 1)[-1]
+    return last_part(one.topic) == last_part(other.topic)
 
 
 RULE = Rule("run", 21, ("nodes",), _findings, also=("topic", "type"), only=ANY)

@@ -12,7 +12,7 @@ from mrp_check.case import Case
 from mrp_check.contract.finding import ERROR, WARNING, Finding
 from mrp_check.contract.requirements import Requirement, Rule
 from mrp_check.contract.spec import PACKAGE
-from mrp_check.contract.words import nearest
+from mrp_check.contract.words import last_part, nearest
 from mrp_check.sources import uses
 from mrp_check.student.cmake import Model, Target
 from mrp_check.student.manifest import declared, last_dependency
@@ -49,7 +49,7 @@ def _in_cmake(case: Case, files: list[str]) -> Iterator[Finding]:
             "Add message_generation to COMPONENTS.",
         )
     for path in files:
-        file = path.rsplit("/", 1)[-1]
+        file = last_part(path)
         if path not in model.message_files and (not own or file[:-4] in own):
             command = f"add_{case.package.kind(path)}_files"
             yield _message_finding(
@@ -164,12 +164,12 @@ def _order(package: Package, model: Model) -> Iterator[Finding]:
 def _headers(package: Package, model: Model, target: Target) -> list[str]:
     """Return the package's headers that a target's sources include, directly."""
     names = {
-        header.rsplit("/", 1)[-1]
+        last_part(header)
         for file in target.sources
         if file in package.files
         for header, _ in uses.includes(package, file)
     }
-    return [path for path in package.of_kind("header") if path.rsplit("/", 1)[-1] in names]
+    return [path for path in package.of_kind("header") if last_part(path) in names]
 
 
 RULE = Rule(

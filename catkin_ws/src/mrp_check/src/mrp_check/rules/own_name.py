@@ -9,6 +9,7 @@ from typing import Iterator
 from mrp_check.confined.places import Kind
 from mrp_check.contract.finding import WARNING, Finding
 from mrp_check.contract.requirements import CONTRACT, Rule
+from mrp_check.contract.words import last_part
 from mrp_check.running.node import Node, each_node
 
 
@@ -16,7 +17,7 @@ def _of(node: Node) -> Iterator[Finding]:
     own = node.own_name
     if not own:
         return
-    name = own.rsplit("/", 1)[-1]
+    name = last_part(own)
     if re.fullmatch(rf"{re.escape(node.name)}_\d+(_\d+)?", name):
         yield node.finding(
             "node-name",

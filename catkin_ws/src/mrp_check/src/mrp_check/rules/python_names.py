@@ -13,7 +13,7 @@ from pyflakes import checker, messages
 from mrp_check import evidence
 from mrp_check.contract.finding import NOTE, Change, Finding
 from mrp_check.contract.requirements import Requirement, Rule
-from mrp_check.contract.words import nearest, perhaps
+from mrp_check.contract.words import last_part, nearest, perhaps
 from mrp_check.sources import uses
 from mrp_check.sources.python_facts import last_line
 from mrp_check.sources.python_modules import is_module, is_ros, load, resolve, ros_modules
@@ -29,7 +29,7 @@ class Names(PythonRule):
     def __init__(self, package: Package, source: Source) -> None:
         super().__init__(package, source)
         self.not_imported: list[str] = []  # names whose import fails
-        self.message_names = {path.rsplit("/", 1)[-1][:-4] for path in package.of_kind("message")}
+        self.message_names = {last_part(path)[:-4] for path in package.of_kind("message")}
 
     def findings(self) -> Iterator[Finding]:
         yield from [*self.imports()]

@@ -9,7 +9,7 @@ from mrp_check.case import Case
 from mrp_check.confined.launch_dump import Started
 from mrp_check.contract.finding import WARNING, Finding
 from mrp_check.contract.requirements import ANY, Rule
-from mrp_check.contract.words import nearest
+from mrp_check.contract.words import last_part, nearest
 from mrp_check.rules.launch_remap import remap_line
 from mrp_check.running.observing import Launched
 from mrp_check.sources import asked
@@ -33,11 +33,11 @@ def _of(case: Case, launched: Launched, name: str, node: Started) -> Iterator[Fi
     files = case.facts.sources.get(name, [])
     services = {one.base for one in asked.of(case.package, files)}
     for old, new in node.remaps:
-        base = old.rsplit("/", 1)[-1]
+        base = last_part(old)
         if not topics or new in topics or base in services:
             continue
         # It may be made only later on; a name that the sources have nowhere is not.
-        used = [topic for topic in topics if topic.rsplit("/", 1)[-1] == base]
+        used = [topic for topic in topics if last_part(topic) == base]
         if not used and any(base in case.package.text(file) for file in files):
             continue
         near = used[0] if used else nearest(old, topics, _ALIKE)

@@ -39,7 +39,7 @@ def names_no_program(shebang: str) -> str | None:
 
 def _findings(case: Case) -> Iterator[Finding]:
     package, model = case.package, case.model
-    relayed = {s.path for s in model.scripts if s.by == "catkin_install_python"}
+    relayed = model.relayed()
     yield from _listed(package, model)
     # Without a contract, each node is a script, even one that Python cannot read.
     nodes = () if case.spec.is_contract else {node.file for node in case.spec.nodes.values()}
@@ -81,16 +81,8 @@ def _shadowing(path: str) -> Iterator[Finding]:
 
 def _is_node(package: Package, path: str) -> bool:
     """Return whether a script calls rospy.init_node: others may be anything."""
-    try:
-        tree = ast.parse(package.text(path))
-    except (SyntaxError, ValueError, RecursionError, MemoryError):
-        return False
-    names = {
-        getattr(n.func, "attr", getattr(n.func, "id", ""))
-        for n in ast.walk(tree)
-        if isinstance(n, ast.Call)
-    }
-    return "init_node" in names
+    calls = (n.func for n in ast.walk(package.tree(path)) if isinstance(n, ast.Call))
+    return "init_node" in {getattr(f, "attr", getattr(f, "id", "")) for f in calls}
 
 
 def _listed(package: Package, model: Model) -> Iterator[Finding]:

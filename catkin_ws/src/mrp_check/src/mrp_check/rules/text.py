@@ -19,7 +19,7 @@ _CODING = re.compile(rb"^[ \t\f]*#.*?coding[:=][ \t]*([-\w.]+)")
 
 def _findings(case: Case) -> Iterator[Finding]:
     package = case.package
-    relayed = {s.path for s in case.model.scripts if s.by == "catkin_install_python"}
+    relayed = case.model.relayed()
     for path in package.files:
         kind = package.kind(path)
         if kind in _TEXT or path == "package.xml":

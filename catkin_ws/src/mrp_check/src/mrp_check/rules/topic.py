@@ -11,6 +11,7 @@ from mrp_check.confined.places import Kind
 from mrp_check.contract.finding import Finding, Where
 from mrp_check.contract.requirements import CONTRACT, Requirement, Rule
 from mrp_check.contract.spec import Topic
+from mrp_check.contract.words import last_part
 from mrp_check.running.node import Node, each_node
 from mrp_check.running.planning import resolved
 
@@ -80,8 +81,8 @@ def _topic_place(node: Node, kind: Kind, seen: str, topic: Topic) -> Where:
     """Return the place that names a wrong topic: a remap in the launch file, or the source."""
     started = node.started
     for old, new in started.remaps if started else ():
-        renamed = new.rsplit("/", 1)[-1] == seen.rsplit("/", 1)[-1]
-        if started and renamed and old.rsplit("/", 1)[-1] == topic.name and old != new:
+        renamed = last_part(new) == last_part(seen)
+        if started and renamed and last_part(old) == topic.name and old != new:
             lines = node.package.lines(started.file) if started.file else []
             named = [n for n, text in enumerate(lines, 1) if "remap" in text and new in text]
             line = next((n for n, text in enumerate(lines, 1) if f'"{new}"' in text), started.line)
@@ -90,7 +91,7 @@ def _topic_place(node: Node, kind: Kind, seen: str, topic: Topic) -> Where:
 
 
 def _topic_hint(node: Node, seen: str, topic: Topic) -> str:
-    if topic.namespace != "group" or seen.rsplit("/", 1)[-1] != topic.name:
+    if topic.namespace != "group" or last_part(seen) != topic.name:
         return ""
     if seen == node.path + "/" + topic.name:
         return ' A name with ~, or of a handle made with "~", is the node\'s own.'

@@ -49,7 +49,7 @@ def _silent_seconds(node: Node) -> float:
 
 def _long_period(node: Node, role: Publishes) -> float | None:
     """Return the period of a timer of the node that is far too long, or None."""
-    periods = [p.period for p in node.places.facts_of(node.name, Kind.TIMER)]
+    periods = [p.period for p in node.places.facts.of(node.name, Kind.TIMER)]
     numbers = [p for p in periods if isinstance(p, (int, float))]
     return next((p for p in numbers if p > 3 * (role.period or p)), None)
 
@@ -86,7 +86,7 @@ def _value_findings(
 
 def _start_place(node: Node, publish: Where) -> Where:
     """Return the place at which the counter gets its first value."""
-    places = node.places.facts_of(node.name, Kind.COUNTER) or node.places.facts_of(
+    places = node.places.facts.of(node.name, Kind.COUNTER) or node.places.facts.of(
         node.name, Kind.STEP
     )
     return (places[0].file, places[0].line) if places else publish

@@ -8,7 +8,7 @@ from typing import Iterator, NamedTuple
 from mrp_check.case import Case
 from mrp_check.contract.finding import NOTE, WARNING, Finding
 from mrp_check.contract.requirements import ANY, Rule
-from mrp_check.contract.words import nearest
+from mrp_check.contract.words import last_part, nearest
 from mrp_check.sources import asked
 from mrp_check.sources.asked import Said
 
@@ -38,7 +38,7 @@ _PARAMETER = _Words(
 def _findings(case: Case) -> Iterator[Finding]:
     said = {node: [*asked.of(case.package, files)] for node, files in case.facts.sources.items()}
     every = [one for found in said.values() for one in found]
-    params = {name.rsplit("/", 1)[-1] for name in (case.launch.params if case.launch else {})}
+    params = {last_part(name) for name in (case.launch.params if case.launch else {})}
     services = {one.base for one in every if one.what == "offers"}
     given = params | {one.base for one in every if one.what == "sets"}
     yield from _lacking(said, "asks", services, every, _SERVICE)

@@ -68,7 +68,7 @@ class Node(Traces):
         ran, in C++ by the type of the counter."""
         if self.wrap:
             return any(event.event in ("after", "error") for event in self.wrap.events)
-        return any(place.bits for place in self.places.facts_of(self.name, Kind.STEP))
+        return any(place.bits for place in self.places.facts.of(self.name, Kind.STEP))
 
     def has_ended(self) -> bool:
         """Return whether it was asked to end when it ran by itself, and then ended."""

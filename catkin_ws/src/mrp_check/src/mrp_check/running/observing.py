@@ -22,11 +22,11 @@ from mrp_check.confined.seen import Alone, DirectResult, LaunchResult
 from mrp_check.contract.errors import CannotCheck
 from mrp_check.contract.resources import SHARES
 from mrp_check.contract.spec import Node, Spec
+from mrp_check.contract.words import last_part
 from mrp_check.running.planning import Planner
 from mrp_check.sources.facts import Facts
 from mrp_check.student import launch as launching
 from mrp_check.student.launch import Launch
-from mrp_check.student.package import Package
 from mrp_check.student.workspace import NOETIC, Workspace, search_path, sourced
 
 _SESSION = "mrp_check.confined.session"  # not imported: it needs rospy, which takes its time
@@ -97,24 +97,10 @@ def observe(workspace: Workspace, spec: Spec, launch: Launch | None, facts: Fact
     if launch and result.started:
         file = workspace.package_folder / launch.file
         result.moved = _moved(workspace, file)
-    for name, node in spec.nodes.items():
-        started, files = result.started.get(name), facts.sources.get(name, [])
-        path = executable(workspace, node, started, files)
-        if path:
-            result.executables[name] = path
-    if not result.executables:
+    planner = planner_of(workspace, spec, launch.params if launch else {}, facts, result)
+    if not planner:
         result.problems.append("none of the nodes has an executable to be run")
         return result
-    workspace.progress("running the nodes")
-    planner = Planner(
-        workspace,
-        spec,
-        result.executables,
-        result.started,
-        launch.params if launch else {},
-        environment(workspace),
-        messages.definitions(workspace.package.name, message_folders(workspace.package), SHARES),
-    )
     under, problems = planner.launch(file), result.problems
     launched = workspace.submit(session, workspace, under, LaunchResult, problems)
     direct = workspace.submit(session, workspace, planner.direct(), DirectResult, problems)
@@ -123,6 +109,28 @@ def observe(workspace: Workspace, spec: Spec, launch: Launch | None, facts: Fact
         # Not the package's fault: one that never comes up is idle, or uses up its time.
         raise _too_busy(under.common.most)
     return result
+
+
+def planner_of(
+    workspace: Workspace, spec: Spec, params: dict[str, object], facts: Facts, result: Observed
+) -> Planner | None:
+    """Look for the nodes' executables; return what plans their runs, or None if there is none.
+
+    params: those of the launch files
+    """
+    for name, node in spec.nodes.items():
+        started, files = result.started.get(name), facts.sources.get(name, [])
+        path = _executable(workspace, node, started, files)
+        if path:
+            result.executables[name] = path
+    if not result.executables:
+        return None
+    workspace.progress("running the nodes")
+    package = workspace.package
+    folders = sorted({(package.root / file).parent for file in package.of_kind("message")})
+    own = messages.definitions(package.name, folders, SHARES)
+    known = result.executables, result.started, params
+    return Planner(workspace, spec, *known, _environment(workspace), own)
 
 
 def _moved(workspace: Workspace, file: pathlib.Path) -> Launch | None:
@@ -136,7 +144,7 @@ def _moved(workspace: Workspace, file: pathlib.Path) -> Launch | None:
     return None if moved.error else moved
 
 
-def executable(
+def _executable(
     workspace: Workspace, node: Node, started: Started | None, files: list[str]
 ) -> pathlib.Path | None:
     """Return the path of a node's executable as rosrun finds it, or None.
@@ -146,27 +154,23 @@ def executable(
     package = workspace.package
     names = [started.type] if started and started.package == package.name else []
     names += [node.executable] if node.executable else []
-    names += [file.rsplit("/", 1)[-1] for file in files if file.endswith(".py")]
+    names += [last_part(file) for file in files if file.endswith(".py")]
     for name in (*names, node.name, f"{node.name}.py"):
         built = workspace.folder / "devel" / "lib" / package.name / name
-        scripts = [path for path in package.files if path.rsplit("/", 1)[-1] == name]
+        scripts = [path for path in package.files if last_part(path) == name]
         for path in (built, *(workspace.package_folder / path for path in scripts)):
             if path.is_file() and os.access(path, os.X_OK):
                 return path
     return None
 
 
-def environment(workspace: Workspace) -> dict[str, str]:
+def _environment(workspace: Workspace) -> dict[str, str]:
     """Return the environment that the workspace's setup.bash makes, as far as there is one."""
     setups = [str(NOETIC), str(workspace.folder / "devel" / "setup.bash")]
     done = workspace.run("bash", "-c", _SOURCED, "bash", *setups)
     pairs = dict(entry.split("=", 1) for entry in done.output.split("\0") if "=" in entry)
     own = {variables.PACKAGES: workspace.ros_packages, variables.PYTHONPATH: ""}
     return {**own, **pairs, **variables.AT_ONCE}
-
-
-def message_folders(package: Package) -> list[pathlib.Path]:
-    return sorted({(package.root / file).parent for file in package.of_kind("message")})
 
 
 def session(

@@ -7,9 +7,10 @@ import ast
 import re
 from typing import Collection, Iterable, Tuple
 
-from mrp_check.confined.places import Kind, Place
+from mrp_check.confined.places import Kind
 from mrp_check.confined.seen import Event, Log, Number
 from mrp_check.contract.finding import Line, Where
+from mrp_check.contract.words import last_part
 from mrp_check.running.observing import Observed
 from mrp_check.running.planning import WRAP
 from mrp_check.sources.facts import Facts
@@ -43,7 +44,7 @@ class Places:
         executable = self.observed.executables.get(node)
         stems = {node} | ({executable.stem, executable.name} if executable else set())
         for file in self.package.of_kind("python", "cpp"):
-            name = file.rsplit("/", 1)[-1]
+            name = last_part(file)
             if (name in stems or name.rsplit(".", 1)[0] in stems) and file not in found:
                 found.append(file)
         return found
@@ -64,13 +65,10 @@ class Places:
             return file, self.first_statement(file)
         return self.in_launch_file(node)
 
-    def facts_of(self, node: str, *kinds: Kind) -> list[Place]:
-        return self.facts.of(node, *kinds)
-
     def sleep_beside(self, node: str, *kinds: Kind) -> Line | None:
         """Return the place of a sleep in the same function as a place of these kinds, or None."""
-        places, sleeps = self.facts_of(node, *kinds), self.facts_of(node, Kind.SLEEP)
-        for function in self.facts_of(node, Kind.FUNCTION):
+        places, sleeps = self.facts.of(node, *kinds), self.facts.of(node, Kind.SLEEP)
+        for function in self.facts.of(node, Kind.FUNCTION):
             beside = [sleep for sleep in sleeps if function.is_around(sleep)]
             if beside and any(function.is_around(place) for place in places):
                 return beside[0].file, beside[0].line
@@ -78,13 +76,13 @@ class Places:
 
     def of_topic(self, node: str, kind: Kind, topic: str) -> Where:
         """Return the place at which a node names a topic: the kind is publisher or subscriber."""
-        base = topic.rsplit("/", 1)[-1]
+        base = last_part(topic)
         for event in self.events(node):
-            is_named = event.topic is not None and event.topic.rsplit("/", 1)[-1] == base
+            is_named = event.topic is not None and last_part(event.topic) == base
             if event.event == kind.value and is_named:
                 return event.file, event.line
-        for place in self.facts_of(node, kind):
-            if place.text and place.text.rsplit("/", 1)[-1] == base:
+        for place in self.facts.of(node, kind):
+            if place.text and last_part(place.text) == base:
                 return place.file, place.line
         return self.of(node, kind)
 
@@ -103,19 +101,16 @@ class Places:
         """Return the line of a source at which something is done: main(), or the first statement
         that is no import."""
         if self.package.kind(file) == "python":
-            try:
-                body = ast.parse(self.package.text(file)).body
-            except (SyntaxError, ValueError):
-                return 1
             skip = (ast.Import, ast.ImportFrom, ast.Expr)
+            body = self.package.tree(file).body
             return next((s.lineno for s in body if not isinstance(s, skip)), 1)
         return self.package.find_line(file, " main(", 1)
 
     def condition_of_publish(self, node: str) -> Line | None:
         """Return the place of the condition before publish() in the same function, or None."""
-        publish = self.facts_of(node, Kind.PUBLISH)[:1]
+        publish = self.facts.of(node, Kind.PUBLISH)[:1]
         functions = [
-            f for f in self.facts_of(node, Kind.FUNCTION) if publish and f.is_around(publish[0])
+            f for f in self.facts.of(node, Kind.FUNCTION) if publish and f.is_around(publish[0])
         ]
         for function in functions[-1:]:
             lines = self.package.lines(function.file)[function.line - 1 : publish[0].line]
@@ -129,7 +124,7 @@ class Places:
         path = log.file
         if path.startswith(self.copy):
             return path[len(self.copy) :], log.line
-        files = [f for f in self.package.files if f.rsplit("/", 1)[-1] == path.rsplit("/", 1)[-1]]
+        files = [f for f in self.package.files if last_part(f) == last_part(path)]
         own = self.sources(node)
         files.sort(key=lambda file: (file not in own, file))
         return (files[0], log.line) if files else self.of(node, Kind.LOG)
@@ -141,7 +136,7 @@ class Places:
         `reset`, if there is such a place."""
         for file in self.sources(node):
             if self.package.kind(file) == "python":
-                line = _counting_line(self.package.text(file), names, reset)
+                line = _counting_line(self.package.tree(file), names, reset)
                 if line:
                     return file, line
         return self.of(node, Kind.STEP, Kind.COUNTER, Kind.PUBLISH)
@@ -192,12 +187,8 @@ class Places:
         return path[len(self.copy) :] if path.startswith(self.copy) else None
 
 
-def _counting_line(text: str, names: Collection[str], reset: Number | None) -> int | None:
+def _counting_line(tree: ast.AST, names: Collection[str], reset: Number | None) -> int | None:
     """Return the line at which a name is counted on, as in `counter += 2`, or None."""
-    try:
-        tree = ast.parse(text)
-    except (SyntaxError, ValueError):
-        return None
     for condition in [node for node in ast.walk(tree) if isinstance(node, (ast.If, ast.IfExp))]:
         for node in ast.walk(condition):
             if isinstance(node, ast.Assign) and _last_name(node.targets[0]) in names:

@@ -9,6 +9,7 @@ import shlex
 import signal
 import tempfile
 import xml.sax.saxutils
+from typing import Mapping
 
 from mrp_check import sandbox
 from mrp_check.confined import plans, variables
@@ -80,7 +81,7 @@ class Planner:
         ]
         return plans.LaunchPlan(
             common=self._common(self.spec.shutdown.seconds + _ROSLAUNCH_SECONDS),
-            command=["roslaunch", str(file or self._make_launch_file())],
+            command=["roslaunch", str(file or self.write_launch_file(self.executables))],
             nodes=nodes,
             enough=ENOUGH,
         )
@@ -109,11 +110,14 @@ class Planner:
             senders=senders.count(topic.name) if topic else 0,
         )
 
-    def _make_launch_file(self) -> pathlib.Path:
+    def write_launch_file(self, nodes: Mapping[str, pathlib.Path]) -> pathlib.Path:
+        """Write a launch file that starts these nodes in the spec's group; return its path.
+
+        nodes: a node's name -> its executable
+        """
         lines = []
-        for name, path in self.executables.items():
-            package = self.workspace.package.name
-            attributes = {"pkg": package, "type": path.name, "name": name}
+        for name, executable in nodes.items():
+            attributes = {"pkg": self.workspace.package.name, "type": executable.name, "name": name}
             text = " ".join(f"{k}={xml.sax.saxutils.quoteattr(v)}" for k, v in attributes.items())
             lines.append(f'    <node {text} output="screen"/>')
         group = self.spec.launch.group

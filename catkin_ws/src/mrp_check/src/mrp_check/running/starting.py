@@ -74,8 +74,8 @@ def _raised(node: Traces, place: Where, kind: str, text: str) -> Finding:
 
 def _ended(node: Traces) -> Finding:
     """Return the Finding about a node that started ROS, and came to its end."""
-    ends = [p for p in node.places.facts_of(node.name, Kind.EXIT) if p.text != "return"]
-    if ends and node.places.facts_of(node.name, Kind.SPIN):
+    ends = [p for p in node.places.facts.of(node.name, Kind.EXIT) if p.text != "return"]
+    if ends and node.places.facts.of(node.name, Kind.SPIN):
         why = f", though it waits: most likely by its call of {ends[0].text}()."
         place: Where = ends[0].file, ends[0].line
         fix = "Leave the call out, or see to it that it is only made at the end."

@@ -13,13 +13,13 @@ from mrp_check.contract.finding import ERROR, Finding, Where
 from mrp_check.running.places import Places
 from mrp_check.running.planning import WRAP
 
-_DIED = re.compile(
+# What roslaunch says; only of what has died it says a code.
+DIED = re.compile(
     r"\[(?P<name>\S+)-\d+\] process has "
     r"(?:died \[pid \d+, exit code (?P<code>-?\d+)|finished cleanly)"
 )
-_AFTER = 0.5  # seconds in which roslaunch may still show what was printed before it was to end
 # Topics that belong to ROS itself.
-_ROS_TOPICS = {"/rosout", "/rosout_agg", "/clock", "/tf", "/tf_static", "/diagnostics"}
+ROS_TOPICS = {"/rosout", "/rosout_agg", "/clock", "/tf", "/tf_static", "/diagnostics"}
 
 
 class Traces:
@@ -41,8 +41,7 @@ class Traces:
         has_started = self.started is not None or not observed.own_launch
         self.in_launch = launch is not None and has_started
         self.asked = launch.asked if launch else 0.0
-        lines = launch.lines if launch else []
-        self.console = [text for time, _, text in lines if time <= self.asked + _AFTER]
+        self.console = launch.until_asked() if launch else []
         self.latched = launch.latched if launch else {}
         self.direct = observed.alone(self.name)
         self.wrap = observed.alone(WRAP + self.name)
@@ -54,12 +53,12 @@ class Traces:
         """Return topic -> type of what it publishes (Kind.PUBLISHER), or subscribes to."""
         seen = self.seen_alone if alone else self.seen
         records = seen.publications if kind is Kind.PUBLISHER else seen.subscriptions
-        return {one.topic: one.type for one in records if one.topic not in _ROS_TOPICS}
+        return {one.topic: one.type for one in records if one.topic not in ROS_TOPICS}
 
     def died(self) -> int | None:
         """Return the exit code if roslaunch says that the node ended by itself, or None."""
         for text in self.console:
-            found = _DIED.search(text)
+            found = DIED.search(text)
             if found and "/" + found["name"] == self.path:
                 return int(found["code"] or 0)
         return None

@@ -8,20 +8,16 @@ launch file starts, all run together as well.
 from __future__ import annotations
 
 import dataclasses
-import pathlib
 import re
-import xml.sax.saxutils
 from typing import Mapping
 
-from mrp_check.confined import messages
 from mrp_check.confined.places import Kind
 from mrp_check.confined.plans import LaunchNode
 from mrp_check.confined.seen import DirectResult, LaunchResult
-from mrp_check.contract.resources import SHARES
 from mrp_check.contract.spec import Spec
 from mrp_check.running import observing
 from mrp_check.running.observing import Launched, Observed
-from mrp_check.running.planning import ENOUGH_ALONE, Planner
+from mrp_check.running.planning import ENOUGH_ALONE
 from mrp_check.sources.facts import Facts
 from mrp_check.student.launch import Launch
 from mrp_check.student.workspace import Workspace
@@ -38,14 +34,10 @@ def observe(workspace: Workspace, spec: Spec, launches: list[Launch], facts: Fac
         for started in [] if launch.error else launch.nodes:
             if started.package == workspace.package.name and started.type in spec.nodes:
                 result.started.setdefault(started.type, started)
-    for name, node in spec.nodes.items():
-        path = observing.executable(workspace, node, None, facts.sources.get(name, []))
-        if path:
-            result.executables[name] = path
-    if not result.executables:
+    params = {name: value for launch in launches for name, value in launch.params.items()}
+    planner = observing.planner_of(workspace, spec, params, facts, result)
+    if not planner:
         return result
-    workspace.progress("running the nodes")
-    planner = _planner(workspace, spec, result, launches)
     direct = planner.direct()
     direct.common.seconds = _SECONDS
     for key, one in direct.nodes.items():
@@ -56,7 +48,8 @@ def observe(workspace: Workspace, spec: Spec, launches: list[Launch], facts: Fac
     runs = [(file, workspace.package_folder / file, files[file]) for file in list(files)[:_MOST]]
     if len(result.executables) > 1 and result.executables.keys() - result.started.keys():
         made = _made(workspace, facts, [*result.executables])
-        runs.append(("", _write(workspace, result, made), made))
+        named = {path[1:]: result.executables[name] for path, name in made.items()}
+        runs.append(("", planner.write_launch_file(named), made))
     for file, path, nodes in runs:
         plan = planner.of_file(path, _SECONDS, _watched(workspace, facts, nodes))
         seen = observing.session(workspace, plan, LaunchResult, problems)
@@ -64,20 +57,6 @@ def observe(workspace: Workspace, spec: Spec, launches: list[Launch], facts: Fac
             result.launches.append(Launched(file, nodes, seen))
     result.direct = ran.result()
     return result
-
-
-def _planner(workspace: Workspace, spec: Spec, result: Observed, launches: list[Launch]) -> Planner:
-    return Planner(
-        workspace,
-        spec,
-        result.executables,
-        result.started,
-        {name: value for launch in launches for name, value in launch.params.items()},
-        observing.environment(workspace),
-        messages.definitions(
-            workspace.package.name, observing.message_folders(workspace.package), SHARES
-        ),
-    )
 
 
 def _outermost(launches: list[Launch]) -> list[Launch]:
@@ -107,21 +86,6 @@ def _made(workspace: Workspace, facts: Facts, names: list[str]) -> dict[str, str
         path = f"/{plain}" if f"/{plain}" not in found else "/" + re.sub(r"\W", "_", name)
         found[path] = name
     return found
-
-
-def _write(workspace: Workspace, result: Observed, nodes: Mapping[str, str]) -> pathlib.Path:
-    lines = []
-    for path, name in nodes.items():
-        values = {
-            "pkg": workspace.package.name,
-            "type": result.executables[name].name,
-            "name": path[1:],
-        }
-        text = " ".join(f"{k}={xml.sax.saxutils.quoteattr(v)}" for k, v in values.items())
-        lines.append(f"  <node {text}/>")
-    file = workspace.given / "of_package.launch"
-    file.write_text("\n".join(["<launch>", *lines, "</launch>", ""]))
-    return file
 
 
 def _watched(workspace: Workspace, facts: Facts, nodes: Mapping[str, str]) -> list[LaunchNode]:

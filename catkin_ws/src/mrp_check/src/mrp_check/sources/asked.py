@@ -7,6 +7,7 @@ import re
 import typing
 from typing import Iterable, Iterator
 
+from mrp_check.contract.words import last_part
 from mrp_check.sources import uses
 from mrp_check.student.package import Package
 
@@ -44,7 +45,7 @@ class Said(typing.NamedTuple):
     @property
     def base(self) -> str:
         """The name's last part: whatever namespace it is in."""
-        return self.name.strip("~/").rsplit("/", 1)[-1]
+        return last_part(self.name.strip("~/"))
 
 
 def of(package: Package, files: Iterable[str]) -> Iterator[Said]:

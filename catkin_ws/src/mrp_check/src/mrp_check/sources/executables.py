@@ -8,6 +8,7 @@ from typing import Iterator
 
 from mrp_check.contract import spec as specs
 from mrp_check.contract.spec import Spec
+from mrp_check.contract.words import last_part
 from mrp_check.sources import uses
 from mrp_check.student.cmake import Model
 from mrp_check.student.package import Package
@@ -37,7 +38,7 @@ def is_script(package: Package, path: str) -> bool:
 def _python(package: Package, model: Model) -> Iterator[specs.Node]:
     for path in package.of_kind("python"):
         if is_script(package, path):
-            name = path.rsplit("/", 1)[-1]
+            name = last_part(path)
             yield specs.Node(name, "python", file=path, executable=name)
 
 

@@ -12,6 +12,7 @@ from mrp_check.confined.places import Kind, Place
 from mrp_check.contract import spec as specs
 from mrp_check.contract.finding import Finding, Line
 from mrp_check.contract.spec import Spec, Topic
+from mrp_check.contract.words import last_part
 from mrp_check.sources.facts import Facts
 from mrp_check.student.cmake import Model
 from mrp_check.student.launch import Launch
@@ -105,7 +106,7 @@ class Node:
 
     @staticmethod
     def _is_called(file: str, name: str) -> bool:
-        return os.path.splitext(file.rsplit("/", 1)[-1])[0] == name
+        return os.path.splitext(last_part(file))[0] == name
 
     def _belongs(self, other: specs.Node) -> bool:
         """Return whether the main source is another node's: it is called so, or is used so, or the

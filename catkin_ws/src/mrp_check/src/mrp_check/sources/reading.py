@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from mrp_check.confined.places import Kind, Said
 from mrp_check.contract.spec import Spec
+from mrp_check.contract.words import last_part
 from mrp_check.sources import python_facts, python_read, roles, uses
 from mrp_check.sources.cpp_read import CppReader
 from mrp_check.sources.facts import Facts
@@ -83,7 +84,7 @@ def _relevant(package: Package, model: Model, launch: Launch | None, facts: Fact
         if file in scripts
         or file in begins
         or file in of_nodes
-        or file.rsplit("/", 1)[-1] in started
+        or last_part(file) in started
         or package.shebang(file)
         and package.is_executable(file)
     ]

@@ -9,6 +9,7 @@ from typing import Iterable, Iterator, Mapping
 
 from mrp_check.contract import spec as specs
 from mrp_check.contract.spec import Spec
+from mrp_check.contract.words import last_part
 from mrp_check.sources import uses
 from mrp_check.sources.python_source import Source
 from mrp_check.student.cmake import Model
@@ -42,8 +43,8 @@ def of_executable(package: Package, model: Model, executable: str) -> list[str]:
     target = model.executables().get(executable)
     if target is not None:
         return model.all_sources(target)
-    scripts = [s.path for s in model.scripts if s.path.rsplit("/", 1)[-1] == executable]
-    scripts += [p for p in package.of_kind("python") if p.rsplit("/", 1)[-1] == executable]
+    scripts = [s.path for s in model.scripts if last_part(s.path) == executable]
+    scripts += [p for p in package.of_kind("python") if last_part(p) == executable]
     return [path for path in scripts if path in package.files][:1]
 
 
@@ -56,7 +57,7 @@ def _by_name(package: Package, model: Model, node: specs.Node) -> list[str]:
     return [
         path
         for path in package.of_kind(*kinds)
-        if os.path.splitext(path.rsplit("/", 1)[-1])[0] == node.name and not uses.is_test(path)
+        if os.path.splitext(last_part(path))[0] == node.name and not uses.is_test(path)
     ][:1]
 
 

@@ -12,7 +12,7 @@ import typing
 from typing import Callable, Iterator
 
 from mrp_check.contract.resources import SHARES
-from mrp_check.contract.words import nearest
+from mrp_check.contract.words import last_part, nearest
 from mrp_check.student.cmake import Model
 from mrp_check.student.package import Package
 
@@ -44,7 +44,7 @@ _MADE = {
 
 def generated(path: str) -> list[str]:
     """Return the names of the messages that are made of a .msg, .srv or .action file."""
-    name, _, ending = path.rsplit("/", 1)[-1].rpartition(".")
+    name, _, ending = last_part(path).rpartition(".")
     return [name + added for added in _MADE[ending]]
 
 
@@ -141,11 +141,7 @@ def of(
     for file in package.of_kind("python"):
         if is_test(file) or file == "setup.py":
             continue
-        try:
-            tree = ast.parse(package.text(file))
-        except (SyntaxError, ValueError, RecursionError, MemoryError):
-            continue
-        for name, line in _imports(tree):
+        for name, line in _imports(package.tree(file)):
             name = name.split(".")[0]
             if is_known(name):
                 _add(found, package, name, Use(file, line, "python", True))

@@ -199,6 +199,10 @@ class Model:
                 return relative(path, self.folder)
         return relative(base / text, self.folder)
 
+    def relayed(self) -> set[str]:
+        """Return the scripts that catkin makes executables of."""
+        return {script.path for script in self.scripts if script.by == "catkin_install_python"}
+
     def executables(self) -> dict[str, Target]:
         return {t.output or t.name: t for t in self.targets.values() if not t.is_library}
 

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import dataclasses
-import pathlib
 import xml.parsers.expat
 from typing import Iterable
 
@@ -14,7 +13,8 @@ from mrp_check.confined.launch_dump import Dump, Started
 from mrp_check.contract.errors import CannotCheck
 from mrp_check.contract.finding import Finding
 from mrp_check.contract.spec import Spec
-from mrp_check.contract.words import nearest
+from mrp_check.contract.words import last_part, nearest
+from mrp_check.student.cmake import relative
 from mrp_check.student.package import Package
 from mrp_check.student.workspace import Workspace
 from mrp_check.student.xml_file import Element, elements, xml_finding
@@ -50,7 +50,7 @@ class Launch(Dump):
 
 def find(package: Package, spec: Spec) -> str | None:
     """Return the path of the spec's launch file in the package, or None."""
-    found = [path for path in package.files if path.rsplit("/", 1)[-1] == spec.launch.file]
+    found = [path for path in package.files if last_part(path) == spec.launch.file]
     return min(found, key=lambda path: (not path.startswith("launch/"), path), default=None)
 
 
@@ -59,7 +59,7 @@ def readable(package: Package, spec: Spec) -> tuple[str | None, list[Finding]]:
     path = find(package, spec)
     if path is None:
         others = package.of_kind("launch")
-        near = nearest(spec.launch.file, [o.rsplit("/", 1)[-1] for o in others], 0)
+        near = nearest(spec.launch.file, [last_part(o) for o in others], 0)
         other = next((o for o in others if near and o.endswith(near)), None)
         return None, [
             Finding(
@@ -110,17 +110,12 @@ def load(workspace: Workspace, file: str) -> Launch:
         return Launch(f"reading it was ended: {why}", file=file)
     launch.file, launch.error = file, launch.error.replace(f"{copy}/", "")
     for node in launch.nodes:
-        node.file = _relative(node.file, copy)
+        node.file = relative(node.file or "", copy.resolve())
     _find_lines(workspace.package, launch.nodes)
-    launch.files = [name for name in (_relative(one, copy) for one in launch.files) if name]
+    launch.files = [
+        name for name in (relative(one, copy.resolve()) for one in launch.files) if name
+    ]
     return launch
-
-
-def _relative(path: str | None, folder: pathlib.Path) -> str | None:
-    try:
-        return pathlib.Path(path).relative_to(folder.resolve()).as_posix() if path else None
-    except ValueError:
-        return None
 
 
 def _find_lines(package: Package, nodes: Iterable[Started]) -> None:

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import ast
 import codecs
 import functools
 import os
@@ -13,6 +14,7 @@ import xml.etree.ElementTree as ElementTree
 from typing import Iterable, overload
 
 from mrp_check.contract.errors import PackageError
+from mrp_check.contract.words import last_part
 
 # What is built or kept by tools, and no part of a package.
 NOT_SOURCES = {".git", ".svn", ".vscode", ".idea", "__pycache__", ".pytest_cache", "CMakeFiles"}
@@ -115,9 +117,16 @@ class Package:
         """Return a file's lines, without their ends."""
         return self.text(path).split("\n")
 
+    def tree(self, path: str) -> ast.Module:
+        """Return the syntax tree of a Python file: an empty one if Python cannot read it."""
+        try:
+            return ast.parse(self.text(path))
+        except (SyntaxError, ValueError, RecursionError, MemoryError):
+            return ast.Module(body=[], type_ignores=[])
+
     def kind(self, path: str) -> str:
         """Return python, cpp, header, launch, message, service, action, cmake, or other."""
-        name = path.rsplit("/", 1)[-1]
+        name = last_part(path)
         if name == "CMakeLists.txt":
             return "cmake"
         if BACKUP.search(name):
