@@ -20,8 +20,10 @@ WITH_FACTS = """
 import json, sys
 sys.path.insert(0, sys.argv[1])
 import doctor
+import doctor_network
 facts = json.loads(sys.argv[2])
-vars(doctor).update({name: fact for name, fact in facts.items() if name.isupper()})
+for module in (doctor, doctor_network):
+    vars(module).update({name: fact for name, fact in facts.items() if name.isupper()})
 fields = {name: fact for name, fact in facts.items() if name.islower()}
 sys.exit(doctor.examine(doctor.this_machine()._replace(**fields)))
 """
