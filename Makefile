@@ -77,9 +77,14 @@ deps: packages-build  ## install the Debian packages that building and running n
 .PHONY: build
 build: packages-build $(BUILT_WHOLE)  ## build the whole workspace with catkin_make
 
+# Without root it calls itself again, where the packages are or in a container.
 .PHONY: run
-run: packages-run $(BUILT_TUTORIAL)  ## run the four nodes; end them with Ctrl-C
+ifdef ROOTLESS
+run: ; @unset MAKEFLAGS ROOTLESS; exec catkin_ws/tools/rootless.sh $(PACKAGES_run:%=catkin_ws/apt/%.txt)
+else
+run: packages-run $(BUILT_TUTORIAL)  ## run the four nodes; end them with Ctrl-C; ROOTLESS=1: without root
 	@$(IN_WORKSPACE) $(LOCAL) source devel/setup.bash; exec roslaunch mrp pub_sub.launch
+endif
 
 .PHONY: debug
 debug: packages-debug $(BUILT_TUTORIAL)  ## start one node, NODE=publisher_cpp_node, under gdb or pdb, beside make run

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The Makefile, in a copy of the repository that has one package, and in which nothing is built."""
 
+import json
 import pathlib
 import re
 import shutil
@@ -44,6 +45,17 @@ def test_other_python_first_on_path_does_no_harm(copy):
 def test_second_build_does_nothing(copy):
     done = make("build", root=copy)
     assert (done.returncode, done.stdout) == (0, "")
+
+
+@proves(
+    "make build writes catkin_ws/compile_commands.json, from which clangd knows how each file is "
+    "compiled.",
+)
+def test_build_tells_editors_how_each_file_is_compiled(copy):
+    commands = json.loads((copy / "catkin_ws/compile_commands.json").read_text())
+    sources = (copy / "catkin_ws/src/mrp/src").glob("*.cpp")
+    assert {str(path) for path in sources} <= {command["file"] for command in commands}
+    assert (copy / "catkin_ws/build/stubs/std_msgs/msg/__init__.pyi").exists()
 
 
 def test_run_builds_the_tutorial_and_a_whole_workspace_stays_whole(copy):

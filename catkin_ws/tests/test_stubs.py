@@ -7,6 +7,7 @@ import subprocess
 
 import pytest
 from mrp_testing.workspace import ROOT, WORKSPACE
+from mrp_testing.proves import proves
 
 pytestmark = pytest.mark.quick
 
@@ -58,6 +59,7 @@ class Add: ...
 """
 
 
+@proves("It also writes a stub for each message, from which an editor completes msg..")
 def test_stubs_have_each_field_with_its_type(tmp_path):
     package = tmp_path / "one"
     for kind in ("msg", "srv"):

@@ -16,6 +16,9 @@ fail() {
 # A system with ROS Noetic's own packages has what it needs in /opt/ros.
 [ ! -e /opt/ros/noetic/setup.bash ] || exit 0
 
+# rootless.sh has laid them over the system, whose dpkg does not know them.
+[ -z "${MRP_HAS_PACKAGES:-}" ] || exit 0
+
 if ! command -v apt-get > /dev/null || ! command -v dpkg-query > /dev/null; then
   fail "this system has no apt-get; ROS 1 comes from Debian's packages. $container"
 fi
