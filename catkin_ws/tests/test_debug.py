@@ -11,9 +11,9 @@ from mrp_testing.graph import Graph
 from mrp_testing.master import master, uri_of
 from mrp_testing.ports import free_port
 from mrp_testing.process import processes_with
+from mrp_testing.proves import proves
 from mrp_testing.waiting import DEADLINE
 from mrp_testing.workspace import ROOT, WORKSPACE
-from mrp_testing.proves import proves
 
 pytestmark = pytest.mark.slow
 

@@ -6,8 +6,8 @@ import subprocess
 
 import pytest
 from front_door import make
-from mrp_testing.workspace import WORKSPACE
 from mrp_testing.proves import proves
+from mrp_testing.workspace import WORKSPACE
 
 pytestmark = pytest.mark.quick
 

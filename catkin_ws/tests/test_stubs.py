@@ -6,8 +6,8 @@ import re
 import subprocess
 
 import pytest
-from mrp_testing.workspace import ROOT, WORKSPACE
 from mrp_testing.proves import proves
+from mrp_testing.workspace import ROOT, WORKSPACE
 
 pytestmark = pytest.mark.quick
 
