@@ -148,6 +148,10 @@ def loop(folder):
     (folder / "a").symlink_to(folder)
 
 
+def archive(folder):
+    folder.write_bytes(b"PK")
+
+
 BROKEN = {
     "empty": (lambda folder: folder.mkdir(parents=True), "no package.xml"),
     "two": (two_packages, "more than one package: one, two"),
@@ -156,6 +160,7 @@ BROKEN = {
     "deep": (deep_folders, "no package.xml"),
     "out": (link_out, "a link out of the class's folder"),
     "loop": (loop, "no package.xml"),
+    "packed.zip": (archive, "packed.zip is an archive: unpack it"),
 }
 
 

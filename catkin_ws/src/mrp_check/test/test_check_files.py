@@ -314,5 +314,5 @@ def test_own_service_is_made_before_it_is_used(without, file, says, tmp_path):
 def test_a_package_that_is_not_here_is_named_as_debian_has_it(
     name, language, debian, says, monkeypatch
 ):
-    monkeypatch.setattr(uses, "_debian_packages", lambda: debian)
+    monkeypatch.setattr(uses, "debian_packages", lambda: debian)
     assert says in uses.absent(name, language)

@@ -66,7 +66,7 @@ def absent(name: str, language: str) -> str:
     guesses = [_DEBIAN.get(name, f"python3-{plain}")]
     if language == "cpp":
         guesses = [f"lib{plain}-dev", f"ros-{plain}", *guesses, plain]
-    debian = _debian_packages()
+    debian = debian_packages()
     guess = next((guess for guess in guesses if guess in debian), None if debian else guesses[0])
     where = f"Debian package {guess}" if guess else "not in Debian"
     return (
@@ -76,7 +76,7 @@ def absent(name: str, language: str) -> str:
 
 
 @functools.lru_cache(maxsize=None)
-def _debian_packages() -> set[str]:
+def debian_packages() -> set[str]:
     """Return the names of all packages that apt knows of; none where it knows only a part."""
     try:
         done = subprocess.run(["apt-cache", "pkgnames"], stdout=subprocess.PIPE, text=True)

@@ -8,24 +8,31 @@ import pathlib
 
 from mrp_check.contract.errors import PackageError
 
+_ARCHIVES = (".zip", ".tar", ".tgz", ".gz", ".xz", ".bz2", ".7z", ".rar")
 _DEEPEST = 3  # folders below a student's own in which the package may be
 _MOST_BESIDE = 100  # folders of one folder that are looked into
 _MOST_WAITING = 1000  # folders that are still to be looked into
 
 
 def folders(path):
-    """Return the students' folders in a class's folder. Raises PackageError."""
+    """Return the students' folders in a class's folder, and archives. Raises PackageError."""
     path = pathlib.Path(path)
     if not path.is_dir():
         raise PackageError(f"There is no folder {path}: expected one with a folder per student.")
-    found = [p for p in sorted(path.iterdir()) if p.is_dir() and not p.name.startswith(".")]
+    found = [p for p in sorted(path.iterdir()) if _is_handed_in(p) and not p.name.startswith(".")]
     if not found:
         raise PackageError(f"{path} has no folder in it: expected one for each student.")
     return found
 
 
+def _is_handed_in(path):
+    return path.is_dir() or path.name.endswith(_ARCHIVES)
+
+
 def package_in(folder):
     """Return the folder of the package that a student has handed in. Raises PackageError."""
+    if folder.is_file():
+        raise PackageError(f"{folder.name} is an archive: unpack it into a folder.")
     if folder.is_symlink() and folder.resolve().parent != folder.parent.resolve():
         raise PackageError(
             f"{folder.name} is a link out of the class's folder: it is not followed."
