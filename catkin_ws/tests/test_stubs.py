@@ -103,3 +103,13 @@ def test_tasks_and_launches_name_what_there_is():
     (node,) = vscode("launch")["inputs"]
     sources = (WORKSPACE / "src" / "mrp" / "src").glob("*.cpp")
     assert sorted(node["options"]) == sorted(path.stem for path in sources)
+
+
+def test_dev_container_is_a_stage_of_the_image_with_the_same_extensions():
+    container = json.loads((ROOT / ".devcontainer" / "devcontainer.json").read_text())
+    stages = re.findall(
+        r"^FROM .* AS (\w+)$", (ROOT / "docker/Dockerfile").read_text(), re.MULTILINE
+    )
+    assert stages[-1] == container["build"]["target"]
+    extensions = container["customizations"]["vscode"]["extensions"]
+    assert extensions == vscode("extensions")["recommendations"]
