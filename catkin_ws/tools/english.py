@@ -1,11 +1,12 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Holds what people read to plain English: the sentences of the pages and of README.md, the
-comments and texts in Python files, and the lines of other sources.
+"""Holds what people read to plain English: the sentences of the pages, of README.md and of the
+exercises, the comments and texts in Python files, and the lines of other sources.
 
-A sentence of a page is at most 30 words long, and none has a word of ON_PAGES. A page's reading
-grade (Flesch-Kincaid: years at school) is at most 9. Prints the hardest page, and each fault with
-its file, its line, the sentence, and what to do. Exit code: 1 if there is a fault.
+A sentence of a page or of an exercise is at most 30 words long, and none has a word of ON_PAGES.
+The reading grade (Flesch-Kincaid: years at school) of a page, and of a hint, is at most 9. Prints
+the hardest page, and each fault with its file, its line, the sentence, and what to do. Exit code: 1
+if there is a fault.
 """
 
 import re
@@ -98,6 +99,20 @@ def _file(page):
     return path.relative_to(evidence.ROOT)
 
 
+def of_exercises():
+    """Yield each fault of the exercises' tasks and hints. Code counts as one word that is short."""
+    import textstat
+
+    for one in evidence.defects.exercises():
+        task, hint = (" ".join(re.sub(r"`[^`]+`", "it", t).split()) for t in (one.task, one.hint))
+        for sentence in re.split(r"(?<=[.:?]) ", f"{task} {hint}"):
+            for fault in faults_of(sentence, {**EVERYWHERE, **ON_PAGES}, MOST_WORDS):
+                yield f"{one.path.name}: {fault}\n    {sentence}"
+        grade = textstat.flesch_kincaid_grade(hint)
+        if grade > MOST_GRADE:
+            yield f"{one.path.name}: its hint's reading grade is {grade:.1f}: shorten sentences"
+
+
 def of_python():
     """Yield each fault of the Python files that git knows."""
     command = ["git", "ls-files", "--", "*.py", *_NOT]
@@ -122,7 +137,7 @@ def of_others():
 
 def main():
     sentences = [one for one in pages.build()[0] if one.typed]
-    faults = [*of_pages(sentences), *of_python(), *of_others()]
+    faults = [*of_pages(sentences), *of_exercises(), *of_python(), *of_others()]
     print("\n".join(faults), end="\n" if faults else "")
     grade, page = max((grade, page) for page, grade in grades(sentences).items())
     print(f"The hardest page to read: {claims.name_of(page)}, grade {grade:.1f}")

@@ -93,8 +93,8 @@ def shown(findings):
     "not be checked.",
     "They check correct packages in many styles, and none is reported as wrong.",
     "This is the tutorial's spec, and the tutorial's package meets it:",
-    "The folder specs has one more example: relay.yaml, for a node that doubles what it receives, "
-    "with its own type of message.",
+    "relay.yaml is for a node that doubles what it receives, with its own type of message.",
+    "replay.yaml is for a node that publishes what is in a bag.",
     "Exit code 0 means that all requirements are met.",
 )
 @pytest.mark.parametrize("style", parameters(check_sets.STYLES, str))
@@ -171,15 +171,15 @@ def assert_one_defect(findings, defect, folder, severities=("error",)):
 @pytest.mark.parametrize("exercise", EXERCISES, ids=lambda one: one.name)
 def test_exercise_fails_for_its_own_reason_and_its_solution_passes(exercise, tmp_path, run_check):
     folder = tmp_path / "package"
-    check_sets.lay_out("mrp", folder)
+    check_sets.lay_out(exercise.base, folder)
     check_sets.break_(folder, exercise)
-    report = run_check(folder, "pub_sub.yaml")
+    report = run_check(folder, check_sets.spec_of(exercise.base))
     assert_one_defect(report["findings"], exercise, folder, severities=("error", "warning"))
     assert_fixes_fit(report["findings"], folder)
-    # The solution makes the tutorial's package of it, which is met: see "mrp" above.
+    # The solution makes a correct package of it, which is met: see above.
     check_sets.break_(folder, exercise, "--reverse")
-    check_sets.lay_out("mrp", tmp_path / "tutorial")
-    assert contents(folder) == contents(tmp_path / "tutorial")
+    check_sets.lay_out(exercise.base, tmp_path / "correct")
+    assert contents(folder) == contents(tmp_path / "correct")
 
 
 ALONE = [

@@ -4,6 +4,7 @@
 test_broken.py and test_check_sets.py see whether it is found.
 """
 
+import pathlib
 import re
 
 import check_sets
@@ -40,7 +41,7 @@ def contents(folder):
     return {path.relative_to(folder): (path.stat().st_mode, path.read_bytes()) for path in files}
 
 
-@proves("Each exercise is one of the errata:")
+@proves("Behind that may stand its number in the errata:")
 @pytest.mark.parametrize("defect", ALL, ids=lambda one: one.name)
 def test_head_names_what_is_there(defect):
     assert defect.base in check_sets.STYLES
@@ -56,7 +57,37 @@ def test_head_names_what_is_there(defect):
 def test_there_are_as_many_as_were_asked_for():
     assert len(check_sets.DEFECTS) >= 40
     assert len(check_sets.STYLES) >= 12
-    assert len(defects.exercises()) >= 12
+
+
+@proves(
+    "There are forty: you read what a tool prints, fix a mistake, complete a part, or write a "
+    "file.",
+    "As many are in Python as in C++; the others are in a launch file, CMakeLists.txt or "
+    "package.xml.",
+)
+def test_exercises_are_a_path():
+    exercises = defects.exercises()
+    assert [one.order for one in exercises] == [*range(1, 41)]
+    kinds = [one.kind for one in exercises]
+    assert {*kinds} == {*defects.KINDS} == {*kinds[20:], "read"} and kinds[0] == "read"
+    endings = [pathlib.Path(file).suffix for one in exercises for file in changed(one)]
+    assert endings.count(".py") == sum(map(endings.count, (".cpp", ".cc"))) == 16
+    assert {*endings} == {".py", ".cpp", ".cc", ".launch", ".txt", ".xml"}
+
+
+def changed(defect):
+    """Return the files that a defect changes."""
+    return re.findall(r"^\+\+\+ b/(\S+)", defect.path.read_text(), re.MULTILINE)
+
+
+@proves("Behind the title stands the page that you need.")
+@pytest.mark.parametrize("exercise", defects.exercises(), ids=lambda one: one.name)
+def test_exercise_has_a_page_and_a_short_hint(exercise):
+    assert (check_sets.TUTORIAL / "doc" / "pages" / f"{exercise.page}.rst").exists()
+    assert len(exercise.hint.split()) <= 160
+    # What is to be completed is marked, and what the hint says stands in no comment of it.
+    added = re.findall(r"^\+.*Complete this: ", exercise.path.read_text(), re.MULTILINE)
+    assert len(added) == (exercise.kind == "complete")
 
 
 HEAD = """\
@@ -72,11 +103,12 @@ In: src/a.py: def
 In: src/b.py: x
 Tells: colon
 Order: 3
+Kind: fix
 Task:
     # A title
 
     A text,
-      which goes on.
+      which goes on. The page: `queues`.
 Hint: Look
     at it.
 """
@@ -104,13 +136,13 @@ def test_head_is_read(tmp_path):
             places=(("src/a.py", "def"), ("src/b.py", "x")),
             tells="colon",
             order=3,
-            task="# A title\n\nA text,\n  which goes on.",
+            kind="fix",
+            task="# A title\n\nA text,\n  which goes on. The page: `queues`.",
             hint="Look\nat it.",
         )
     ]
 
 
-@proves("Each exercise is one of the errata:")
 @pytest.mark.parametrize(
     ("old", "new", "fault"),
     [
@@ -131,8 +163,10 @@ def test_head_is_read(tmp_path):
         ),
         ("Says: != 0\n", "", "the field Says is missing, as one of Fails, Says is there"),
         ("Tells: colon\n", "", "the field Tells is missing, as one of Finds, In, Tells is"),
-        ("Hint: Look\n    at it.\n", "", "the field Hint is missing, as one of Order, Task, Hint"),
-        ("Erratum: E5\n", "", "the field Erratum is missing, as one of Order, Task, Hint is"),
+        ("Hint: Look\n    at it.\n", "", "the field Hint is missing, as one of Order, Kind, Task"),
+        ("Kind: fix\n", "", "the field Kind is missing, as one of Order, Kind, Task, Hint is"),
+        ("Kind: fix", "Kind: guess", "expected one of read, fix, complete, write, in the field"),
+        ("The page: `queues`.", "", "an empty line, a text, and 'The page: `queues`.', in the"),
         ("Erratum: E5", "Erratum: 5", "expected the number of an erratum, such as E5, in"),
         ("Fails: stop.test", "Fails: stop", "expected a rostest and a test case of it, in the"),
         ("In: src/a.py: def", "In: src/a.py", "expected a file, a colon, and a regular expression"),
@@ -146,9 +180,9 @@ def test_head_is_read(tmp_path):
         (
             "    # A title\n\n",
             "",
-            "expected a title such as '# A title', an empty line, and a text",
+            "expected a title such as '# A title', an empty line, a text, and",
         ),
-        ("Breaks:", "Base: format1\nBreaks:", "Fails or Order breaks mrp: expected no other Base"),
+        ("Breaks:", "Base: format1\nBreaks:", "Fails breaks mrp: expected no other Base"),
         ("Breaks: a", "a", "expected 'Field: value' or an indented line; found 'a colon'"),
     ],
 )

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The styles, which check_sets.py lays out: each makes a package, and a fault in one is a sentence.
+"""The styles, which packages.py lays out: each makes a package, and a fault in one is a sentence.
 
 test_check_sets.py builds and runs them.
 """
@@ -9,7 +9,7 @@ import xml.etree.ElementTree as ElementTree
 
 import check_sets
 import pytest
-from mrp_check.contract import resources
+from mrp_check.contract import packages, resources
 from mrp_check.rules import REQUIREMENTS
 
 pytestmark = pytest.mark.quick
@@ -47,7 +47,7 @@ def test_head_names_what_is_there(style):
 @pytest.fixture
 def lay_out(tmp_path, monkeypatch):
     """A function that lays out a style of which the patch has this text."""
-    monkeypatch.setattr(check_sets, "CORRECT", tmp_path)
+    monkeypatch.setattr(packages, "CORRECT", tmp_path)
 
     def of(text, style="some"):
         (tmp_path / f"{style}.patch").write_text(text)
@@ -84,7 +84,11 @@ def test_head_without_a_diff_changes_files_of_its_base(lay_out):
 @pytest.mark.parametrize(
     ("old", "new", "fault"),
     [
-        ("+first", "", r"(?s)some\.patch to fit .*patch says:.*\n.* check_sets\.py shows how"),
+        (
+            "+first",
+            "",
+            r"some\.patch does not fit .* as packages\.py shows\. The command `patch` says: ",
+        ),
         ("Style:", "Styles:", r"some\.patch: expected one of .*, Warns; found the field Styles\."),
         ("Base: nothing", "Base: nothing\nWithout: b.py", r"some\.patch: expected .* have b\.py,"),
         ("Base: nothing", "Base: nothing\nCRLF: b.py", r"some\.patch: expected .* have b\.py,"),
@@ -93,5 +97,5 @@ def test_head_without_a_diff_changes_files_of_its_base(lay_out):
 )
 def test_fault_says_which_patch_it_is_in(old, new, fault, lay_out):
     assert PATCH.count(old) == 1
-    with pytest.raises(check_sets.PatchError, match=fault):
+    with pytest.raises(packages.PatchError, match=fault):
         lay_out(PATCH.replace(old, new))

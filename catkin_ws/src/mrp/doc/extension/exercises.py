@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Directive `exercises`: the list of the exercises that are checked, in their order.
 
-Each is named as its task is, with the erratum that it is made of.
+Each is named as its task is, with what is to be done, the page that explains it, and the erratum
+that it is made of.
 """
 
 from evidence import defects
@@ -14,7 +15,8 @@ class Exercises(Generated):
 
     def line(self, one):
         self.env.note_dependency(str(one.path))
-        return f"#. **{one.title}**: `{one.erratum} <errata.html#{one.erratum.lower()}>`__"
+        erratum = f", `{one.erratum} <errata.html#{one.erratum.lower()}>`__" if one.erratum else ""
+        return f"#. **{one.title}** ({one.kind}): :doc:`{one.page}`{erratum}"
 
 
 def setup(app):

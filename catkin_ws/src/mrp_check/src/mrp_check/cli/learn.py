@@ -13,8 +13,9 @@ from mrp_check.check import scratch_folder
 from mrp_check.confined import variables
 from mrp_check.contract.defects import DefectError
 from mrp_check.contract.errors import CannotCheck
+from mrp_check.contract.packages import PatchError
 from mrp_check.learning import plain
-from mrp_check.learning.exercise import Course, ExerciseError
+from mrp_check.learning.exercise import Course
 from mrp_check.learning.watch import Watched
 
 FAILED = 2
@@ -32,7 +33,7 @@ def main(arguments=None):
         learn(options.folder)
     except OSError as error:
         fail(f"{error.filename}: {error.strerror}." if error.filename else error)
-    except (ExerciseError, DefectError, CannotCheck) as error:
+    except (PatchError, DefectError, CannotCheck) as error:
         fail(error)
     except KeyboardInterrupt:
         sys.exit("learn: stopped before its end; what it ran has ended, too.")

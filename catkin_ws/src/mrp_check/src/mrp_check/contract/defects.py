@@ -15,6 +15,7 @@ The head of a patch says what it breaks, and who must find that:
     Proves: A sentence.         a sentence of the pages that this proves
     Missed: WHY                 the checker is known not to find it
     Order: 7                    its number, if it is an exercise,
+    Kind: fix                   what the student does: see KINDS,
     Task: # A title             what the student reads first,
     Hint: Look at the end.      and what the student may ask for
     Shows: error: ...           a text that it makes a tool print, and more: see tools/why.py
@@ -35,9 +36,13 @@ from typing import Iterator, Mapping, Sequence
 
 from mrp_check.contract import resources
 
+# Read what a tool prints, and go where it points; find the cause of what goes wrong; fill a gap
+# that a comment marks; write a file from a sentence.
+KINDS = ("read", "fix", "complete", "write")
+
 _FIELD = re.compile(r"([A-Z][\w-]*):(?: (.*))?")
 # A patch has all fields of a group, or none.
-_GROUPS = (("Fails", "Says"), ("Finds", "In", "Tells"), ("Order", "Task", "Hint"))
+_GROUPS = (("Fails", "Says"), ("Finds", "In", "Tells"), ("Order", "Kind", "Task", "Hint"))
 _WHY = ("Shows", "Also", "Why", "Fix", "Page", "Try", "Needs")
 _FIELDS = (
     *("Base", "Breaks", "Erratum", "Missed", "Proves", "Severity"),
@@ -49,9 +54,13 @@ _FORMS = {
     "Erratum": (r"[EP][1-9]\d*", "the number of an erratum, such as E5"),
     "Fails": (r"\w+\.test \w+", "a rostest and a test case of it"),
     "In": (r"\S+: .+", "a file, a colon, and a regular expression"),
+    "Kind": ("|".join(KINDS), f"one of {', '.join(KINDS)}"),
     "Order": (r"[1-9]\d*", "a number from 1 on"),
     "Severity": (r"warning", "warning, or no such line for an error"),
-    "Task": (r"# .+\n\n(?s:.+)", "a title such as '# A title', an empty line, and a text"),
+    "Task": (
+        r"# .+\n\n(?s:.+)The page: `\w+`(?s:.*)",
+        "a title such as '# A title', an empty line, a text, and 'The page: `queues`.'",
+    ),
 }
 _PATTERNS = ("Says", "Finds", "In", "Tells")
 
@@ -77,6 +86,7 @@ class Defect:
     severity: str = "error"
     missed: str = ""
     order: int = 0
+    kind: str = ""
     task: str = ""
     hint: str = ""
     why: Mapping[str, Sequence[str]] = dataclasses.field(default_factory=dict)  # of tools/why.py
@@ -89,6 +99,12 @@ class Defect:
     def title(self) -> str:
         """Of an exercise."""
         return self.task.splitlines()[0].lstrip("# ")
+
+    @property
+    def page(self) -> str:
+        """The page that explains what the exercise needs: its task names it."""
+        match = re.search(r"The page: `(\w+)`", self.task)
+        return match.group(1) if match else ""
 
 
 def fields(path: pathlib.Path) -> dict[str, list[str]]:
@@ -162,12 +178,12 @@ def _faults(found: Mapping[str, Sequence[str]]) -> Iterator[str]:
     for group in _GROUPS:
         if not set(group) & set(found):
             continue
-        # The checker checks an exercise, and its page links to the erratum.
-        needed = (*group, "Finds", "Erratum") if "Order" in group else group
+        # The checker checks an exercise.
+        needed = (*group, "Finds") if "Order" in group else group
         for missing in (field for field in needed if field not in found):
             yield f"the field {missing} is missing, as one of {', '.join(group)} is there"
-    if found.get("Base", ["mrp"]) != ["mrp"] and ("Fails" in found or "Order" in found):
-        yield "a patch with the field Fails or Order breaks mrp: expected no other Base"
+    if found.get("Base", ["mrp"]) != ["mrp"] and "Fails" in found:
+        yield "a patch with the field Fails breaks mrp: expected no other Base"
 
 
 def _faults_of_value(field: str, value: str) -> Iterator[str]:

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The exercises: broken packages to fix, and how far somebody has come with them.
 
-An exercise is a defect with a task (defects.py): the tutorial's package with its patch. The student
-edits a copy of it. The patch, reversed, is the solution.
+An exercise is a defect with a task (defects.py): a correct package (packages.py) with its patch.
+The student edits a copy of it. The patch, reversed, is the solution.
 """
 
 from __future__ import annotations
@@ -11,18 +11,13 @@ import difflib
 import pathlib
 import re
 import shutil
-import subprocess
 import tempfile
 from typing import Iterator, NamedTuple, Sequence
 
-from mrp_check.contract import defects
+from mrp_check.contract import defects, packages, spec
 from mrp_check.contract.finding import NOTE, Finding
 from mrp_check.contract.verdict import Report
 from mrp_check.report import console
-
-
-class ExerciseError(Exception):
-    """An exercise cannot be laid out; its text is one sentence."""
 
 
 class Exercise(NamedTuple):
@@ -45,11 +40,16 @@ class Exercise(NamedTuple):
     def label(self) -> str:
         return f"Exercise {self.number} of {self.total}"
 
+    @property
+    def spec(self) -> spec.Spec:
+        """What the package is checked against."""
+        return spec.read(spec.find(packages.spec_of(self.defect.base)))
+
     def prepare(self) -> bool:
         """Make the broken package, unless it is there; return whether it was made."""
         if self.place.exists():
             return False
-        lay_out(self.defect, self.place)
+        self._lay_out_broken(self.place)
         (self.place / "TASK.md").write_text(f"{self.defect.task}\n")
         return True
 
@@ -58,12 +58,16 @@ class Exercise(NamedTuple):
         if self.place.exists():
             shutil.rmtree(self.place)
 
+    def _lay_out_broken(self, folder: pathlib.Path) -> None:
+        packages.lay_out(self.defect.base, folder)
+        packages.break_(folder, self.defect)
+
     def solution(self) -> list[str]:
-        """Return the lines of a diff: what turns the broken package into the tutorial's."""
+        """Return the lines of a diff: what turns the broken package into the correct one."""
         with tempfile.TemporaryDirectory() as folder:
             roots = pathlib.Path(folder, "a"), pathlib.Path(folder, "b")
-            lay_out(self.defect, roots[0])
-            _copy_tutorial(self.defect, roots[1])
+            self._lay_out_broken(roots[0])
+            packages.lay_out(self.defect.base, roots[1])
             paths = {path.relative_to(root) for root in roots for path in root.rglob("*")}
             return [line for path in sorted(paths) for line in _diff(path, *roots)]
 
@@ -80,33 +84,6 @@ def _name(defect: defects.Defect) -> str:
     """Return the number and the title: the defect's own name would say too much."""
     words = re.findall(r"[a-z0-9]+", defect.title.lower())
     return "_".join([f"{defect.order:02}", *words])
-
-
-def _copy_tutorial(defect: defects.Defect, folder: pathlib.Path) -> None:
-    tutorial = defect.path.parent.parent / "src" / "mrp"
-    if not (tutorial / "src").is_dir():
-        raise ExerciseError(
-            f"The exercises are built from the tutorial's sources, and there is no {tutorial}:"
-            " call `make learn` in a clone of the repository."
-        )
-    shutil.copytree(tutorial, folder, ignore=shutil.ignore_patterns("doc", "__pycache__"))
-
-
-def lay_out(defect: defects.Defect, folder: pathlib.Path) -> None:
-    """Make the broken package at `folder`. Raises ExerciseError if that cannot be done."""
-    _copy_tutorial(defect, folder)
-    command = ["patch", "-p1", "--fuzz=0", "--silent", f"--input={defect.path}"]
-    try:
-        done = subprocess.run(
-            command, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
-        )
-    except FileNotFoundError:
-        raise ExerciseError("There is no command `patch`: install the package patch.") from None
-    if done.returncode != 0:
-        raise ExerciseError(
-            f"{defect.path} does not fit the tutorial's package. Undo your changes to both."
-            f" The command `patch` says: {done.stdout.strip()}"
-        )
 
 
 class Course:

@@ -48,7 +48,7 @@ def run_once(folder: pathlib.Path, hint: bool = False, reset: bool = False) -> i
         say(exercise.defect.hint)
     else:
         shown = console.Progress(sys.stderr)
-        check = Check(exercise.place, say=shown.show)
+        check = Check(exercise, say=shown.show)
         check.run()
         shown.clear()
         if check.error:

@@ -84,9 +84,8 @@ def list_of(watched: Watched, chosen: int) -> Iterator[Line]:
     for index, exercise in enumerate(watched.course.exercises):
         passed = watched.course.is_passed(exercise)
         mark = ">" if index == chosen else " "
-        text = (
-            f"{mark} {exercise.number:3}  {'passed' if passed else 'open':8}{exercise.defect.title}"
-        )
+        state, defect = "passed" if passed else "open", exercise.defect
+        text = f"{mark} {exercise.number:3}  {state:8}{defect.kind:10}{defect.title}"
         yield "bar" if index == chosen else "added" if passed else "", text
 
 

@@ -14,7 +14,6 @@ import threading
 from typing import Callable, Tuple
 
 from mrp_check import check, confine
-from mrp_check.contract import spec
 from mrp_check.contract.errors import CannotCheck, PackageError
 from mrp_check.contract.finding import Finding
 from mrp_check.contract.verdict import Report
@@ -31,7 +30,7 @@ class _Stopped(BaseException):
 
 
 class Check(threading.Thread):
-    """A check of a student's copy: start() makes it in the background, run() at once.
+    """A check of an exercise's copy: start() makes it in the background, run() at once.
 
     scratch: a folder for several checks, as check.check() keeps it; each has its own without it
     say: called with a sentence that says what it does
@@ -44,7 +43,7 @@ class Check(threading.Thread):
 
     def __init__(
         self,
-        place: pathlib.Path,
+        exercise: exercises.Exercise,
         scratch: pathlib.Path | None = None,
         say: Callable[[str], None] = lambda sentence: None,
     ) -> None:
@@ -55,7 +54,7 @@ class Check(threading.Thread):
         self.findings: list[Finding] = []
         self.done = False
         self.error = ""
-        self._place, self._scratch = place, scratch
+        self._exercise, self._scratch = exercise, scratch
         self._stopped = threading.Event()
 
     @property
@@ -63,11 +62,13 @@ class Check(threading.Thread):
         return self.done and not self.findings and not self.error
 
     def run(self) -> None:
-        contract = spec.read(spec.find("pub_sub"))
         try:
-            package = Package(self._place)
             report = check.check(
-                package, contract, progress=self._go_on, kept=self._scratch, early=self._know
+                Package(self._exercise.place),
+                self._exercise.spec,
+                progress=self._go_on,
+                kept=self._scratch,
+                early=self._know,
             )
             self._know(report)
             self.error = "" if self.findings else report.reason
@@ -141,7 +142,7 @@ class Watched:
         if settled and stamp != self._checked:
             self.stop()
             self._checked = stamp
-            self.check = Check(self.exercise.place, self._scratch)
+            self.check = Check(self.exercise, self._scratch)
             self.check.start()
         elif self.check and self.check.passed and stamp == self._checked:
             self.course.add(self.exercise)
