@@ -132,11 +132,12 @@ class TestTime(unittest.TestCase):
             end = len(running.lines)
             wait_until_published(running, (ROS_CPP, RESET_PY), 6, end)
 
-            # Forward: all go on, but nobody publishes the 7200 values of an hour.
+            # Forward: all go on, but nobody publishes the 7200 values of an hour. On a busy machine,
+            # the clock may jump several times before rospy's timer sleeps at a jump back.
             forward = line_of(CLOCK + " jumps 3600 s forward")
             for publisher in publishers:
                 count = len(published(running, publisher, forward, end))
-                self.assertTrue(2 <= count < 100, f"{publisher}: {count}")
+                self.assertTrue(2 <= count < 1000, f"{publisher}: {count}")
                 values = published(running, publisher)
                 self.assertEqual(values, list(range(1, len(values) + 1)), publisher)
             # Back: rospy's timer has ended, and its node does not. A line of stdout may come in
