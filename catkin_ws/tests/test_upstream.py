@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What ROS itself does wrong: with its patch in upstream/, each lab goes as one would expect.
 
-What happens without it is shown by the lab's own test, which the report names.
+What happens without it is shown by the lab's own test, which the report names. The patches are
+applied to what is installed; upstream/rebuild.sh builds Debian's sources with them, and runs these
+tests with what it has built: the variable MRP_UPSTREAM names its folder of Python's packages.
 """
 
 import os
@@ -31,17 +33,22 @@ SOURCES = {"clients/rospy/src": "rospy", "tools/rosmaster/src": "rosmaster"}
 def patched(request, tmp_path, monkeypatch):
     """Have a master, and nodes whose ROS has the patch of this test's name."""
     name = request.function.__name__.removeprefix("test_")
-    for folder, package in SOURCES.items():
-        shutil.copytree(INSTALLED / package, tmp_path / folder / package)
-    patch = UPSTREAM / f"{name}.patch"
-    subprocess.run(["patch", "-p1", "--input", patch], cwd=tmp_path, check=True)
     port = free_port()
-    paths = [*(str(tmp_path / folder) for folder in SOURCES), os.environ["PYTHONPATH"]]
-    monkeypatch.setenv("PYTHONPATH", ":".join(paths))
+    paths = [rebuilt] if (rebuilt := os.environ.get("MRP_UPSTREAM")) else apply(name, tmp_path)
+    monkeypatch.setenv("PYTHONPATH", ":".join([*paths, os.environ["PYTHONPATH"]]))
     monkeypatch.setenv("ROS_MASTER_URI", uri_of(port))
     monkeypatch.setenv("ROS_LOG_DIR", str(tmp_path))
     with master(port):
         yield tmp_path
+
+
+def apply(name, folder):
+    """Apply a patch to a copy of what is installed; return the copy's folders of packages."""
+    for source, package in SOURCES.items():
+        shutil.copytree(INSTALLED / package, folder / source / package)
+    patch = UPSTREAM / f"{name}.patch"
+    subprocess.run(["patch", "-p1", "--input", patch], cwd=folder, check=True)
+    return [str(folder / source) for source in SOURCES]
 
 
 def node(program):

@@ -132,7 +132,7 @@ class TestTime(unittest.TestCase):
             end = len(running.lines)
             wait_until_published(running, (ROS_CPP, RESET_PY), 6, end)
 
-            # Forward: all go on, but nobody publishes the 7200 values of an hour. On a busy machine,
+            # Forward: all go on, but nobody publishes the 7200 values of an hour. When it is busy,
             # the clock may jump several times before rospy's timer sleeps at a jump back.
             forward = line_of(CLOCK + " jumps 3600 s forward")
             for publisher in publishers:
