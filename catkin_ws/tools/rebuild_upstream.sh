@@ -1,13 +1,13 @@
 #!/bin/bash
 # SPDX-License-Identifier: BSD-3-Clause
-# Usage: rebuild.sh FOLDER
+# Usage: rebuild_upstream.sh FOLDER
 # Fetches Debian's sources of rospy, rosmaster and librostime into a folder. Builds them as they are,
-# where tests/test_upstream.py must fail, and with the patches here, where it must pass. It needs the
-# network, some minutes, and a workspace that is built and sourced.
+# where tests/test_upstream.py must fail, and with the patches in upstream, where it must pass. It needs
+# the network, some minutes, and a workspace that is built and sourced.
 #
 # A folder FOLDER/roscpp_core that is there is taken for the sources of librostime.
 set -euo pipefail
-here=$(cd "$(dirname "$0")" && pwd)
+here=$(cd "$(dirname "$0")/../upstream" && pwd)
 mkdir -p "$1/lists/partial" "$1/cache/archives/partial"
 cd "$1"
 
