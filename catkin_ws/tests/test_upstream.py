@@ -2,8 +2,8 @@
 """What ROS itself does wrong: with its patch in upstream/, each lab goes as one would expect.
 
 What happens without it is shown by the lab's own test, which the report names. The patches are
-applied to what is installed; tools/rebuild_upstream.sh builds Debian's sources with them, and runs these
-tests with what it has built: the variable MRP_UPSTREAM names its folder of Python's packages.
+applied to what is installed; tools/rebuild_upstream.sh builds Debian's sources with them, and runs
+these tests with what it has built: MRP_UPSTREAM names its folder of Python's packages.
 """
 
 import os
