@@ -11,10 +11,10 @@ from mrp_testing.workspace import WORKSPACE
 
 pytestmark = pytest.mark.quick
 
-NEEDED = ("bash", "dirname", "realpath", "mkdir", "ln")
+NEEDED = ("bash", "dirname", "realpath", "mkdir", "ln", "sed", "tar", "touch", "rm")
 
 
-def rootless(folder, **programs):
+def rootless(folder, *lists, **programs):
     """Run it where there are only a few programs, and these stand-ins; return the completed run."""
     for name in NEEDED:
         (folder / name).symlink_to(shutil.which(name))
@@ -25,7 +25,11 @@ def rootless(folder, **programs):
     tool.parent.mkdir(parents=True)
     shutil.copy(WORKSPACE / "tools" / "rootless.sh", tool)
     return subprocess.run(
-        ["/bin/bash", tool], env={"PATH": str(folder)}, capture_output=True, text=True, check=False
+        ["/bin/bash", tool, *lists],
+        env={"PATH": str(folder)},
+        capture_output=True,
+        text=True,
+        check=False,
     )
 
 
@@ -41,6 +45,36 @@ def test_an_engine_that_answers_is_used_as_docker(tmp_path, engine):
     script = f'[ "$1" = info ] || echo "{engine}: $*"\n'
     done = rootless(tmp_path, **{engine: script}, make='echo "make $*"; docker run\n')
     assert (done.returncode, done.stdout) == (0, f"make docker-run\n{engine}: run\n")
+
+
+APT_GET = """
+echo "$*" >> "$0.log"
+for word; do
+  case $word in Dir::Cache=*) touch "${word#*=}/archives/one.deb" ;; esac
+done
+"""
+
+
+@proves(
+    "Otherwise this fetches the packages that are missing into the folder "
+    "catkin_ws/build/rootless, which make clean deletes."
+)
+def test_packages_are_unpacked_in_the_folder_that_is_built_in(tmp_path):
+    """The last program of all is the one that lays what was unpacked over the system."""
+    (tmp_path / "list").write_text("# to run\nroslaunch\npython3 | python\n")
+    (tmp_path / "share").mkdir()
+    unpacked = tmp_path / "catkin_ws" / "build" / "rootless" / "root"
+    programs = {
+        "apt-get": APT_GET,
+        "dpkg-deb": f"tar -c -C {tmp_path} share",
+        "unshare": '[ "${@: -1}" = true ] || echo "${@: -1}"',
+    }
+    done = rootless(tmp_path, tmp_path / "list", **programs)
+    assert (done.returncode, done.stdout.splitlines()[-1:]) == (0, [str(unpacked)]), done.stderr
+    assert (unpacked / "share").is_dir()
+    asked = (tmp_path / "apt-get.log").read_text()
+    assert asked.endswith(" --download-only roslaunch python3\n")
+    assert "rm -rf catkin_ws/build " in make("clean", "--dry-run").stdout
 
 
 @proves("If neither works, it says why.")
