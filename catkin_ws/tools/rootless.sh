@@ -42,7 +42,7 @@ if [ ! -e "$folder/done" ]; then
   mapfile -t packages < <(sed '/^#/d; s/ *|.*//' "$@")
   apt_get install --yes --no-install-recommends --download-only "${packages[@]}" > /dev/null
   for package in "$folder"/cache/archives/*.deb; do
-    dpkg-deb --fsys-tarfile "$package" | tar -x --keep-directory-symlink -C "$folder/rot"
+    dpkg-deb --fsys-tarfile "$package" | tar -x --keep-directory-symlink -C "$folder/root"
   done
   rm -r "$folder"/{lists,cache}
   touch "$folder/done"
@@ -57,4 +57,4 @@ exec unshare --user --map-root-user --mount bash -ec '
   for name in usr etc; do
     mount -t overlay -o "lowerdir=$0/$name:/$name" overlay "/$name"
   done
-  exec make run' "$folder/rot"
+  exec make run' "$folder/root"
