@@ -40,13 +40,20 @@ class TurnedClock:
         self.turn_until(process, seconds, condition)
 
     def turn_until(self, process, seconds, condition):
-        """Turn by so many seconds, and again if that does not bring what is waited for."""
+        """Turn by so many seconds, and again if that does not bring what is waited for.
+
+        Return the number of turns.
+        """
+        turns = 0
 
         def turned():
+            nonlocal turns
+            turns += 1
             self.turn(seconds)
             return within(_PATIENCE, condition)
 
         wait_until(turned, lambda: f"what turns of the clock bring\n{process}")
+        return turns
 
     def turn(self, seconds):
         # In whole nanoseconds: 0.02 and 16 times 0.25 as floats are less than 4.02.
