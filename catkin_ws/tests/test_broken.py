@@ -82,7 +82,14 @@ def rebuild(workspace, rostest):
     assert done.returncode == 0, done.stdout
 
 
-@pytest.mark.parametrize("variant", VARIANTS, ids=lambda variant: variant.name)
+# At most two of pytest's workers build the workspace.
+@pytest.mark.parametrize(
+    "variant",
+    [
+        pytest.param(one, id=one.name, marks=pytest.mark.xdist_group(f"broken_{number % 2}"))
+        for number, one in enumerate(VARIANTS)
+    ],
+)
 def test_broken_variant_fails(variant, workspace):
     def run_patch(*options):
         command = ["patch", "-p1", "--fuzz=0", f"--input={variant.path}", *options]
