@@ -11,13 +11,18 @@ from mrp_check.student.cmake import Model, Target
 from mrp_check.student.package import Package
 
 _TARGET = re.compile(r"CMakeFiles/(?P<target>[^/]+)\.dir/")
+_FAILED = re.compile(r"^make\S* \*\*\* \[.*?" + _TARGET.pattern, re.MULTILINE)
 
 
 def findings(package: Package, output: str, model: Model) -> Iterator[Finding]:
     """Yield a finding for each target that cannot be linked."""
     said, target = set(), None
-    for line in output.splitlines():
+    lines = output.splitlines()
+    for number, line in enumerate(lines):
         named = _TARGET.search(line)
+        if not named and _NO_MAIN.search(line):
+            # Only what make says next names the target: another one may be built beside it.
+            named = _FAILED.search("\n".join(lines[number:]))
         target = named.group("target") if named else target
         if target in said or target not in model.targets:
             continue
@@ -119,8 +124,9 @@ def _of_ros(model: Model, target: Target, name: str) -> Finding:
     )
 
 
+_NO_MAIN = re.compile(r"undefined reference to [`'‘]main['’]")
 _WORDS = (
-    (re.compile(r"undefined reference to [`'‘]main['’]"), _no_main),
+    (_NO_MAIN, _no_main),
     (
         re.compile(
             r"[\w./+-]+\.(?:cpp|cc|cxx|c\+\+|C)(?:\.o)?[:)].*?"
