@@ -9,6 +9,7 @@ a roscpp subscriber logs an error, and goes on.
 
 import unittest
 
+import rosgraph
 import rostest
 from mrp_testing.lab import PACKAGE, Lab
 from mrp_testing.proves import proves
@@ -49,6 +50,9 @@ class TestRefusedValue(unittest.TestCase):
             for subscriber in ("/refused/subscriber_cpp", "/refused/subscriber_py"):
                 wait_for_values(lab, subscriber, "1", "2", "3", "4", "5", "1")
             self.assertEqual(lab.logged("/refused/publisher_py", levels=["ERROR"]), [])
+        # What comes next at its address is no business of the master's.
+        with self.assertRaises(rosgraph.MasterError):
+            rosgraph.Master("/test").lookupNode("/refused/subscriber_py")
 
 
 def wait_for_values(lab, subscriber, *wanted):

@@ -4,12 +4,17 @@
 import collections
 import re
 
+import rosgraph
 import roslib.packages
 
 from mrp_testing import log_line
+from mrp_testing.graph import Graph
 from mrp_testing.process import Process
 
 PACKAGE = "mrp_labs"
+
+# The parameter that each Python node caches.
+_CACHED = "/rosout_disable_topics_generation"
 
 _RECEIVED = re.compile(
     r"(?P<node>/\S+) received (?P<value>.*) from (?P<publisher>/\S+?)"
@@ -55,10 +60,26 @@ class Lab(Process):
                 tracebacks = sum("Traceback" in line for line in self.lines)
                 at_start = sum(bool(_ENDED_AT_ITS_START.search(line)) for line in self.lines)
                 assert self.traceback or tracebacks <= at_start, str(self)
+                self._forget()
             else:
                 print(self)  # what it printed often says why
         finally:
             super().__exit__(*exception)
+
+    def _forget(self):
+        """Have the master forget the nodes that have ended.
+
+        A Python node never takes back that it caches a parameter, so the master keeps its address.
+        When a node of that name starts again, the master tells whoever has the address by then to
+        shut down: another node of the next lab.
+        """
+        names = {one.text.split(" ")[0] for one in self._log_lines() if one.text.startswith("/")}
+        for name in names - Graph().nodes:
+            master = rosgraph.Master(name)
+            try:
+                master.unsubscribeParam(master.lookupNode(name), _CACHED)
+            except rosgraph.MasterException:
+                pass  # it has forgotten the node
 
     def logged(self, node, levels=("INFO",)):
         """Return the texts that a node has logged, each without the node's name in front."""
