@@ -147,7 +147,7 @@ def start(robots, up):
         "cores": 0.01 * robots**2,
         "cpp_megabytes": 2,
         "py_megabytes": 30,
-        # Of a hundred one is lost, and the others take 1 to 99 us.
+        # One message of a hundred is lost, and the others take 1 to 99 us.
         "pair": {
             "sent": list(range(1, 101)),
             "received": [number for i in range(1, 100) for number in (i, i + 1000 * i)],

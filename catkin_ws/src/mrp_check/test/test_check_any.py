@@ -45,8 +45,9 @@ FOUND = [
 )
 def test_first_trial_on_packages_by_strangers():
     """A row of strangers.csv is a defect that somebody listed. The label `none` means that the
-    checker reported an error that is none. The column `found` says how it was reported: as an error
-    or a warning, `partly`, `elsewhere` (only what follows from it), or `missed`."""
+    checker reported an error, and nothing is wrong there. The column `found` says how it was
+    reported: as an error or a warning, `partly`, `elsewhere` (only what follows from it), or
+    `missed`."""
     file = pathlib.Path(__file__).with_name("strangers.csv")
     rows = [*csv.DictReader(file.read_text().splitlines())]
     found = [row["found"] for row in rows if row["label"] == "error"]

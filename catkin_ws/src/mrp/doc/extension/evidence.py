@@ -183,7 +183,7 @@ def _of_rostests(folder):
     for test in (WORKSPACE / "src").glob("*/test/test_*.*"):
         package, name = test.parts[-3], test.stem[len("test_") :]
         for path in folder.glob(f"{package}/rosunit-{name}*.xml"):
-            for case in ElementTree.parse(path).iter("testcase"):
+            for case in _cases(path):
                 yield f"{package}/{name}/{case.get('name')}", _passed(case)
 
 
@@ -191,12 +191,20 @@ def _of_pytest(folder):
     for path in folder.rglob("*.xml"):
         if path.name.startswith(("pytest_", "sets", "containers")):
             kind = "docker" if path.name == "containers.xml" else "workspace"
-            for case in ElementTree.parse(path).iter("testcase"):
+            for case in _cases(path):
                 file = re.search(r"\btest_\w+", case.get("classname", ""))
                 if file:
                     # Behind the name, xdist writes the group of those that one worker runs.
                     name = re.sub(r"@\w+$", "", case.get("name"))
                     yield f"{kind}/{file.group()}/{name}", _passed(case)
+
+
+def _cases(path):
+    """Return the test cases of a file of results; none while a test is still writing it."""
+    try:
+        return list(ElementTree.parse(path).iter("testcase"))
+    except ElementTree.ParseError:
+        return []
 
 
 def _passed(case):

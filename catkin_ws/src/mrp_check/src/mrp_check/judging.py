@@ -77,7 +77,7 @@ def judged(case: Case, findings: Iterable[Finding], seen: Iterable[Finding]) -> 
 def _is_of_scripts(case: Case, finding: Finding) -> bool:
     """Return whether a finding can follow from one about a script.
 
-    The copy that ran was mended where Linux could not start it: see any_case.py.
+    In the copy that ran, AnyCase has fixed what keeps Linux from starting a script: see there.
     """
     if finding.stage not in ("run", "stop"):
         return any(script.path not in case.package.files for script in case.model.scripts)

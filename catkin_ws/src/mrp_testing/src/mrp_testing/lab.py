@@ -69,9 +69,9 @@ class Lab(Process):
     def _forget(self):
         """Have the master forget the nodes that have ended.
 
-        A Python node never takes back that it caches a parameter, so the master keeps its address.
-        When a node of that name starts again, the master tells whoever has the address by then to
-        shut down: another node of the next lab.
+        A Python node subscribes to a parameter, and never unsubscribes: so the master keeps the
+        node's address. When a node of that name starts again, the master sends a shutdown to the
+        old address. By then another node may have it, such as one of the next lab.
         """
         names = {one.text.split(" ")[0] for one in self._log_lines() if one.text.startswith("/")}
         for name in names - Graph().nodes:
@@ -79,7 +79,7 @@ class Lab(Process):
             try:
                 master.unsubscribeParam(master.lookupNode(name), _CACHED)
             except rosgraph.MasterException:
-                pass  # it has forgotten the node
+                pass  # it does not know the node any more
 
     def logged(self, node, levels=("INFO",)):
         """Return the texts that a node has logged, each without the node's name in front."""

@@ -28,7 +28,7 @@ def findings(graph, counts, rows, viewer):
     counts = [one for one in counts if one["topic"] not in _LOG and one["to"] != viewer]
     rows = [one for one in rows if one["topic"] not in _LOG]
     edges = [one for one in graph["edges"] if viewer not in (one["from"], one["to"])]
-    told = (
+    reported = (
         *_of_nodes(graph["nodes"]),
         *_of_links(graph["links"]),
         *_of_counts(counts),
@@ -37,7 +37,7 @@ def findings(graph, counts, rows, viewer):
         *_of_rows(rows),
     )
     found, number = [], collections.Counter()
-    for kind, text in told:
+    for kind, text in reported:
         number[kind] += 1
         if number[kind] <= MOST:
             found.append({"kind": kind, "page": PAGES[kind], "text": text})

@@ -6,7 +6,7 @@ A style's patch makes whole files, which replace those of its base: so it still 
 changes. Its head says:
 
     Style: no classes    what is different in it
-    Base: mrp            whose other files it shares: mrp is the tutorial's, nothing is none
+    Base: mrp            whose other files it shares: mrp is the tutorial's; nothing: no base
     Without: src/a.py    files of the base that it leaves out
     CRLF: package.xml    files that get the line ends of Windows
     Spec: relay.yaml     the spec that it follows, if not pub_sub.yaml
@@ -72,7 +72,7 @@ def lay_out(style: str, folder: pathlib.Path) -> None:
         if not (folder / path).exists():
             raise PatchError(
                 f"{style}.patch: expected its base {base} to have {path}, which a field names; "
-                "there is none. Correct the fields Without and CRLF in its head."
+                "there is no such file. Correct the fields Without and CRLF in its head."
             )
     for path in without:
         (folder / path).unlink()

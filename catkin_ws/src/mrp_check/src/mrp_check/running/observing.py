@@ -114,7 +114,7 @@ def observe(workspace: Workspace, spec: Spec, launch: Launch | None, facts: Fact
 def planner_of(
     workspace: Workspace, spec: Spec, params: dict[str, object], facts: Facts, result: Observed
 ) -> Planner | None:
-    """Look for the nodes' executables; return what plans their runs, or None if there is none.
+    """Look for the nodes' executables. Return the Planner of their runs, or None without one.
 
     params: those of the launch files
     """
