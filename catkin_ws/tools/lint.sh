@@ -31,7 +31,7 @@ files() {
 mapfile -t cpp < <(files '*.cpp' '*.h' ':!catkin_ws/tests/errata/original')
 mapfile -t xml < <(files '*.launch' '*.test' '*.xml')
 mapfile -t javascript < <(files '*.js')
-mapfile -t shell < <(files '*.sh' '.ci/*')
+mapfile -t shell < <(files '*.sh' '.ci/*' '*/run_autograder')
 
 check "catkin_lint" env -C catkin_ws tools/with_rosdep.sh catkin_lint --rosdistro Debian --strict -W2 src
 check "clang-format" clang-format --dry-run --Werror "${cpp[@]}"

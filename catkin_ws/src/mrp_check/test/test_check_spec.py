@@ -70,6 +70,8 @@ def test_line_pattern():
         ("topic: a_topic", "topic: a_topic\n    prints: ['[A']", r":9: .*no regular expression"),
         ("std_msgs/UInt32", "PACKAGE/Count", r":4: .*'messages' has no message 'Count'"),
         ("launch:", "points: {valuse: 1}\nlaunch:", r":9: .*no requirement 'valuse'.*'values'\?"),
+        ("launch:", "hidden:\n- wrap\n- valus\nlaunch:", r":11: hidden\.1: .*mean 'values'\?"),
+        ("launch:", "hidden: values\nlaunch:", r":9: hidden: expected a list; found 'values'"),
         ("launch:", "topics: {}\nlaunch:", r":9: .*the key 'topics' stands twice"),
         ("title: An", "title: [An", r":\d+: .*no valid YAML"),
         ("    type: std", "\ttype: std", r":4: .*no valid YAML"),
@@ -92,7 +94,7 @@ def test_line_pattern():
             r":9: messages\.Count\.count: there is no message 'uint23'",
         ),
     ],
-    ids=range(18),
+    ids=range(20),
 )
 def test_wrong_spec_is_told_in_one_sentence(old, new, says, tmp_path):
     path = tmp_path / "wrong.yaml"

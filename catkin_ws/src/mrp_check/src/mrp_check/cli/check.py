@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import argparse
+import pathlib
 import signal
 import sys
 
@@ -11,12 +12,35 @@ from mrp_check import check, sandbox
 from mrp_check.cli import classroom
 from mrp_check.contract import spec
 from mrp_check.contract.errors import CannotCheck, PackageError, SpecError
-from mrp_check.contract.verdict import FINDINGS, MET, UNCHECKED, unchecked
-from mrp_check.report import class_table, console, html, json_, junit
+from mrp_check.contract.verdict import FINDINGS, MET, UNCHECKED, public, unchecked
+from mrp_check.report import class_table, console, gradescope, html, json_, junit, moodle
 from mrp_check.rules import REQUIREMENTS
+from mrp_check.student import submissions
 from mrp_check.student.package import Package
 
 EXIT_CODES = {MET: 0, FINDINGS: 1, UNCHECKED: 2}
+
+# Option -> what --help says of it, and what makes the file's text.
+OF_PACKAGE = {  # of the report and the contract
+    "json": ("write the report as JSON", lambda report, _: json_.text(report)),
+    "junit": ("write the report as JUnit XML", lambda report, _: junit.text(report)),
+    "gradescope": ("write the report as Gradescope's results.json", gradescope.text),
+    "html": (
+        "write the report as a page; with --class: the table",
+        lambda report, _: html.text(report),
+    ),
+}
+OF_CLASS = {  # of the submissions, the contract, and the folder of the submissions' pages
+    "html": (OF_PACKAGE["html"][0], class_table.html_text),
+    "csv": (
+        "with --class: write the table as CSV",
+        lambda checked, contract, _: class_table.csv_text(checked, contract),
+    ),
+    "moodle": (
+        "with --class: write Moodle's grading worksheet, and beside it a zip of feedback files",
+        lambda checked, contract, _: moodle.text(checked, contract),
+    ),
+}
 
 
 def main(arguments=None):
@@ -49,13 +73,10 @@ def parser():
     parser.add_argument(
         "--spec", default="pub_sub", metavar="FILE", help="the contract (default: %(default)s)"
     )
-    for option, text in (
-        ("--json", "write the report as JSON"),
-        ("--junit", "write the report as JUnit XML"),
-        ("--html", "write the report as a page; with --class: the table"),
-        ("--csv", "with --class: write the table as CSV"),
-    ):
-        parser.add_argument(option, metavar="FILE", help=text)
+    hidden = "leave the contract's hidden requirements out of the reports"
+    parser.add_argument("--public", action="store_true", help=hidden)
+    for option, (text, _) in {**OF_PACKAGE, **OF_CLASS}.items():
+        parser.add_argument(f"--{option}", metavar="FILE", help=text)
     number = "with --class: check N at the same time, 1 to 64 (default: %(default)s)"
     most, jobs = range(1, 65), classroom.JOBS
     parser.add_argument("--jobs", type=int, choices=most, default=jobs, metavar="N", help=number)
@@ -84,9 +105,10 @@ def _seconds(text):
 
 def run(options):
     """Check what the options say, write the reports, and return the exit code."""
-    of_package, of_class = ("json", "junit", "only", "any"), ("csv",)
+    of_package = {*OF_PACKAGE, "only", "any", "public"} - {*OF_CLASS}
+    of_class = {*OF_CLASS} - {*OF_PACKAGE}
     try:
-        for name in of_package if options.class_ else of_class:
+        for name in sorted(of_package if options.class_ else of_class):
             if getattr(options, name):
                 needed = "without" if options.class_ else "with"
                 raise CannotCheck(f"--{name} goes {needed} --class.")
@@ -117,31 +139,48 @@ def run_class(options):
     )
     say_how_apart()
     try:
-        submissions = room.check()
+        checked = room.check()
     finally:
         progress.clear()
-    write(options.csv, lambda: class_table.csv_text(submissions, contract))
-    write(options.html, lambda: class_table.html_text(submissions, contract, room.results))
-    print(class_table.text(submissions, contract))
-    all_met = all(one.report["verdict"] == MET for one in submissions)
+    for name, (_, text) in OF_CLASS.items():
+        write(getattr(options, name), text, checked, contract, room.results)
+    if options.moodle:
+        write_pages(options.moodle, checked, contract)
+    print(class_table.text(checked, contract))
+    all_met = all(one.report["verdict"] == MET for one in checked)
     return MET if all_met else FINDINGS
+
+
+def write_pages(worksheet, checked, contract):
+    """Write the zip of Moodle's feedback files, and say whose mark Moodle cannot take."""
+    moodle.write_pages(pathlib.Path(worksheet).with_suffix(".zip"), checked, contract)
+    for name in moodle.left_out(checked):
+        print(
+            f"check: {console.plain(name)} is not in {worksheet}: its name has no number of a"
+            " participant of its own, as 'Full Name_12345_assignsubmission_file_' has.",
+            file=sys.stderr,
+        )
 
 
 def run_package(options):
     """Check a package, write its reports, and return its verdict. Raises CannotCheck."""
     progress = console.Progress(sys.stderr)
+    contract = None
     try:
         contract = None if options.any else spec.read(spec.find(options.spec), REQUIREMENTS)
-        package = Package(options.path)
+        path = pathlib.Path(options.path)
+        # Gradescope unpacks what a student uploads: the package may be in a folder of it.
+        package = Package(submissions.package_in(path) if options.gradescope else path)
         say_how_apart()
         report = check.check(package, contract, options.only, options.timeout, progress.show)
     except (PackageError, SpecError, CannotCheck) as error:
         report = unchecked(str(error))
     finally:
         progress.clear()
-    write(options.json, lambda: json_.text(report))
-    write(options.junit, lambda: junit.text(report))
-    write(options.html, lambda: html.text(report))
+    if options.public and contract:
+        report = public(report, contract.hidden)
+    for name, (_, text) in OF_PACKAGE.items():
+        write(getattr(options, name), text, report, contract)
     if report.requirements:
         print(console.text(report, colours=console.has_colours(sys.stdout)))
     if report.reason:
@@ -149,12 +188,12 @@ def run_package(options):
     return report.verdict
 
 
-def write(path, text_of):
+def write(path, text_of, *arguments):
     """Write what a function returns to a file, if there is a path. Raises CannotCheck."""
     if not path:
         return
     try:
         with open(path, "w", encoding="utf-8", errors="replace", newline="") as file:
-            file.write(text_of())
+            file.write(text_of(*arguments))
     except OSError as error:
         raise CannotCheck(f"{path} cannot be written: {error.strerror}.") from None

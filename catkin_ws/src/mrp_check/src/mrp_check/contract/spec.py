@@ -134,12 +134,17 @@ class Spec:
     messages: dict[str, dict[str, str]] = dataclasses.field(default_factory=dict)
     install: bool = False
     points: dict[str, float] = dataclasses.field(default_factory=dict)
+    hidden: tuple[str, ...] = ()  # requirements that count, and that no student sees
     is_contract: bool = True  # if not, it only lists the nodes of a package
 
     def node_path(self, node_name: str, group: str | None = None) -> str:
         """Return a node's full name, such as /mrp/publisher_cpp_node."""
         group = self.launch.group if group is None else group
         return f"/{group}/{node_name}" if group else f"/{node_name}"
+
+    def points_of(self, id_: str) -> float:
+        """Return the points of a requirement: 1 where the spec does not say."""
+        return self.points.get(id_, 1)
 
 
 def pattern(line: str, name: str | None = None) -> re.Pattern[str]:
@@ -163,7 +168,7 @@ def find(name: str) -> pathlib.Path:
 def read(path: str | pathlib.Path, requirements: Collection[str] | None = None) -> Spec:
     """Return the Spec in a file. Raises SpecError if it is no spec.
 
-    requirements: the ids of those that there are, to which points can be given; any if None
+    requirements: the ids of those that there are, which points and hidden can name; any if None
     """
     try:
         text = pathlib.Path(path).read_text(encoding="utf-8")
@@ -236,14 +241,21 @@ class _Reader:
             messages=data.get("messages", {}),
             install=data.get("install", False),
             points=data.get("points", {}),
+            hidden=tuple(data.get("hidden", ())),
         )
         self.own_messages(spec.messages)
         for topic in topics.values():
             self.field(topic, spec.messages)
         for id_ in spec.points:
-            if self.requirements is not None and id_ not in self.requirements:
-                self.fail(["points", id_], no_such("requirement", id_, self.requirements))
+            self.requirement(["points", id_], id_)
+        for index, id_ in enumerate(spec.hidden):
+            self.requirement(["hidden", index], id_)
         return spec
+
+    def requirement(self, place: Sequence[str | int], id_: str) -> None:
+        """See that there is such a requirement."""
+        if self.requirements is not None and id_ not in self.requirements:
+            self.fail(place, no_such("requirement", id_, self.requirements))
 
     def own_messages(self, messages: Messages) -> None:
         """See that each field's type is one that there is."""

@@ -4,8 +4,9 @@
 from __future__ import annotations
 
 import dataclasses
+from typing import Collection
 
-from mrp_check.contract.finding import Finding
+from mrp_check.contract.finding import ERROR, Finding
 
 MET, FINDINGS, UNCHECKED = "met", "findings", "unchecked"
 BROKEN = "broken"
@@ -22,6 +23,7 @@ class Report:
     left_out: the ids of what was not asked, as the package has no contract
     unseen: id -> why nobody can say whether it is met, of those that are UNCHECKED
     console: the lines that roslaunch and its nodes printed, as far as they ran
+    is_public: whether hidden requirements have been left out
     """
 
     package: str
@@ -33,8 +35,34 @@ class Report:
     unseen: dict[str, str] = dataclasses.field(default_factory=dict)
     left_out: list[str] = dataclasses.field(default_factory=list)
     console: list[str] = dataclasses.field(default_factory=list)
+    is_public: bool = False
 
 
 def unchecked(reason: str) -> Report:
     """Return the Report of a package that nothing could be checked of: why, in one sentence."""
     return Report("", "", UNCHECKED, [], {}, reason)
+
+
+def public(report: Report, hidden: Collection[str]) -> Report:
+    """Return what a student may see of a Report: nothing of a hidden requirement."""
+    if not hidden:
+        return report
+    findings = [
+        dataclasses.replace(f, consequence_of=None) if f.consequence_of in hidden else f
+        for f in report.findings
+        if f.id not in hidden
+    ]
+    unseen = {
+        id_: "its cause is not shown" if why.rpartition(" ")[2] in hidden else why
+        for id_, why in report.unseen.items()
+        if id_ not in hidden
+    }
+    is_met = not any(finding.severity == ERROR for finding in findings)
+    return dataclasses.replace(
+        report,
+        verdict=UNCHECKED if report.reason else MET if is_met else FINDINGS,
+        findings=findings,
+        requirements={id_: v for id_, v in report.requirements.items() if id_ not in hidden},
+        unseen=unseen,
+        is_public=True,
+    )

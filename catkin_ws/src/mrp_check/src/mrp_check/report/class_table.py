@@ -36,7 +36,7 @@ class Submission:
 
     def points(self, spec):
         """Return the points of all requirements that are met."""
-        return sum(_points_of(spec, id_) for id_ in REQUIREMENTS if self.verdict_on(id_) == MET)
+        return sum(spec.points_of(id_) for id_ in REQUIREMENTS if self.verdict_on(id_) == MET)
 
     def errors(self):
         return [f for f in self.report["findings"] if f["severity"] == ERROR]
@@ -48,13 +48,9 @@ class Submission:
         return [_one_line(f) for f in self.errors() if not f["consequence_of"]]
 
 
-def _points_of(spec, id_):
-    return spec.points.get(id_, 1)
-
-
 def most(spec):
     """Return the points of a package that meets all requirements."""
-    return sum(_points_of(spec, id_) for id_ in REQUIREMENTS)
+    return sum(map(spec.points_of, REQUIREMENTS))
 
 
 def _one_line(finding):
@@ -70,19 +66,19 @@ def csv_text(submissions, spec):
     for one in submissions:
         writer.writerow(
             [
-                _cell(one.name),
-                _cell(one.report["package"]),
+                cell(one.name),
+                cell(one.report["package"]),
                 one.report["verdict"],
                 f"{one.points(spec):g}",
                 f"{most(spec):g}",
                 *map(one.verdict_on, REQUIREMENTS),
-                _cell(" | ".join(one.causes()[:_MOST_CAUSES])),
+                cell(" | ".join(one.causes()[:_MOST_CAUSES])),
             ]
         )
     return file.getvalue()
 
 
-def _cell(text):
+def cell(text):
     """Return a text that steers no terminal, and that a spreadsheet does not take for a formula."""
     return "'" * text.startswith(("=", "+", "-", "@", "\t")) + console.plain(text)
 

@@ -166,11 +166,12 @@ def summary(report):
     if not report.requirements:
         return "Nothing could be checked."
     verdicts = list(report.requirements.values())
+    kind = "public requirements" if report.is_public else "requirements"
     met, broken = verdicts.count(MET), verdicts.count(BROKEN)
     unchecked = verdicts.count(UNCHECKED)
     rest = f"; {unchecked} could not be checked" if unchecked else ""
     warnings = sum(f.severity == WARNING and not f.consequence_of for f in report.findings)
     rest += f"; warnings: {warnings}" if warnings else ""
     if broken or unchecked:
-        return f"{broken} of {len(verdicts)} requirements are not met{rest}."
-    return f"All requirements are met: {met} of {len(verdicts)}{rest}."
+        return f"{broken} of {len(verdicts)} {kind} are not met{rest}."
+    return f"All {kind} are met: {met} of {len(verdicts)}{rest}."

@@ -31,8 +31,11 @@ def render(template, **values):
     return console.plain(page)
 
 
-def text(report):
-    """Return the page of one package's report."""
+def text(report, has_links=True):
+    """Return the page of one package's report.
+
+    has_links: whether it links to the tutorial's pages, which are on this machine alone
+    """
     return render(
         "package.html",
         report=report,
@@ -42,7 +45,7 @@ def text(report):
         where=console.where,
         why_not=console.why_not,
         pages=console.pages,
-        address_of=_address_of,
+        address_of=_address_of if has_links else lambda page: "",
     )
 
 

@@ -6,6 +6,8 @@ from __future__ import annotations
 import dataclasses
 import json
 
+from mrp_check.contract.finding import Finding
+from mrp_check.contract.verdict import Report
 from mrp_check.rules import REQUIREMENTS
 
 _INNER = ("node", "change")  # what only the checker itself needs to know of a finding
@@ -18,12 +20,19 @@ def data(report):
         for name in _INNER:
             del finding[name]
         finding["section"] = REQUIREMENTS[finding["id"]].section
-    del result["console"]
+    del result["console"], result["is_public"]
     if not report.reason:
         del result["reason"]
     if not report.left_out:
         del result["left_out"]
     return result
+
+
+def report_of(data):
+    """Return the Report that data() was made of, without what only the checker needs to know."""
+    of_finding = {field.name for field in dataclasses.fields(Finding)}
+    findings = [Finding(**{k: one[k] for k in one.keys() & of_finding}) for one in data["findings"]]
+    return Report(**{**data, "findings": findings})
 
 
 def text(report):

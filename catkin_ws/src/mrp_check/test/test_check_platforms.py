@@ -1,0 +1,274 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What Gradescope and Moodle take, and that no student sees a hidden requirement."""
+
+import csv
+import dataclasses
+import json
+import zipfile
+
+import jsonschema
+import pytest
+from check_rules import hand_in
+from mrp_check.cli import check as check_command
+from mrp_check.contract import spec
+from mrp_check.contract.finding import Finding
+from mrp_check.contract.verdict import BROKEN, FINDINGS, MET, UNCHECKED, Report, public, unchecked
+from mrp_check.report import class_table, console, gradescope, html, json_, moodle
+from mrp_check.rules import REQUIREMENTS
+from mrp_testing.proves import proves
+
+pytestmark = pytest.mark.quick
+
+VISIBILITY = {"enum": ["hidden", "after_due_date", "after_published", "visible"]}
+FORMAT = {"enum": ["text", "html", "simple_format", "md", "ansi"]}
+TEXT, NUMBER = {"type": "string"}, {"type": "number"}
+
+# All fields of https://gradescope-autograders.readthedocs.io/en/latest/specs/#output-format.
+RESULTS = {
+    "type": "object",
+    "additionalProperties": False,
+    "anyOf": [{"required": ["score"]}, {"required": ["tests"]}],
+    "properties": {
+        "score": NUMBER,
+        "execution_time": NUMBER,
+        "output": TEXT,
+        "output_format": FORMAT,
+        "test_output_format": FORMAT,
+        "test_name_format": FORMAT,
+        "visibility": VISIBILITY,
+        "stdout_visibility": VISIBILITY,
+        "extra_data": {"type": "object"},
+        "leaderboard": {"type": "array"},
+        "tests": {
+            "type": "array",
+            "items": {
+                "type": "object",
+                "additionalProperties": False,
+                "required": ["score"],
+                "properties": {
+                    "score": NUMBER,
+                    "max_score": NUMBER,
+                    "status": {"enum": ["passed", "failed"]},
+                    "name": TEXT,
+                    "name_format": FORMAT,
+                    "number": TEXT,
+                    "output": TEXT,
+                    "output_format": FORMAT,
+                    "tags": {"type": "array", "items": TEXT},
+                    "visibility": VISIBILITY,
+                    "extra_data": {"type": "object"},
+                },
+            },
+        },
+    },
+}
+
+CONTRACT = dataclasses.replace(
+    spec.read(spec.find("pub_sub")), points={"values": 5, "spin": 2.5}, hidden=("spin", "wrap")
+)
+SPIN = Finding("spin", "It never spins.", "src/a.py", 3)
+WRAP = Finding("wrap", "It ends at 2^32.", "src/a.py", 7)
+VALUES = Finding("values", "It publishes <2>.", "src/a.py", 9)
+SILENT = Finding("received", "Nothing came.", "src/b.py", 2, consequence_of="spin")
+
+
+def report(*findings, reason=""):
+    verdicts = dict.fromkeys(REQUIREMENTS, MET)
+    verdicts.update({f.id: UNCHECKED if f.consequence_of else BROKEN for f in findings})
+    unseen = {f.id: f"it follows from {f.consequence_of}" for f in findings if f.consequence_of}
+    verdict = UNCHECKED if reason else FINDINGS if findings else MET
+    return Report("a_pkg", "An exercise", verdict, list(findings), verdicts, reason, unseen)
+
+
+def results(one, contract=CONTRACT):
+    found = json.loads(gradescope.text(one, contract))
+    jsonschema.validate(found, RESULTS)
+    return found
+
+
+def submission(name, one):
+    return class_table.Submission(name, json_.data(one))
+
+
+@pytest.mark.parametrize(
+    "one",
+    [
+        report(),
+        report(SPIN, SILENT, VALUES),
+        report(Finding("text", "\x1b[2J", "\udcff"), reason="No time was left."),
+        unchecked("There is no folder x."),
+    ],
+    ids=range(4),
+)
+def test_results_have_the_fields_that_gradescope_names(one):
+    text = gradescope.text(one, CONTRACT)
+    results(one)
+    assert "\x1b" not in text and text.encode()
+
+
+@proves(
+    "A hidden requirement counts: Gradescope's file has it with its points and with hidden as its "
+    "visibility.",
+)
+def test_each_requirement_is_a_test_with_its_points():
+    tests = results(report(SPIN, VALUES))["tests"]
+    by_id = {test["name"].split("(")[-1][:-1]: test for test in tests}
+    assert list(by_id) == list(REQUIREMENTS)
+    most = class_table.most(CONTRACT)
+    assert sum(test["max_score"] for test in tests) == most == len(REQUIREMENTS) + 4 + 1.5
+    assert sum(test["score"] for test in tests) == most - 5 - 2.5
+    assert {id_ for id_, test in by_id.items() if test["visibility"] == "hidden"} == {
+        "spin",
+        "wrap",
+    }
+    assert (by_id["values"]["status"], by_id["topic"]["status"]) == ("failed", "passed")
+    assert "src/a.py:9: error: It publishes <2>." in by_id["values"]["output"]
+    assert "It never spins." in by_id["spin"]["output"]
+
+
+def test_what_could_not_be_checked_says_why_and_earns_nothing():
+    one = report(reason="No time was left.")
+    one.requirements.update(dict.fromkeys(REQUIREMENTS, UNCHECKED))
+    one.unseen.update(dict.fromkeys(REQUIREMENTS, "No time was left."))
+    found = results(one)
+    assert sum(test["score"] for test in found["tests"]) == 0
+    assert found["output"].endswith("\nNo time was left.")
+    assert "could not be checked: No time was left." in found["tests"][0]["output"]
+
+
+def shown_by_gradescope(one):
+    found = results(one)
+    return found["output"], [t for t in found["tests"] if t["visibility"] == "visible"]
+
+
+# What a student is shown of a report.
+SHOWN = {
+    "gradescope": shown_by_gradescope,
+    "console": lambda one: console.text(public(one, CONTRACT.hidden)),
+    "page": lambda one: html.text(public(one, CONTRACT.hidden)),
+    "json": lambda one: json_.text(public(one, CONTRACT.hidden)),
+    "moodle": lambda one: moodle.text([submission(NAMED, one)], CONTRACT).split(",")[-1],
+}
+NAMED = "Anna Lee_12345_assignsubmission_file_"
+
+
+@proves("The student reads All public requirements are met, whether it is met or not.")
+@pytest.mark.parametrize("kind", SHOWN)
+def test_a_student_does_not_see_which_hidden_requirement_failed(kind):
+    shown = SHOWN[kind]
+    assert shown(report(SPIN)) == shown(report(WRAP)) == shown(report())
+    if kind in ("gradescope", "console", "page", "moodle"):
+        assert f"All public requirements are met: {len(REQUIREMENTS) - 2}" in str(
+            shown(report(SPIN))
+        )
+
+
+@pytest.mark.parametrize("kind", SHOWN)
+def test_a_cause_that_is_hidden_is_not_named(kind):
+    text = str(SHOWN[kind](report(SPIN, SILENT)))
+    assert "spin" not in text and REQUIREMENTS["spin"].title not in text
+
+
+@proves("With --public, the other reports leave it out, too.")
+def test_public_leaves_hidden_requirements_out(tmp_path, monkeypatch, capsys):
+    contract, file = tmp_path / "contract.yaml", tmp_path / "report.json"
+    contract.write_text(spec.find("pub_sub").read_text() + "hidden: [spin]\n")
+    monkeypatch.setattr(check_command.check, "check", lambda *_: report(SPIN))
+    options = ["--spec", str(contract), "--json", str(file), str(hand_in(tmp_path, "anna"))]
+    for option, code, ids in (([], 1, {"spin"}), (["--public"], 0, set())):
+        with pytest.raises(SystemExit) as end:
+            check_command.main([*option, *options])
+        assert end.value.code == code
+        assert {f["id"] for f in json.loads(file.read_text())["findings"]} == ids
+        assert ("spin" in capsys.readouterr().out) == bool(ids)
+
+
+def test_without_hidden_requirements_nothing_is_left_out():
+    assert public(report(SPIN), ()) == report(SPIN)
+    assert console.summary(public(report(), ())).startswith("All requirements are met")
+
+
+@proves(
+    "check --gradescope FILE PATH writes the same file on your machine.",
+    "If the package cannot be checked, the file has a score of 0 and the reason.",
+)
+@pytest.mark.parametrize(
+    ("make", "says"),
+    [
+        (lambda folder: (folder / "work.tar.gz").touch(), "no package.xml"),
+        (lambda folder: None, "no package.xml"),
+        (lambda folder: folder.rmdir(), "no package.xml"),
+        (lambda folder: (folder / "package.xml").mkdir(), "no package.xml"),
+    ],
+    ids=["archive", "empty", "none", "folder"],
+)
+def test_what_cannot_be_checked_has_a_score_of_0_and_one_sentence(make, says, tmp_path):
+    made, file = tmp_path / "submission", tmp_path / "results.json"
+    made.mkdir()
+    make(made)
+    with pytest.raises(SystemExit) as end:
+        check_command.main(["--gradescope", str(file), str(made)])
+    assert end.value.code == 2
+    found = json.loads(file.read_text())
+    jsonschema.validate(found, RESULTS)
+    assert found["score"] == 0 and says in found["output"]
+    assert found["output"].count("\n") == 0
+
+
+def test_points_need_a_contract():
+    with pytest.raises(check_command.CannotCheck, match="--any"):
+        gradescope.text(report(), None)
+
+
+CLASS = [
+    submission(NAMED, report(SPIN, VALUES)),
+    submission("Bea O'Neil_777_assignsubmission_file", unchecked("It has no package.xml.")),
+    submission("carl", report()),
+    submission("Dee_5_assignsubmission_file_a.zip", report()),
+    submission("Dee_5_assignsubmission_file_b.zip", report()),
+]
+
+
+@proves("The worksheet has each participant's number, points and reasons.")
+def test_worksheet_has_what_moodle_reads():
+    """Moodle finds a column by its name, and the student by the number after "Participant "."""
+    rows = list(csv.DictReader(moodle.text(CLASS, CONTRACT).splitlines()))
+    # assignfeedback_offline_grade_importer::init() needs the first three.
+    assert {"Identifier", "Grade", "Last modified (grade)", "Feedback comments"} <= rows[0].keys()
+    assert [row["Identifier"] for row in rows] == ["Participant 12345", "Participant 777"]
+    anna, bea = rows
+    assert float(anna["Maximum Grade"]) == class_table.most(CONTRACT)
+    assert float(anna["Grade"]) == class_table.most(CONTRACT) - 7.5
+    assert "src/a.py:9: It publishes &lt;2&gt;." in anna["Feedback comments"]
+    assert "spin" not in anna["Feedback comments"]
+    assert (bea["Full name"], bea["Grade"]) == ("Bea O'Neil", "0")
+    assert "It has no package.xml." in bea["Feedback comments"]
+
+
+@proves(
+    "marks.zip has a page for each student, in a folder with the name that Moodle gave it.",
+)
+def test_zip_has_a_page_for_each_student(tmp_path):
+    moodle.write_pages(tmp_path / "marks.zip", CLASS, CONTRACT)
+    with zipfile.ZipFile(tmp_path / "marks.zip") as archive:
+        pages = {name: archive.read(name).decode() for name in archive.namelist()}
+    # assignfeedback_file_zip_importer takes fullname_number_assignsubmission_file_/FILE.
+    bea = "Bea O'Neil_777_assignsubmission_file_/feedback.html"
+    assert list(pages) == [f"{NAMED}/feedback.html", bea]
+    anna = pages[f"{NAMED}/feedback.html"]
+    assert "It publishes &lt;2&gt;." in anna and "It has no package.xml." in pages[bea]
+    assert "It never spins." not in anna and "file:" not in anna
+
+
+@proves(
+    "A folder whose name has no number of its own is in neither file, and the checker says so.",
+)
+def test_a_name_without_a_number_is_said_and_not_guessed(tmp_path, capsys):
+    check_command.write_pages(tmp_path / "marks.csv", CLASS, CONTRACT)
+    said = capsys.readouterr().err.splitlines()
+    assert [line.split(" is not in ")[0] for line in said] == [
+        "check: carl",
+        "check: Dee_5_assignsubmission_file_a.zip",
+        "check: Dee_5_assignsubmission_file_b.zip",
+    ]
+    assert (tmp_path / "marks.zip").exists()
