@@ -10,6 +10,7 @@ const { browser } = require("globals");
 export default [
   js.configs.recommended,
   { languageOptions: { globals: browser } },
+  { rules: { "max-lines-per-function": ["error", 40], "max-lines": ["error", 400] } },
   {
     // Sphinx makes the object, and its theme loads jQuery; its pages load the file as a script.
     files: ["**/doc/static/page.js"],

@@ -27,18 +27,28 @@ export class Graph {
     this.pulses = [];
     this.edges.clear();
     this.badges.clear();
-    if (layout.error) {
+    const instead = layout.error ? html("p", { class: "fault" }, layout.error)
+      : !graph.nodes.length && html("p", {}, "No node to show yet.");
+    if (instead) {
       this.size = null;
-      this.place.replaceChildren(html("p", { class: "fault" }, layout.error));
-      return;
-    }
-    if (!graph.nodes.length) {
-      this.size = null;
-      this.place.replaceChildren(html("p", {}, "No node to show yet."));
+      this.place.replaceChildren(instead);
       return;
     }
     const focused = document.activeElement?.closest("#graph .item")?.dataset.key;
     this.items = [];
+    const picture = this.picture(graph, layout);
+    this.size = layout;
+    this.place.replaceChildren(picture);
+    this.fit();
+    for (const edge of this.edges.values()) edge.length = edge.path.getTotalLength();
+    const again = this.items.find((one) => one.dataset.key === focused);
+    (again ?? this.items[0])?.setAttribute("tabindex", "0");
+    again?.focus();
+    this.placeBadges();
+  }
+
+  // Fills `items`, and the badges of the edges.
+  picture(graph, layout) {
     const picture = svg("svg", {
       role: "group",
       "aria-label": describe(graph),
@@ -59,14 +69,7 @@ export class Graph {
     this.front = svg("g", { "aria-hidden": "true" });
     picture.append(this.front);
     picture.addEventListener("keydown", (event) => this.key(event));
-    this.size = layout;
-    this.place.replaceChildren(picture);
-    this.fit();
-    for (const edge of this.edges.values()) edge.length = edge.path.getTotalLength();
-    const again = this.items.find((one) => one.dataset.key === focused);
-    (again ?? this.items[0])?.setAttribute("tabindex", "0");
-    again?.focus();
-    this.placeBadges();
+    return picture;
   }
 
   fit() {

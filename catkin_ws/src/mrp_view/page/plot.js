@@ -47,64 +47,76 @@ function ticks(low, high) {
 
 const shortened = (value) => (Math.abs(value) >= 1e7 ? value.toExponential(3) : String(Number(value.toPrecision(6))));
 
-export function showPlot(history, rows, now) {
-  const select = byId("plot-topic");
+// Until the reader chooses: the first topic of which there is something to see.
+function chooseTopic(select, history, rows) {
   setOptions(select, [...new Set(rows.map((one) => one.topic))].sort());
-  // Until the reader chooses: the first topic of which there is something to see.
   const fresh = rows.find((one) => history.samples.get(`${one.topic}\n${one.from}`)?.some((point) => point[1] !== null));
   const chosen = select.dataset.chosen || rows.some((one) => one.topic === select.value && one.rate > 0);
   if (!chosen && fresh) select.value = fresh.topic;
-  const lines = rows
-    .filter((one) => one.topic === select.value)
+}
+
+function linesOf(topic, history, rows, now) {
+  return rows
+    .filter((one) => one.topic === topic)
     .map((one) => ({
       name: one.from,
       field: one.number,
       points: (history.samples.get(`${one.topic}\n${one.from}`) ?? []).filter((point) => point[1] !== null && point[0] >= now - SECONDS),
     }))
     .filter((one) => one.points.length);
-  const place = byId("plot");
-  const width = Math.max(280, place.clientWidth);
-  const values = lines.flatMap((one) => one.points.map((point) => point[1]));
-  if (!values.length) {
-    place.replaceChildren();
-    setText(byId("plot-note"), select.value ? "No number in this topic's messages in the last 60 s." : "No message yet.");
-    return;
-  }
+}
+
+// Returns where in the picture a time and a value are, and the range of the values.
+function scalesOf(values, width, now) {
   let low = Math.min(...values);
   let high = Math.max(...values);
   if (low === high) [low, high] = [low - 1, high + 1];
   const x = (time) => MARGIN.left + ((time - now + SECONDS) / SECONDS) * (width - MARGIN.left - MARGIN.right);
   const y = (value) => HEIGHT - MARGIN.bottom - ((value - low) / (high - low)) * (HEIGHT - MARGIN.top - MARGIN.bottom);
+  return { x, y, low, high };
+}
+
+function axes({ x, y, low, high }, width, now) {
+  const grid = ticks(low, high).flatMap((value) => [
+    svg("line", { class: "grid", x1: MARGIN.left, x2: width - MARGIN.right, y1: y(value), y2: y(value) }),
+    svg("text", { class: "tick left", x: MARGIN.left - 6, y: y(value) + 4 }, shortened(value)),
+  ]);
+  const times = [60, 45, 30, 15, 0].map((seconds) =>
+    svg("text", { class: `tick ${seconds ? "" : "left"}`, x: x(now - seconds), y: HEIGHT - 8 }, seconds ? `−${seconds} s` : "now"),
+  );
+  return [...grid, ...times];
+}
+
+function drawn({ name, points }, { x, y }) {
+  const { colour, dash } = styleOf(name);
+  const places = points.map(([time, value]) => [x(time).toFixed(1), y(value).toFixed(1)]);
+  const line = svg("path", { class: "line", d: `M${places.map((place) => place.join(" ")).join("L")}`, "stroke-dasharray": dash });
+  line.style.stroke = colour;
+  // Single messages are seen as such.
+  const dots = places.length > 150 ? [] : places.map(([cx, cy]) => svg("circle", { cx, cy, r: 2 }));
+  for (const dot of dots) dot.style.fill = colour;
+  return [line, ...dots];
+}
+
+export function showPlot(history, rows, now) {
+  const select = byId("plot-topic");
+  chooseTopic(select, history, rows);
+  const lines = linesOf(select.value, history, rows, now);
+  const place = byId("plot");
+  const width = Math.max(280, place.clientWidth);
+  if (!lines.length) {
+    place.replaceChildren();
+    setText(byId("plot-note"), select.value ? "No number in this topic's messages in the last 60 s." : "No message yet.");
+    return;
+  }
+  const scales = scalesOf(lines.flatMap((one) => one.points.map((point) => point[1])), width, now);
   const words = lines.map((one) => `${one.name} ${shortened(one.points[one.points.length - 1][1])}`);
   const picture = svg("svg", {
     role: "img",
     "aria-label": `${select.value} over the last 60 seconds; last values: ${words.join(", ")}`,
     viewBox: `0 0 ${width} ${HEIGHT}`,
   });
-  for (const value of ticks(low, high)) {
-    picture.append(
-      svg("line", { class: "grid", x1: MARGIN.left, x2: width - MARGIN.right, y1: y(value), y2: y(value) }),
-      svg("text", { class: "tick left", x: MARGIN.left - 6, y: y(value) + 4 }, shortened(value)),
-    );
-  }
-  for (const seconds of [60, 45, 30, 15, 0]) {
-    picture.append(svg("text", { class: `tick ${seconds ? "" : "left"}`, x: x(now - seconds), y: HEIGHT - 8 }, seconds ? `−${seconds} s` : "now"));
-  }
-  for (const { name, points } of lines) {
-    const { colour, dash } = styleOf(name);
-    const path = points.map((point) => `${x(point[0]).toFixed(1)} ${y(point[1]).toFixed(1)}`).join("L");
-    const line = svg("path", { class: "line", d: `M${path}`, "stroke-dasharray": dash });
-    line.style.stroke = colour;
-    picture.append(line);
-    // Single messages are seen as such.
-    if (points.length <= 150) {
-      for (const point of points) {
-        const dot = svg("circle", { cx: x(point[0]).toFixed(1), cy: y(point[1]).toFixed(1), r: 2 });
-        dot.style.fill = colour;
-        picture.append(dot);
-      }
-    }
-  }
+  picture.append(...axes(scales, width, now), ...lines.flatMap((line) => drawn(line, scales)));
   place.replaceChildren(picture);
   const field = lines[0].field;
   setText(byId("plot-note"), `What is plotted: ${field}. Each line is that of the publisher with the same line in the table.`);

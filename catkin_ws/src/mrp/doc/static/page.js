@@ -18,8 +18,8 @@ function chosen(label) {
   }
 }
 
-document.addEventListener("DOMContentLoaded", () => {
-  // A click on a tab's label chooses all tabs of that name; the arrow keys are to do the same.
+// A click on a tab's label chooses all tabs of that name; the arrow keys are to do the same.
+function connectTabs() {
   const labels = [...document.querySelectorAll(".tab-label")];
   for (const label of labels) {
     label.previousElementSibling.addEventListener("change", () => label.click());
@@ -29,41 +29,40 @@ document.addEventListener("DOMContentLoaded", () => {
   for (const label of labels) {
     if (label.textContent === before) label.previousElementSibling.checked = true;
   }
+}
 
-  // What scrolls sideways can be scrolled by keyboard: so the Tab key must come to it.
-  const makeReachable = () => {
-    const boxes = ".rst-content :is(pre, .picture, .wy-table-responsive)";
-    const watcher = new ResizeObserver((entries) => {
-      for (const { target } of entries) {
-        const box = target.closest(boxes);
-        if (box.scrollWidth > box.clientWidth) box.tabIndex = 0;
-        else box.removeAttribute("tabindex");
-      }
-    });
-    // What is in a box may grow without it: a font comes late.
-    for (const one of document.querySelectorAll(`${boxes}, ${boxes} > *`)) watcher.observe(one);
-  };
-  // The theme puts boxes around tables in a function that jQuery calls from another one: so it has
-  // done so when jQuery calls this.
-  jQuery(() => jQuery(makeReachable));
+// What scrolls sideways can be scrolled by keyboard: so the Tab key must come to it.
+function makeReachable() {
+  const boxes = ".rst-content :is(pre, .picture, .wy-table-responsive)";
+  const watcher = new ResizeObserver((entries) => {
+    for (const { target } of entries) {
+      const box = target.closest(boxes);
+      if (box.scrollWidth > box.clientWidth) box.tabIndex = 0;
+      else box.removeAttribute("tabindex");
+    }
+  });
+  // What is in a box may grow without it: a font comes late.
+  for (const one of document.querySelectorAll(`${boxes}, ${boxes} > *`)) watcher.observe(one);
+}
 
-  // Sphinx makes headings of the captions of a list of pages, but does not say of which level.
+// Sphinx makes headings of the captions of a list of pages, but does not say of which level.
+function giveLevels() {
   for (const caption of document.querySelectorAll("[role=heading]:not([aria-level])")) {
     caption.setAttribute("aria-level", 2);
   }
+}
 
-  // A link may lead into what is folded.
-  const unfold = () => {
-    const target = document.getElementById(decodeURIComponent(location.hash.slice(1)));
-    for (let node = target; node; node = node.parentElement) {
-      if (node.tagName === "DETAILS") node.open = true;
-    }
-    if (target) target.scrollIntoView();
-  };
-  window.addEventListener("hashchange", unfold);
-  unfold();
+// A link may lead into what is folded.
+function unfold() {
+  const target = document.getElementById(decodeURIComponent(location.hash.slice(1)));
+  for (let node = target; node; node = node.parentElement) {
+    if (node.tagName === "DETAILS") node.open = true;
+  }
+  if (target) target.scrollIntoView();
+}
 
-  // The phone's menu button is a mere <i>, which only a finger can press.
+// The phone's menu button is a mere <i>, which only a finger can press.
+function connectMenu() {
   const button = document.querySelector("i[data-toggle='wy-nav-top']");
   const menu = document.querySelector(".wy-nav-side");
   const isOpen = () => menu.classList.contains("shift");
@@ -86,4 +85,15 @@ document.addEventListener("DOMContentLoaded", () => {
       button.focus();
     }
   });
+}
+
+document.addEventListener("DOMContentLoaded", () => {
+  connectTabs();
+  // The theme puts boxes around tables in a function that jQuery calls from another one: so it has
+  // done so when jQuery calls this.
+  jQuery(() => jQuery(makeReachable));
+  giveLevels();
+  window.addEventListener("hashchange", unfold);
+  unfold();
+  connectMenu();
 });
