@@ -44,6 +44,7 @@ check "vulture" $tools/vulture catkin_ws/src/mrp_check/{src,scripts} \
 check "mypy" $tools/mypy --no-error-summary --cache-dir $lint/mypy --config-file catkin_ws/mypy.ini \
   --package mrp_check
 check "clangd and pyright" catkin_ws/tools/check_editor.py
+check "SARIF" catkin_ws/tools/check_sarif.py
 check "eslint" $tools/node $lint/node_modules/.bin/eslint --max-warnings 0 \
   --config catkin_ws/eslint.config.mjs "${javascript[@]}"
 check "shellcheck" shellcheck "${shell[@]}"

@@ -152,6 +152,16 @@ project(some_pkg)
 find_package(catkin REQUIRED COMPONENTS rospy std_msgs)
 catkin_package()
 """
+_CMAKE_OF_TESTED = (
+    _CMAKE_OF_SCRIPTS
+    + """\
+catkin_install_python(PROGRAMS scripts/ends.py DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
+if(CATKIN_ENABLE_TESTING)
+  find_package(mrp_check REQUIRED)
+  mrp_check_add_test()
+endif()
+"""
+)
 _LAUNCH = """\
 <launch>
   <param name="near/limt" value="3"/>
@@ -193,4 +203,19 @@ def faulty(folder):
     }
     check_rules.make(folder, **files)
     (folder / "scripts" / "ends.py").chmod(0o644)
+    return folder
+
+
+def tested(folder):
+    """Make a package whose tests check it: its one node ends by itself."""
+    files = {
+        "package_DOT_xml": check_rules.MANIFEST.replace(
+            "</package>", "  <test_depend>mrp_check</test_depend>\n</package>"
+        ),
+        "CMakeLists_DOT_txt": _CMAKE_OF_TESTED,
+        "scripts__ends_DOT_py": _LISTENER.replace("env python", "env python3").replace(
+            "    rospy.spin()\n", ""
+        ),
+    }
+    check_rules.make(folder, **files)
     return folder

@@ -5,6 +5,8 @@ import csv
 import json
 import pathlib
 import re
+import subprocess
+import xml.etree.ElementTree as ElementTree
 
 import any_packages
 import jsonschema
@@ -13,6 +15,7 @@ from mrp_check import check
 from mrp_check.contract.finding import ERROR, NOTE, WARNING
 from mrp_check.report import console, json_
 from mrp_check.student.package import Package
+from mrp_testing import scratch
 from mrp_testing.proves import proves
 
 pytestmark = pytest.mark.slow
@@ -99,6 +102,42 @@ def test_each_defect_is_found_at_its_place(tmp_path):
     others = [f for f in errors if not any(is_told(f, folder, *one) for one in FOUND)]
     assert not others, shown(others)
     assert not [f for f in report.findings if f.file == "scripts/talker.py"]
+
+
+@proves(
+    "catkin_make run_tests checks a package whose CMakeLists.txt has find_package(mrp_check "
+    "REQUIRED) and mrp_check_add_test() in if(CATKIN_ENABLE_TESTING).",
+    "catkin_test_results fails if the package does.",
+    "In a package without a contract, a comment with a reason suppresses a finding of its line or "
+    "of the next one.",
+)
+def test_run_tests_checks_a_package(tmp_path):
+    scratch.make(tmp_path, "src/mrp_check")
+    script = any_packages.tested(tmp_path / "src" / "some_pkg") / "scripts" / "ends.py"
+    found, code = results_of(tmp_path)
+    (failure,) = found.iter("failure")
+    line = re.search(r"scripts/ends\.py:(\d+): error", failure.text)
+    assert line and code == 1, failure.text
+
+    lines = script.read_text().splitlines()
+    lines.insert(int(line.group(1)) - 1, f"# mrp_check: ignore {failure_id(found)}: it is short")
+    script.write_text("\n".join(lines) + "\n")
+    found, code = results_of(tmp_path)
+    assert (code, [*found.iter("failure"), *found.iter("error")]) == (0, [])
+
+
+def results_of(workspace):
+    """Run a workspace's tests; return the checker's results, and what catkin_test_results says."""
+    scratch.catkin_make(workspace, "run_tests")
+    results = workspace / "build" / "test_results"
+    done = subprocess.run(["catkin_test_results", results], capture_output=True)
+    return ElementTree.parse(results / "some_pkg" / "mrp_check.xml"), done.returncode
+
+
+def failure_id(found):
+    return next(
+        case.get("name") for case in found.iter("testcase") if case.find("failure") is not None
+    )
 
 
 def is_told(finding, folder, severity, id_, where, message):

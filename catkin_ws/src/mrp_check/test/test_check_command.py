@@ -49,11 +49,14 @@ def test_what_cannot_be_checked_is_exit_code_2(arguments, says):
 def test_folder_without_manifest_names_the_package_in_it(tmp_path):
     (tmp_path / "src" / "a").mkdir(parents=True)
     (tmp_path / "src" / "a" / "package.xml").write_text("<package/>")
-    reports = {f"--{kind}": tmp_path / f"report.{kind}" for kind in ("json", "junit", "html")}
-    done = run(tmp_path, *(word for option in reports.items() for word in option))
+    reports = {
+        f"--{kind}": tmp_path / f"report.{kind}" for kind in ("json", "junit", "sarif", "html")
+    }
+    done = run("--github", tmp_path, *(word for option in reports.items() for word in option))
     assert done.returncode == 2
     assert all(path.read_text() for path in reports.values())
     assert f"Did you mean {tmp_path}/src/a?" in done.stderr
+    assert done.stdout.startswith("::error title=mrp_check::") and "/src/a?" in done.stdout
     data = json.loads((tmp_path / "report.json").read_text())
     assert (data["verdict"], data["findings"]) == ("unchecked", [])
 

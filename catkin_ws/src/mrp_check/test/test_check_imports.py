@@ -23,7 +23,7 @@ LAYERS = (
     ("any_case",),
     ("evidence",),
     ("rules",),
-    ("report", "causes", "judging"),
+    ("report", "causes", "judging", "suppression"),
     ("check",),
     ("learning",),
     ("cli",),

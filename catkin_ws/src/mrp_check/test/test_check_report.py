@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The checker's reports: JSON, JUnit, a page, and the console."""
 
+import dataclasses
 import html.parser
 import json
+import pathlib
 import re
 import xml.etree.ElementTree as ElementTree
 
@@ -11,7 +13,7 @@ import pytest
 from mrp_check import check
 from mrp_check.cli import check as check_command
 from mrp_check.contract.finding import Finding
-from mrp_check.report import console, json_, junit
+from mrp_check.report import console, github, json_, junit, place, sarif
 from mrp_check.report import html as html_report
 from mrp_check.rules import REQUIREMENTS
 from mrp_testing.proves import proves
@@ -33,18 +35,30 @@ CAUSE = Finding(
 )
 RESULT = Finding("values", "No value came.", "src/a.py", 9, consequence_of="spin", stage="run")
 NOTE = Finding("lifetime", "It is not kept.", "src/a.py", 4, severity="note", stage="static")
+# Of one line `def b(): rospy.spin`.
+CHANGE = Finding("spin", "100% wrong,\nsee.", "src/b, c.py", 7, "warning", stage="static")
+CHANGE = dataclasses.replace(CHANGE, change=("spin", "spin()"), column=16)
+SUPPRESSED = dataclasses.replace(NOTE, suppressed="It is kept elsewhere.")
 
 
-def report(*findings, reason=""):
+def report(*findings, reason="", suppressed=()):
     verdicts = {id_: check.MET for id_ in REQUIREMENTS}
     verdicts.update({f.id: check.BROKEN for f in findings if f.severity == "error"})
     verdicts.update({f.id: check.UNCHECKED for f in findings if f.consequence_of})
     broken = any(f.severity == "error" for f in findings)
     verdict = check.UNCHECKED if reason else check.FINDINGS if broken else check.MET
-    return check.Report("a_pkg", "An exercise", verdict, list(findings), verdicts, reason)
+    return check.Report(
+        *("a_pkg", "An exercise", verdict, list(findings), verdicts, reason),
+        suppressed=list(suppressed),
+        folder=pathlib.Path("/repo/src/a_pkg"),
+    )
 
 
-REPORTS = [report(), report(CAUSE, RESULT, NOTE), report(reason="There is no folder x.")]
+REPORTS = [
+    report(suppressed=[SUPPRESSED]),
+    report(CAUSE, RESULT, NOTE),
+    report(reason="There is no folder x."),
+]
 
 
 @pytest.mark.parametrize("one", REPORTS, ids=lambda one: one.verdict)
@@ -119,7 +133,7 @@ def test_each_folder_that_the_checker_reads_is_installed():
     assert read and read - installed == set()
 
 
-@pytest.mark.parametrize("text", [json_.text, junit.text, html_report.text])
+@pytest.mark.parametrize("text", [json_.text, junit.text, html_report.text, sarif.text])
 def test_report_on_a_file_whose_name_is_no_utf8(text, tmp_path):
     check_command.write(tmp_path / "report", lambda: text(report(Finding("text", "It.", "\udcff"))))
     assert (tmp_path / "report").read_text()
@@ -156,3 +170,95 @@ def test_console_has_colours_only_where_asked():
     assert "\x1b" not in console.text(report(CAUSE))
     assert "\x1b[31m" in console.text(report(CAUSE), colours=True)
     assert "\x1b" not in console.text(report(Finding("console", "It printed \x1b[2J.")))
+
+
+@pytest.fixture
+def repository(tmp_path):
+    """A package's folder in a repository, which is not the working folder."""
+    (tmp_path / "repo" / ".git").mkdir(parents=True)
+    return tmp_path / "repo" / "src" / "a_pkg"
+
+
+@proves(
+    "A path in it is relative to the root of your repository, or to the working folder.",
+    "It has each requirement with its page, each finding with its line, and each certain fix.",
+)
+def test_sarif_has_each_finding_with_its_place_and_its_fix(repository):
+    one = dataclasses.replace(report(CAUSE, RESULT, CHANGE), folder=repository)
+    (run,) = sarif.data(one)["runs"]
+    assert run["originalUriBaseIds"]["SRCROOT"]["uri"] == f"{repository.parents[1].as_uri()}/"
+    rules = run["tool"]["driver"]["rules"]
+    assert [rule["id"] for rule in rules] == [*REQUIREMENTS]
+    assert "pages/publisher.html" in rules[[*REQUIREMENTS].index("spin")]["help"]["text"]
+    for result, finding in zip(run["results"], one.findings):
+        assert rules[result["ruleIndex"]]["id"] == result["ruleId"] == finding.id
+        assert (result["level"], result["suppressions"]) == (finding.severity, [])
+        (location,) = result["locations"]
+        assert location["physicalLocation"]["region"] == {"startLine": finding.line}
+    (fix,) = run["results"][2]["fixes"]
+    (change,) = fix["artifactChanges"]
+    assert change["artifactLocation"]["uri"] == "src/a_pkg/src/b%2C%20c.py"
+    (replacement,) = change["replacements"]
+    assert replacement["deletedRegion"] == {"startLine": 7, "startColumn": 16, "endColumn": 20}
+    assert replacement["insertedContent"] == {"text": "spin()"}
+
+
+def test_sarif_says_why_it_could_not_be_checked():
+    (run,) = sarif.data(REPORTS[2])["runs"]
+    (invocation,) = run["invocations"]
+    assert invocation["executionSuccessful"] is False
+    (said,) = invocation["toolExecutionNotifications"]
+    assert said["message"]["text"] == REPORTS[2].reason
+
+
+@proves("--github prints each finding as an annotation of GitHub Actions.")
+def test_github_s_annotations_are_escaped_as_its_own_toolkit_does(repository):
+    one = dataclasses.replace(report(CAUSE, RESULT, CHANGE, reason="No."), folder=repository)
+    lines = github.text(one).split("\n")
+    assert lines[0].startswith(
+        "::error file=src/a_pkg/src/a.py,line=3,title=mrp_check%3A spin::"
+        "It never spins.%0A  expected"
+    )
+    assert lines[1:] == [
+        "::warning file=src/a_pkg/src/b%2C c.py,line=7,title=mrp_check%3A spin"
+        "::100%25 wrong,%0Asee.",
+        "::error title=mrp_check::No.",
+    ]
+
+
+def test_github_takes_no_command_from_what_a_package_printed():
+    begin, printed, end = github.stopped("::add-mask::a").split("\n")
+    assert (printed, end) == ("::add-mask::a", f"::{begin.rpartition('::')[2]}::")
+
+
+@pytest.mark.parametrize(
+    ("git", "working", "base"),
+    [
+        (True, "elsewhere", "repo"),
+        (False, "repo", "repo"),
+        (False, "elsewhere", "repo/src/a_pkg"),
+    ],
+    ids=["repository", "working_folder", "package"],
+)
+def test_a_reader_s_paths_begin_at(git, working, base, repository, tmp_path, monkeypatch):
+    repository.mkdir(parents=True)
+    if not git:
+        (tmp_path / "repo" / ".git").rmdir()
+    (tmp_path / "elsewhere").mkdir()
+    monkeypatch.chdir(tmp_path / working)
+    assert place.base_of(repository) == tmp_path / base
+
+
+@proves("The report counts what is suppressed, and shows the reason.")
+def test_what_is_suppressed_is_shown_with_its_reason():
+    one = REPORTS[0]
+    line = "src/a.py:4: suppressed (lifetime): It is kept elsewhere."
+    assert line in console.text(one) and line in Reader(html_report.text(one)).text
+    assert console.text(one).endswith("; suppressed: 1.")
+    (shown,) = json.loads(json_.text(one))["suppressed"]
+    assert (shown["id"], shown["reason"]) == ("lifetime", "It is kept elsewhere.")
+    (result,) = sarif.data(one)["runs"][0]["results"]
+    assert result["suppressions"] == [
+        {"kind": "inSource", "justification": "It is kept elsewhere."}
+    ]
+    assert one.verdict == check.MET

@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What a check concludes of each requirement: met, broken, or not known, and why not."""
 
+import dataclasses
 import json
 import re
 
 import check_rules
 import jsonschema
 import pytest
-from mrp_check import check
+from mrp_check import check, suppression
 from mrp_check.case import Case
 from mrp_check.contract.errors import CannotCheck
 from mrp_check.contract.finding import Finding
@@ -137,3 +138,74 @@ def test_many_findings_outside_the_exercise_are_one_line(tmp_path, monkeypatch):
     names = [finding for finding in one.findings if finding.id == "python-names"]
     assert [finding.file for finding in names] == ["scripts/tool0.py", "src/publisher_py_node.py"]
     assert names[0].message.startswith("9 such faults in files that are no node of the exercise")
+
+
+COMMENTED = """\
+import rospy
+# mrp_check: ignore spin: it sleeps in a loop of its own
+rospy.init_node("a")
+pub = 1  # mrp_check: ignore lifetime
+# mrp_check: ignore spinn: it sleeps
+# mrp_check: ignore queue: it is never full
+"""
+SPINS = Finding("spin", "It never spins.", "src/a.py", 3, stage="static")
+FOLLOWS = Finding("values", "No value came.", "src/a.py", 3, consequence_of="spin", stage="run")
+DROPPED = Finding("lifetime", "It is not kept.", "src/a.py", 4, stage="static")
+
+
+@proves(
+    "In a package without a contract, a comment with a reason suppresses a finding of its line or "
+    "of the next one.",
+    "A comment without a reason, for no requirement that there is, or that suppresses nothing is a "
+    "warning.",
+)
+def test_a_comment_with_a_reason_suppresses_a_finding(tmp_path):
+    package = check_rules.make(tmp_path, src__a_DOT_py=COMMENTED)
+    found = [dataclasses.replace(one) for one in (SPINS, FOLLOWS, DROPPED)]
+    stay, suppressed = suppression.applied(package, found, {"spin", "lifetime", "queue"}, False)
+    assert [(one.id, one.suppressed) for one in suppressed] == [
+        ("spin", "it sleeps in a loop of its own")
+    ]
+    assert [(one.id, one.line, one.severity, one.consequence_of) for one in stay] == [
+        ("values", 3, "error", None),
+        ("lifetime", 4, "error", None),
+        ("lifetime", 4, "warning", None),
+        ("text", 5, "warning", None),
+        ("queue", 6, "warning", None),
+    ]
+    says = ["gives no reason", "Did you mean 'spin'", "nothing of it is found"]
+    assert all(word in one.message for word, one in zip(says, stay[2:]))
+
+
+def test_what_could_not_be_checked_is_no_idle_comment(tmp_path):
+    package = check_rules.make(tmp_path, src__a_DOT_py="# mrp_check: ignore queue: never full\n")
+    assert suppression.applied(package, [], {"spin"}, False) == ([], [])
+
+
+@proves("It begins with // in C++, and with <!-- in XML.")
+@pytest.mark.parametrize(
+    ("file", "line"),
+    [
+        ("src__a_DOT_cpp", "int a;  // mrp_check: ignore spin: why"),
+        ("CMakeLists_DOT_txt", "# mrp_check: ignore spin: why"),
+        ("launch__a_DOT_launch", "<!-- mrp_check: ignore spin: why --> <launch/>"),
+        ("package_DOT_xml", "<!-- mrp_check: ignore spin: why -->"),
+        ("msg__A_DOT_msg", "int8 a # mrp_check: ignore spin: why"),
+    ],
+)
+def test_a_comment_is_one_of_its_language(file, line, tmp_path):
+    name = file.replace("__", "/").replace("_DOT_", ".")
+    package = check_rules.make(tmp_path, **{file: line + "\n", "src__b_DOT_cpp": "# " + line})
+    (comment,) = (one for one in suppression.comments(package) if one.file != "src/b.cpp")
+    assert comment == suppression.Comment(name, 1, "spin", "why")
+
+
+@proves("Under a contract it suppresses nothing: a student could suppress each mistake.")
+def test_under_a_contract_a_comment_suppresses_nothing(tmp_path, monkeypatch):
+    wrong = Finding("cmake", "It is wrong.", "CMakeLists.txt", 1)
+    text = "# mrp_check: ignore cmake: it is as I want it\n"
+    rules = [rule(wrong, ids=("cmake",))]
+    one = examined(tmp_path, rules, monkeypatch, only=("cmake",), CMakeLists_DOT_txt=text)
+    assert (one.requirements, one.suppressed) == ({"cmake": check.BROKEN}, [])
+    assert [finding.severity for finding in one.findings] == ["error", "note"]
+    assert "a contract says what counts" in one.findings[1].message

@@ -11,7 +11,7 @@ import tempfile
 import traceback
 import typing
 
-from mrp_check import causes, confine, judging
+from mrp_check import causes, confine, judging, suppression
 from mrp_check.any_case import AnyCase
 from mrp_check.building.catkin import missing_tool
 from mrp_check.case import Case
@@ -163,9 +163,8 @@ class _Examination:
         if is_any:
             findings = judging.judged(self.case, findings, found)
         for finding in findings:
-            if finding.change and finding.file and finding.line:
-                patch = diff.of_change(package, finding.file, finding.line, finding.change)
-                finding.fix = "\n".join(part for part in (finding.fix, patch) if part)
+            diff.add(package, finding)
+        findings, suppressed = suppression.applied(package, findings, self._open(), not is_any)
         findings = _folded([f for f in findings if f.id in self.ids], known.get("facts"))
         errors = [finding for finding in findings if finding.severity == ERROR]
         broken = {f.id for f in errors if not f.consequence_of}
@@ -186,6 +185,8 @@ class _Examination:
             unseen={id_: unseen[id_] for id_ in self.ids if id_ in unseen},
             left_out=[id_ for id_ in REQUIREMENTS if id_ not in self.asked],
             console=_console(known.get("observed")),
+            suppressed=[finding for finding in suppressed if finding.id in self.ids],
+            folder=package.root.resolve(),
         )
 
 

@@ -13,7 +13,17 @@ from mrp_check.cli import classroom
 from mrp_check.contract import spec
 from mrp_check.contract.errors import CannotCheck, PackageError, SpecError
 from mrp_check.contract.verdict import FINDINGS, MET, UNCHECKED, public, unchecked
-from mrp_check.report import class_table, console, gradescope, html, json_, junit, moodle
+from mrp_check.report import (
+    class_table,
+    console,
+    github,
+    gradescope,
+    html,
+    json_,
+    junit,
+    moodle,
+    sarif,
+)
 from mrp_check.rules import REQUIREMENTS
 from mrp_check.student import submissions
 from mrp_check.student.package import Package
@@ -24,6 +34,7 @@ EXIT_CODES = {MET: 0, FINDINGS: 1, UNCHECKED: 2}
 OF_PACKAGE = {  # of the report and the contract
     "json": ("write the report as JSON", lambda report, _: json_.text(report)),
     "junit": ("write the report as JUnit XML", lambda report, _: junit.text(report)),
+    "sarif": ("write the report as SARIF 2.1.0", lambda report, _: sarif.text(report)),
     "gradescope": ("write the report as Gradescope's results.json", gradescope.text),
     "html": (
         "write the report as a page; with --class: the table",
@@ -77,6 +88,8 @@ def parser():
     parser.add_argument("--public", action="store_true", help=hidden)
     for option, (text, _) in {**OF_PACKAGE, **OF_CLASS}.items():
         parser.add_argument(f"--{option}", metavar="FILE", help=text)
+    annotations = "print the findings as annotations of GitHub Actions, too"
+    parser.add_argument("--github", action="store_true", help=annotations)
     number = "with --class: check N at the same time, 1 to 64 (default: %(default)s)"
     most, jobs = range(1, 65), classroom.JOBS
     parser.add_argument("--jobs", type=int, choices=most, default=jobs, metavar="N", help=number)
@@ -105,7 +118,7 @@ def _seconds(text):
 
 def run(options):
     """Check what the options say, write the reports, and return the exit code."""
-    of_package = {*OF_PACKAGE, "only", "any", "public"} - {*OF_CLASS}
+    of_package = {*OF_PACKAGE, "only", "any", "public", "github"} - {*OF_CLASS}
     of_class = {*OF_CLASS} - {*OF_PACKAGE}
     try:
         for name in sorted(of_package if options.class_ else of_class):
@@ -182,7 +195,10 @@ def run_package(options):
     for name, (_, text) in OF_PACKAGE.items():
         write(getattr(options, name), text, report, contract)
     if report.requirements:
-        print(console.text(report, colours=console.has_colours(sys.stdout)))
+        shown = console.text(report, colours=console.has_colours(sys.stdout))
+        print(github.stopped(shown) if options.github else shown)
+    if options.github:
+        print(github.text(report))
     if report.reason:
         print(f"check: {report.reason}", file=sys.stderr)
     return report.verdict

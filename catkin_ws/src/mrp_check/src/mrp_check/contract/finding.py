@@ -26,7 +26,9 @@ class Finding:
     fix: what to do next; below it a unified diff, where the fix is certain
     why: the entry of the page why about the text that a tool prints then, or empty
     change: (old, new), a part of the line and what to write for it, if that is certain to mend it;
-            check.py makes the diff of it
+            check.py makes the diff of it, and drops a change that is not certain
+    column: of the change in that line, from 1; check.py fills it in
+    suppressed: the reason why a comment suppresses it, or empty
     consequence_of: the id of the finding that is the cause of this one, or None
     stage: which stage found it; check.py fills it in
     node: the name of the spec's node that it is about, or None: tells causes from consequences
@@ -45,3 +47,5 @@ class Finding:
     stage: str = ""
     node: str | None = None
     change: Change | None = None
+    column: int | None = None
+    suppressed: str = ""

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import dataclasses
+import pathlib
 from typing import Collection
 
 from mrp_check.contract.finding import ERROR, Finding
@@ -24,6 +25,8 @@ class Report:
     unseen: id -> why nobody can say whether it is met, of those that are UNCHECKED
     console: the lines that roslaunch and its nodes printed, as far as they ran
     is_public: whether hidden requirements have been left out
+    suppressed: the findings that a comment in the package suppresses
+    folder: the package's, as an absolute path without links; None if there is none
     """
 
     package: str
@@ -36,6 +39,8 @@ class Report:
     left_out: list[str] = dataclasses.field(default_factory=list)
     console: list[str] = dataclasses.field(default_factory=list)
     is_public: bool = False
+    suppressed: list[Finding] = dataclasses.field(default_factory=list)
+    folder: pathlib.Path | None = None
 
 
 def unchecked(reason: str) -> Report:

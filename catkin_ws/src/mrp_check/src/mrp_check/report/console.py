@@ -67,10 +67,17 @@ def text(report, colours=False):
             first, *rest = finding_lines(finding, report)
             head, mark, message = first.partition(f" {finding.severity}: ")
             lines += ["", f"{head} {paint(mark.strip(), finding.severity)} {message}", *rest]
+    for finding in report.suppressed:
+        lines += ["", *_wrapped("", suppressed_line(finding, report), "  ")]
     if report.left_out:
         left_out = f"Left out, as only a contract can say it: {', '.join(report.left_out)}."
         lines += ["", *_wrapped("", left_out, "")]
     return "\n".join([*lines, "", summary(report)])
+
+
+def suppressed_line(finding, report):
+    """Return where a finding is that a comment suppresses, what it is of, and why."""
+    return f"{where(finding, report)}: suppressed ({finding.id}): {finding.suppressed}"
 
 
 def by_stage(report):
@@ -172,6 +179,7 @@ def summary(report):
     rest = f"; {unchecked} could not be checked" if unchecked else ""
     warnings = sum(f.severity == WARNING and not f.consequence_of for f in report.findings)
     rest += f"; warnings: {warnings}" if warnings else ""
+    rest += f"; suppressed: {len(report.suppressed)}" if report.suppressed else ""
     if broken or unchecked:
         return f"{broken} of {len(verdicts)} {kind} are not met{rest}."
     return f"All {kind} are met: {met} of {len(verdicts)}{rest}."

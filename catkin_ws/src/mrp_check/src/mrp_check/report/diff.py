@@ -6,6 +6,19 @@ from __future__ import annotations
 import difflib
 
 
+def add(package, finding):
+    """Add the diff of its change to a finding's fix; drop a change that is not certain."""
+    patch = ""
+    if finding.change and finding.file and finding.line:
+        patch = of_change(package, finding.file, finding.line, finding.change)
+    if patch:
+        line = package.lines(finding.file)[finding.line - 1]
+        finding.column = line.index(finding.change[0]) + 1
+        finding.fix = "\n".join(part for part in (finding.fix, patch) if part)
+    else:
+        finding.change = None
+
+
 def of_change(package, file, line, change):
     """Return the unified diff, as `patch -p1` takes it, of a change in one line of a file.
 

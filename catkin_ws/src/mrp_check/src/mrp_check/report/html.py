@@ -45,6 +45,7 @@ def text(report, has_links=True):
         where=console.where,
         why_not=console.why_not,
         pages=console.pages,
+        suppressed_line=console.suppressed_line,
         address_of=_address_of if has_links else lambda page: "",
     )
 

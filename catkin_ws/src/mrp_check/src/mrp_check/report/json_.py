@@ -10,21 +10,23 @@ from mrp_check.contract.finding import Finding
 from mrp_check.contract.verdict import Report
 from mrp_check.rules import REQUIREMENTS
 
-_INNER = ("node", "change")  # what only the checker itself needs to know of a finding
+# What only the checker itself needs to know of a finding.
+_INNER = ("node", "change", "column", "suppressed")
 
 
 def data(report):
-    """Return the report as plain Python, without a reason if it has none."""
+    """Return the report as plain Python, without what it has none of."""
     result = dataclasses.asdict(report)
-    for finding in result["findings"]:
+    for finding in result["suppressed"]:
+        finding["reason"] = finding["suppressed"]
+    for finding in result["findings"] + result["suppressed"]:
         for name in _INNER:
             del finding[name]
         finding["section"] = REQUIREMENTS[finding["id"]].section
-    del result["console"], result["is_public"]
-    if not report.reason:
-        del result["reason"]
-    if not report.left_out:
-        del result["left_out"]
+    del result["console"], result["folder"], result["is_public"]
+    for name in ("reason", "left_out", "suppressed"):
+        if not result[name]:
+            del result[name]
     return result
 
 

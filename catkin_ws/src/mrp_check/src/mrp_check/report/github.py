@@ -1,0 +1,50 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The report as annotations, by the workflow commands of GitHub Actions.
+
+Their form and their escapes are those of `command.ts` in GitHub's own package @actions/core.
+"""
+
+from __future__ import annotations
+
+import secrets
+
+from mrp_check.contract.finding import ERROR, NOTE, WARNING
+from mrp_check.report import console
+from mrp_check.report.place import base_of
+
+_COMMANDS = {ERROR: "error", WARNING: "warning", NOTE: "notice"}
+_OF_MESSAGE = {"%": "%25", "\r": "%0D", "\n": "%0A"}
+_OF_PROPERTY = {**_OF_MESSAGE, ":": "%3A", ",": "%2C"}
+
+
+def text(report):
+    """Return a line for each finding that follows from no other."""
+    folder = report.folder and report.folder.relative_to(base_of(report.folder))
+    lines = []
+    for finding in report.findings:
+        if finding.consequence_of:
+            continue
+        place = {"title": f"mrp_check: {finding.id}"}
+        if finding.file:
+            line = {"line": str(finding.line)} if finding.line else {}
+            place = {"file": (folder / finding.file).as_posix(), **line, **place}
+        says = [finding.message, *console.detail_lines(finding, ("expected", "seen", "fix"))]
+        lines.append(_command(_COMMANDS[finding.severity], place, "\n".join(says)))
+    if report.reason:
+        lines.append(_command("error", {"title": "mrp_check"}, report.reason))
+    return "\n".join(lines)
+
+
+def _command(name, properties, message):
+    written = ",".join(f"{key}={_escaped(one, _OF_PROPERTY)}" for key, one in properties.items())
+    return f"::{name} {written}::{_escaped(message, _OF_MESSAGE)}"
+
+
+def _escaped(text, escapes):
+    return console.plain(text).translate(str.maketrans(escapes))
+
+
+def stopped(text):
+    """Return a text in which GitHub takes nothing for a command: a package may print one."""
+    token = secrets.token_hex(16)
+    return f"::stop-commands::{token}\n{text}\n::{token}::"

@@ -1,0 +1,92 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The report as SARIF 2.1.0, which editors and GitHub's code scanning read."""
+
+from __future__ import annotations
+
+import json
+import urllib.parse
+
+from mrp_check.contract.verdict import UNCHECKED
+from mrp_check.report import console
+from mrp_check.report.place import base_of
+from mrp_check.rules import REQUIREMENTS
+
+_SCHEMA = (
+    "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/schemas/sarif-schema-2.1.0.json"
+)
+_BASE = "SRCROOT"
+
+
+def text(report):
+    return json.dumps(data(report), indent=2, ensure_ascii=False) + "\n"
+
+
+def data(report):
+    """Return the report as plain Python, in SARIF's form."""
+    rules = [*report.requirements]
+    run = {
+        "tool": {"driver": {"name": "mrp_check", "rules": [_rule(id_) for id_ in rules]}},
+        "columnKind": "unicodeCodePoints",
+        "invocations": [_invocation(report)],
+        "results": [_result(one, report, rules) for one in report.findings + report.suppressed],
+    }
+    if report.folder:
+        run["originalUriBaseIds"] = {_BASE: {"uri": base_of(report.folder).as_uri() + "/"}}
+    return {"$schema": _SCHEMA, "version": "2.1.0", "runs": [run]}
+
+
+def _rule(id_):
+    requirement = REQUIREMENTS[id_]
+    return {
+        "id": id_,
+        "shortDescription": {"text": requirement.title},
+        "help": {"text": f"{requirement.title}: {requirement.page} of the tutorial explains it."},
+    }
+
+
+def _invocation(report):
+    """Return whether all could be checked, and why not."""
+    invocation = {"executionSuccessful": report.verdict != UNCHECKED}
+    if report.reason:
+        said = {"level": "error", "message": {"text": console.plain(report.reason)}}
+        invocation["toolExecutionNotifications"] = [said]
+    return invocation
+
+
+def _result(finding, report, rules):
+    says = [finding.message, *console.detail_lines(finding, ("expected", "seen", "fix"))]
+    reason = {"kind": "inSource", "justification": console.plain(finding.suppressed)}
+    result = {
+        "ruleId": finding.id,
+        "ruleIndex": rules.index(finding.id),
+        "level": finding.severity,
+        "message": {"text": console.plain("\n".join(says))},
+        "suppressions": [reason] if finding.suppressed else [],
+    }
+    if finding.file:
+        place = {"artifactLocation": _artifact(finding, report)}
+        if finding.line:
+            place["region"] = {"startLine": finding.line}
+        result["locations"] = [{"physicalLocation": place}]
+    if finding.change:
+        result["fixes"] = [_fix(finding, report)]
+    return result
+
+
+def _artifact(finding, report):
+    path = (report.folder / finding.file).relative_to(base_of(report.folder)).as_posix()
+    name = path.encode("utf-8", "surrogateescape")
+    return {"uri": urllib.parse.quote(name), "uriBaseId": _BASE}
+
+
+def _fix(finding, report):
+    """Return the change of a part of one line."""
+    old, new = finding.change
+    region = {
+        "startLine": finding.line,
+        "startColumn": finding.column,
+        "endColumn": finding.column + len(old),
+    }
+    replacement = {"deletedRegion": region, "insertedContent": {"text": new}}
+    change = {"artifactLocation": _artifact(finding, report), "replacements": [replacement]}
+    return {"artifactChanges": [change]}
