@@ -81,3 +81,24 @@ def test_what_cannot_be_done_with_a_class_is_exit_code_2(arguments, said):
     assert done.returncode == 2
     assert said in done.stderr
     assert "Traceback" not in done.stderr
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        ("", "check '' --any --junit '/results/a/mrp_check.xml'"),
+        ("SPEC relay", "check '' --spec 'relay' --junit '/results/a/mrp_check.xml'"),
+        ("relay", "takes SPEC alone; found: relay"),
+    ],
+)
+@proves("mrp_check_add_test(SPEC FILE) names a contract.")
+def test_the_macro_s_contract_is_the_command_s(arguments, said, tmp_path):
+    """In a catkin that does no more than print."""
+    (tmp_path / "a.cmake").write_text(
+        "set(CATKIN_TEST_RESULTS_DIR /results)\nset(PROJECT_NAME a)\n"
+        'function(catkin_run_tests_target)\n  message("${ARGN}")\nendfunction()\n'
+        f'include("{CHECK.parents[1]}/cmake/mrp_check-extras.cmake")\n'
+        f"mrp_check_add_test({arguments})\n"
+    )
+    done = subprocess.run(["cmake", "-P", tmp_path / "a.cmake"], capture_output=True, text=True)
+    assert said in done.stderr.replace("\n", " ")

@@ -156,8 +156,9 @@ DROPPED = Finding("lifetime", "It is not kept.", "src/a.py", 4, stage="static")
 @proves(
     "In a package without a contract, a comment with a reason suppresses a finding of its line or "
     "of the next one.",
-    "A comment without a reason, for no requirement that there is, or that suppresses nothing is a "
-    "warning.",
+    "In Python and CMake it is # mrp_check: ignore spin: it sleeps in a loop of its own.",
+    "A comment without a reason, for no requirement that there is, or that suppresses nothing is "
+    "a warning.",
 )
 def test_a_comment_with_a_reason_suppresses_a_finding(tmp_path):
     package = check_rules.make(tmp_path, src__a_DOT_py=COMMENTED)
@@ -182,7 +183,10 @@ def test_what_could_not_be_checked_is_no_idle_comment(tmp_path):
     assert suppression.applied(package, [], {"spin"}, False) == ([], [])
 
 
-@proves("It begins with // in C++, and with <!-- in XML.")
+@proves(
+    "In Python and CMake it is # mrp_check: ignore spin: it sleeps in a loop of its own.",
+    "It begins with // in C++, and with <!-- in XML.",
+)
 @pytest.mark.parametrize(
     ("file", "line"),
     [
