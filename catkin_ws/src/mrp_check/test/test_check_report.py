@@ -192,9 +192,11 @@ def test_sarif_has_each_finding_with_its_place_and_its_fix(repository):
     assert "pages/publisher.html" in rules[[*REQUIREMENTS].index("spin")]["help"]["text"]
     for result, finding in zip(run["results"], one.findings):
         assert rules[result["ruleIndex"]]["id"] == result["ruleId"] == finding.id
-        assert (result["level"], result["suppressions"]) == (finding.severity, [])
+        level = "note" if finding.consequence_of else finding.severity
+        assert (result["level"], result["suppressions"]) == (level, [])
         (location,) = result["locations"]
         assert location["physicalLocation"]["region"] == {"startLine": finding.line}
+    assert run["results"][1]["message"]["text"].endswith("This follows from spin.")
     (fix,) = run["results"][2]["fixes"]
     (change,) = fix["artifactChanges"]
     assert change["artifactLocation"]["uri"] == "src/a_pkg/src/b%2C%20c.py"

@@ -6,6 +6,7 @@ from __future__ import annotations
 import json
 import urllib.parse
 
+from mrp_check.contract.finding import NOTE
 from mrp_check.contract.verdict import UNCHECKED
 from mrp_check.report import console
 from mrp_check.report.place import base_of
@@ -55,11 +56,14 @@ def _invocation(report):
 
 def _result(finding, report, rules):
     says = [finding.message, *console.detail_lines(finding, ("expected", "seen", "fix"))]
+    if finding.consequence_of:
+        says.append(f"This follows from {finding.consequence_of}.")
     reason = {"kind": "inSource", "justification": console.plain(finding.suppressed)}
     result = {
         "ruleId": finding.id,
         "ruleIndex": rules.index(finding.id),
-        "level": finding.severity,
+        # What follows from another error is none by itself.
+        "level": NOTE if finding.consequence_of else finding.severity,
         "message": {"text": console.plain("\n".join(says))},
         "suppressions": [reason] if finding.suppressed else [],
     }
