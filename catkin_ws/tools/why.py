@@ -61,6 +61,7 @@ _TOGETHER = 3  # lines: long messages are broken into that many
 # Lines around any error, which say nothing of it.
 _EVERYWHERE = re.compile(
     r'\s*(?:Traceback \(most recent call last\):|File "[^"]*", line \d+, in \S+'
+    r"|During handling of the above exception, another exception occurred:"
     r"|The traceback for the exception was written to the log file"
     r"|\.\.\. logging to .*|Checking log directory .*|Press Ctrl-C to interrupt"
     r"|Done checking log file .*|started roslaunch server .*|ROS_MASTER_URI=.*"
