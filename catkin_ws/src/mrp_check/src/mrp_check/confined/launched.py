@@ -29,7 +29,7 @@ def run(plan: LaunchPlan, observer: Observer, starter: apart.Starter) -> LaunchR
 
     ending = wait(plan.common, plan.nodes, launch.is_up, launch.is_settled, has_ended)
     latched = _latched(observer)
-    asked = time.monotonic()
+    asked, code = time.monotonic(), roslaunch.poll()
     roslaunch.send(signal.SIGINT)
     while roslaunch.poll() is None and time.monotonic() - asked < plan.common.stop_seconds:
         time.sleep(TICK)
@@ -39,6 +39,7 @@ def run(plan: LaunchPlan, observer: Observer, starter: apart.Starter) -> LaunchR
     return LaunchResult(
         ending=ending,
         asked=asked - roslaunch.started,
+        code=code,
         stopped_in=stopped_in,
         left=left_behind({None: roslaunch}),
         lines=roslaunch.all_lines(),

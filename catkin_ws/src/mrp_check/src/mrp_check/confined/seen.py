@@ -90,6 +90,7 @@ class LaunchResult:
     ending: why no more was waited for: "enough" was seen, roslaunch ended "itself", or "time" or
         "most" had passed
     asked: when roslaunch was asked to end; stopped_in: after which time it did, if it did
+    code: its exit code (negative: killed by that signal), if it had ended before it was asked to
     latched: topic -> the nodes that latch it
     lines: what it printed
     """
@@ -98,6 +99,7 @@ class LaunchResult:
     asked: float
     lines: List[Line]
     seen: Seen
+    code: Optional[int] = None
     stopped_in: Optional[float] = None
     left: List[Left] = dataclasses.field(default_factory=list)
     latched: Dict[str, List[str]] = dataclasses.field(default_factory=dict)

@@ -13,12 +13,16 @@ from mrp_check.contract.requirements import Requirement, Rule
 from mrp_check.contract.spec import Spec
 from mrp_check.running.node import Node
 from mrp_check.running.observing import Observed
+from mrp_check.running.words import code_text
 from mrp_check.student.package import Package
+
+_KILLS = r"\bkill(pg)?\s*\(|\b(pkill|killall)\b"
 
 
 def findings(case: Case) -> Iterator[Finding]:
     yield from _problems(case)
     yield from _launch_findings(case.package, case.spec, case.observed)
+    yield from _killed(case.package, case.observed)
     for node in case.nodes.values():
         if not node.has_executable:
             yield _no_executable(node)
@@ -62,6 +66,19 @@ def _launch_findings(package: Package, spec: Spec, seen: Observed) -> Iterator[F
             node=named.group(1) if named else None,
         )
         return
+
+
+def _killed(package: Package, seen: Observed) -> Iterator[Finding]:
+    """Yield a Finding if something has killed roslaunch: only the package itself can reach it."""
+    code = seen.launch.code if seen.launch else None
+    if code is not None and code < 0:
+        yield Finding(
+            "starts",
+            "A node kills roslaunch, and perhaps the other nodes.",
+            *package.first_match(package.of_kind("python", "cpp"), _KILLS) or (None, None),
+            expected="nodes that end no program but themselves",
+            seen=f"roslaunch ended {code_text(code)}",
+        )
 
 
 def _launch_place(package: Package, spec: Spec, seen: Observed) -> Where:
