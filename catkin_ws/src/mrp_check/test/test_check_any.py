@@ -9,6 +9,7 @@ import subprocess
 import xml.etree.ElementTree as ElementTree
 
 import any_packages
+import check_rules
 import jsonschema
 import pytest
 from mrp_check import check
@@ -124,6 +125,17 @@ def test_run_tests_checks_a_package(tmp_path):
     script.write_text("\n".join(lines) + "\n")
     found, code = results_of(tmp_path)
     assert (code, [*found.iter("failure"), *found.iter("error")]) == (0, [])
+
+
+@proves("The check builds the package alone: it finds no other package of your workspace.")
+def test_another_package_of_the_workspace_is_not_found(tmp_path):
+    check_rules.hand_in(tmp_path, "sibling")
+    folder = any_packages.tested(tmp_path / "some_pkg")
+    cmake = folder / "CMakeLists.txt"
+    cmake.write_text(cmake.read_text().replace("COMPONENTS", "COMPONENTS sibling"))
+    report = check.check(Package(folder), None, ("configure",), timeout=300)
+    assert report.verdict == check.UNCHECKED
+    assert "sibling is not on this machine" in report.reason
 
 
 def results_of(workspace):
