@@ -169,6 +169,15 @@ def test_a_cause_that_is_hidden_is_not_named(kind):
     assert "spin" not in text and REQUIREMENTS["spin"].title not in text
 
 
+@pytest.mark.parametrize("kind", SHOWN)
+def test_a_hidden_requirement_that_a_comment_suppresses_is_not_named(kind):
+    one = report()
+    one.suppressed = [dataclasses.replace(f, suppressed="I know.") for f in (SPIN, VALUES)]
+    text = str(SHOWN[kind](one))
+    assert "It never spins." not in text and "(spin)" not in text
+    assert "suppressed: 1" in text or kind == "json"
+
+
 @proves("With --public, the other reports leave it out, too.")
 def test_public_leaves_hidden_requirements_out(tmp_path, monkeypatch, capsys):
     contract, file = tmp_path / "contract.yaml", tmp_path / "report.json"

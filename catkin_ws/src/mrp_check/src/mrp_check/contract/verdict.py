@@ -70,4 +70,5 @@ def public(report: Report, hidden: Collection[str]) -> Report:
         requirements={id_: v for id_, v in report.requirements.items() if id_ not in hidden},
         unseen=unseen,
         is_public=True,
+        suppressed=[finding for finding in report.suppressed if finding.id not in hidden],
     )

@@ -32,9 +32,16 @@ def data(report):
 
 def report_of(data):
     """Return the Report that data() was made of, without what only the checker needs to know."""
-    of_finding = {field.name for field in dataclasses.fields(Finding)}
-    findings = [Finding(**{k: one[k] for k in one.keys() & of_finding}) for one in data["findings"]]
-    return Report(**{**data, "findings": findings})
+    findings = [_finding(one) for one in data["findings"]]
+    suppressed = [
+        _finding({**one, "suppressed": one["reason"]}) for one in data.get("suppressed", ())
+    ]
+    return Report(**{**data, "findings": findings, "suppressed": suppressed})
+
+
+def _finding(data):
+    known = {field.name for field in dataclasses.fields(Finding)}
+    return Finding(**{name: value for name, value in data.items() if name in known})
 
 
 def text(report):
