@@ -17,7 +17,7 @@ from mrp_check.contract import errors, spec
 from mrp_check.contract.verdict import unchecked
 from mrp_check.report import class_table, json_
 from mrp_check.rules import REQUIREMENTS
-from mrp_check.student import package, submissions
+from mrp_check.student import package
 from mrp_testing.proves import proves
 from mrp_testing.waiting import DEADLINE
 
@@ -66,17 +66,14 @@ def test_no_such_folder(tmp_path):
 
 
 def test_no_submission(tmp_path):
-    (tmp_path / "file").touch()
-    with pytest.raises(errors.PackageError, match="expected one for each student"):
+    (tmp_path / ".DS_Store").touch()
+    with pytest.raises(errors.PackageError, match="one archive, for each student"):
         Room(tmp_path)
 
 
-@proves("Each folder in ~/submissions is one student's submission.")
 def test_each_folder_is_a_submission(tmp_path):
     hand_in(tmp_path / "class", "berta")
     hand_in(tmp_path / "class", "anna")
-    (tmp_path / "class" / ".git").mkdir()
-    (tmp_path / "class" / "list.txt").touch()
     room = Room(tmp_path / "class")
     assert room.verdicts() == {"anna": check.FINDINGS, "berta": check.FINDINGS}
     assert sorted(line.split(": ", 1)[1] for line in room.said) == [
@@ -108,12 +105,6 @@ def test_jobs_says_how_many_are_checked_at_a_time(tmp_path, jobs):
     }
 
 
-def test_the_package_may_be_further_down(tmp_path):
-    hand_in(tmp_path / "class" / "anna" / "my_ws" / "src", "pkg")
-    folders = submissions.folders(tmp_path / "class")
-    assert submissions.package_in(folders[0]).name == "pkg"
-
-
 def two_packages(folder):
     hand_in(folder, "one")
     hand_in(folder, "two")
@@ -123,12 +114,6 @@ def many_files(folder):
     hand_in(folder.parent, folder.name)
     for number in range(package.MAX_FILES + 1):
         (folder / str(number)).touch()
-
-
-def huge_file(folder):
-    hand_in(folder.parent, folder.name)
-    with open(folder / "sparse", "wb") as file:
-        file.truncate(10**12)
 
 
 def deep_folders(folder):
@@ -148,19 +133,13 @@ def loop(folder):
     (folder / "a").symlink_to(folder)
 
 
-def archive(folder):
-    folder.write_bytes(b"PK")
-
-
 BROKEN = {
     "empty": (lambda folder: folder.mkdir(parents=True), "no package.xml"),
     "two": (two_packages, "more than one package: one, two"),
     "many": (many_files, "has more than"),
-    "huge": (huge_file, "has more than"),
     "deep": (deep_folders, "no package.xml"),
     "out": (link_out, "a link out of the class's folder"),
     "loop": (loop, "no package.xml"),
-    "packed.zip": (archive, "packed.zip is an archive: unpack it"),
 }
 
 
@@ -283,7 +262,7 @@ def test_points_come_from_the_spec(results):
 
 
 @proves(
-    "The table has a line for each student and a column for each requirement.",
+    "The table has a column for each requirement.",
     "Its line gives the reason.",
 )
 def test_csv(results):
@@ -310,7 +289,7 @@ class Tags(html.parser.HTMLParser):
         self.texts.append(data)
 
 
-@proves("The table has a line for each student and a column for each requirement.")
+@proves("The table has a column for each requirement.")
 def test_html(results, tmp_path):
     page = Tags(class_table.html_text(results, spec.read(SPEC_FILE), tmp_path))
     assert page.tags.count("tr") == 1 + len(results)

@@ -72,13 +72,17 @@ def parser():
         epilog="exit code: 0 all requirements are met; 1 findings; 2 it could not check",
     )
     what = parser.add_mutually_exclusive_group(required=True)
-    what.add_argument("path", metavar="PATH", nargs="?", help="the package's folder")
+    what.add_argument(
+        "path", metavar="PATH", nargs="?", help="the package's folder, or an archive of it"
+    )
     what.add_argument(
         "--class",
         dest="class_",
         metavar="DIR",
-        help="check each folder in DIR as one submission; DIR.checked keeps their reports",
+        help="check each folder or archive in DIR as one submission; DIR.checked keeps the reports",
     )
+    which = "check the package NAME where there are several"
+    parser.add_argument("--package", default="", metavar="NAME", help=which)
     without = "check a package that has no contract: report what fails"
     parser.add_argument("--any", action="store_true", help=without)
     parser.add_argument(
@@ -148,7 +152,7 @@ def run_class(options):
     contract = spec.read(spec_file, REQUIREMENTS)
     progress = console.Progress(sys.stderr)
     room = classroom.Classroom(
-        options.class_, spec_file, options.jobs, options.timeout, progress.show
+        options.class_, spec_file, options.jobs, options.timeout, progress.show, options.package
     )
     say_how_apart()
     try:
@@ -175,17 +179,27 @@ def write_pages(worksheet, checked, contract):
         )
 
 
+def unpacked(options, scratch):
+    """Return the package's folder: an archive is unpacked into the scratch folder.
+
+    Gradescope unpacks what a student uploads: the package may be in a folder of it.
+    """
+    path = pathlib.Path(options.path)
+    if path.is_file() or options.package or options.gradescope:
+        return submissions.package_in(path.resolve(), scratch, options.package)
+    return path
+
+
 def run_package(options):
     """Check a package, write its reports, and return its verdict. Raises CannotCheck."""
     progress = console.Progress(sys.stderr)
     contract = None
     try:
         contract = None if options.any else spec.read(spec.find(options.spec), REQUIREMENTS)
-        path = pathlib.Path(options.path)
-        # Gradescope unpacks what a student uploads: the package may be in a folder of it.
-        package = Package(submissions.package_in(path) if options.gradescope else path)
-        say_how_apart()
-        report = check.check(package, contract, options.only, options.timeout, progress.show)
+        with check.scratch_folder() as scratch:
+            package = Package(unpacked(options, scratch))
+            say_how_apart()
+            report = check.check(package, contract, options.only, options.timeout, progress.show)
     except (PackageError, SpecError, CannotCheck) as error:
         report = unchecked(str(error))
     finally:

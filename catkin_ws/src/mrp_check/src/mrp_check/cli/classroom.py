@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A whole class at once: `check --class DIR`, where each folder in DIR is one student's.
+"""A whole class at once: `check --class DIR`, where each folder or archive in DIR is one student's.
 
 A process of its own checks each package, and several run at the same time. If one fails, the others
 go on. The folder DIR.checked, beside DIR, keeps their reports: after Ctrl-C the same command goes
@@ -19,6 +19,7 @@ import sys
 import tempfile
 import threading
 
+from mrp_check import confine
 from mrp_check.check import scratch_folder
 from mrp_check.confined import cpp_headers, variables
 from mrp_check.contract import resources
@@ -31,24 +32,27 @@ from mrp_check.student.package import Package
 
 JOBS = 2
 _HERE = pathlib.Path(__file__).resolve().parents[1]
+_CHUNK = 2**20  # bytes that are read at once
 _GRACE = 60  # seconds that a check may take beyond its own limit
 
 
 class Classroom:
     """All submissions of a class.
 
-    folder: each folder in it is a submission
+    folder: each folder and each file in it is a submission
     spec_file: the contract
     jobs: how many are checked at the same time
     timeout: seconds that the check of one may take
     progress: called with a sentence
+    package: which is checked of a submission that has several
     results: where the reports are kept
 
     Raises PackageError if there is no submission.
     """
 
-    def __init__(self, folder, spec_file, jobs=JOBS, timeout=120, progress=print):
-        self.folders = submissions.folders(folder)
+    def __init__(self, folder, spec_file, jobs=JOBS, timeout=120, progress=print, package=""):
+        self.entries = submissions.entries(folder)
+        self.package = package
         self.spec_file = pathlib.Path(spec_file).resolve()
         self.jobs, self.timeout, self.progress = jobs, timeout, progress
         path = pathlib.Path(folder).resolve()
@@ -62,7 +66,7 @@ class Classroom:
         with tempfile.TemporaryDirectory(prefix="mrp_check_class_") as folder:
             self._headers = pathlib.Path(folder) / "ros.pch"
             with concurrent.futures.ThreadPoolExecutor(self.jobs) as pool:
-                futures = [pool.submit(self._checked, folder) for folder in self.folders]
+                futures = [pool.submit(self._checked, entry) for entry in self.entries]
                 try:
                     for number, future in enumerate(concurrent.futures.as_completed(futures), 1):
                         self._say(number, future.result())
@@ -75,43 +79,54 @@ class Classroom:
 
     def _say(self, number, one):
         kept = ", as before" if one.kept else ""
-        self.progress(f"{number} of {len(self.folders)}: {one.name}: {one.report['verdict']}{kept}")
+        self.progress(f"{number} of {len(self.entries)}: {one.name}: {one.report['verdict']}{kept}")
 
-    def _checked(self, folder):
+    def _checked(self, entry):
         """Return a Submission, whatever happens: what is wrong with one stops no other."""
         try:
-            return self._submission(folder)
+            return self._submission(entry)
         except (PackageError, CannotCheck) as error:
             reason = str(error)
         except Exception as error:
             reason = f"{type(error).__name__}: {error}"
-        return Submission(folder.name, json_.data(unchecked(reason)))
+        return Submission(entry.name, json_.data(unchecked(reason)))
 
-    def _submission(self, folder):
-        package = Package(submissions.package_in(folder))
-        fingerprint = self._fingerprint(package)
-        file = self.results / f"{folder.name}.json"
-        kept = _read(file)
-        if kept and kept.get("fingerprint") == fingerprint:
-            return Submission(folder.name, kept["report"], kept=True)
-        report = self.report_of(package.root, folder.name)
+    def _submission(self, entry):
+        with scratch_folder() as scratch:
+            packed = submissions.archives(entry)
+            package = None if packed else self._package(entry, scratch)
+            fingerprint = self._fingerprint(packed, package)
+            file = self.results / f"{entry.name}.json"
+            kept = _read(file)
+            if kept and kept.get("fingerprint") == fingerprint:
+                return Submission(entry.name, kept["report"], kept=True)
+            package = package or self._package(entry, scratch)
+            report = self.report_of(package.root, entry.name)
         if report["verdict"] != UNCHECKED:
             new = file.with_suffix(".new")
             new.write_text(json.dumps({"fingerprint": fingerprint, "report": report}))
             new.rename(file)
-        return Submission(folder.name, report)
+        return Submission(entry.name, report)
 
-    def _fingerprint(self, package):
-        """Return a text that changes with everything that a report depends on."""
+    def _package(self, entry, scratch):
+        return Package(submissions.package_in(entry, scratch, self.package))
+
+    def _fingerprint(self, packed, package):
+        """Return a text that changes with everything that a report depends on.
+
+        Of a submission that is packed, these are the archives: they need not be unpacked for it.
+        """
         digest = hashlib.sha256(self.spec_file.read_bytes())
         for path in sorted([*_HERE.rglob("*.py"), *resources.folder("templates").iterdir()]):
             digest.update(path.read_bytes())
-        for name in package.files:
-            path = package.root / name
-            data = path.read_bytes()
-            mode = path.stat().st_mode & 0o111
-            digest.update(f"{name}\0{mode}\0{len(data)}\0".encode(errors="surrogateescape"))
-            digest.update(data)
+        of_package = [(name, package.root / name) for name in package.files] if package else []
+        for name, path in [*((f"{self.package}/{one.name}", one) for one in packed), *of_package]:
+            entry = path.stat()
+            known = f"{name}\0{entry.st_mode & 0o111}\0{entry.st_size}\0"
+            digest.update(known.encode(errors="surrogateescape"))
+            with open(path, "rb") as file:
+                for chunk in iter(lambda: file.read(_CHUNK), b""):
+                    digest.update(chunk)
         return digest.hexdigest()
 
     def report_of(self, package, name):
@@ -175,6 +190,7 @@ class Classroom:
     def _stop(self):
         with self._lock:
             self._stopped = True
+            confine.stop()
             for popen in self._running:
                 _kill(popen)
 

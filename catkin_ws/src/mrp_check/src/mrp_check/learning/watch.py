@@ -18,7 +18,7 @@ from mrp_check.contract.errors import CannotCheck, PackageError
 from mrp_check.contract.finding import Finding
 from mrp_check.contract.verdict import Report
 from mrp_check.learning import exercise as exercises
-from mrp_check.student.package import BACKUP, NOT_SOURCES, Package
+from mrp_check.student.package import BACKUP, Package, is_of_tools
 
 INTERVAL = 0.1  # seconds between two calls of look()
 
@@ -158,7 +158,7 @@ def _stamp(place: pathlib.Path) -> _Stamp:
     """Return what is different after a file was saved: of those that people write."""
     found = []
     for folder, folders, names in os.walk(place):
-        folders[:] = sorted(set(folders) - NOT_SOURCES)
+        folders[:] = sorted(name for name in folders if not is_of_tools(name))
         for name in sorted(names):
             path = os.path.join(folder, name)
             if not BACKUP.search(name) and not name.startswith((".", "#")):

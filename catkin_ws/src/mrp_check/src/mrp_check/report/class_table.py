@@ -19,9 +19,9 @@ _SIGNS = {MET: "✓", BROKEN: "✗", UNCHECKED: "?"}
 
 @dataclasses.dataclass
 class Submission:
-    """The result of one student's folder.
+    """The result of what one student has handed in.
 
-    name: of the folder
+    name: of the folder or the file
     report: as in schema/report.json
     kept: whether it is the report of an earlier call
     """

@@ -11,7 +11,7 @@ from mrp_check import evidence
 from mrp_check.case import Case
 from mrp_check.contract.finding import NOTE, Finding
 from mrp_check.contract.requirements import Requirement, Rule
-from mrp_check.student.package import Package
+from mrp_check.student.package import MAX_BYTES, Package
 
 _TEXT = ("python", "cpp", "header", "launch", "message", "cmake")
 _CODING = re.compile(rb"^[ \t\f]*#.*?coding[:=][ \t]*([-\w.]+)")
@@ -19,6 +19,9 @@ _CODING = re.compile(rb"^[ \t\f]*#.*?coding[:=][ \t]*([-\w.]+)")
 
 def _findings(case: Case) -> Iterator[Finding]:
     package = case.package
+    for path in package.left_out:
+        said = f"{path} has more than {MAX_BYTES // 10**6} MB: it is left out of the check."
+        yield Finding("text", said, path, severity=NOTE, fix="Hand in the package without it.")
     relayed = case.model.relayed()
     for path in package.files:
         kind = package.kind(path)

@@ -18,6 +18,9 @@ from mrp_check.contract.words import last_part
 
 # What is built or kept by tools, and no part of a package.
 NOT_SOURCES = {".git", ".svn", ".vscode", ".idea", "__pycache__", ".pytest_cache", "CMakeFiles"}
+NOT_SOURCES |= {"__MACOSX", ".DS_Store", "Thumbs.db", "desktop.ini"}
+# A folder with one of these files is what catkin or CMake has built.
+BUILT = {"CMakeCache.txt", ".catkin", ".built_by"}
 # What an editor keeps of a file that it has changed.
 BACKUP = re.compile(r"(~|#|\.(save|bak|orig|old|rej|sw[op]|tmp)(\.\d+)?)$")
 MAX_FILES = 2000
@@ -43,12 +46,25 @@ KINDS = {
 }
 
 
+def is_of_tools(name: str) -> bool:
+    """Return whether a file or folder is no part of a package, such as what Finder adds."""
+    return name in NOT_SOURCES or name.startswith("._")
+
+
+def declared_entity(data: bytes) -> int:
+    """Return the line on which XML declares an entity, or 0: a few of them may stand for
+    gigabytes, and no file of ROS needs one."""
+    before, found, _ = data.replace(b"\0", b"").partition(b"<!ENTITY")
+    return before.count(b"\n") + 1 if found else 0
+
+
 class Package:
     """A folder with a package.xml.
 
     root: its path
     name: as package.xml says, or the folder's name if package.xml cannot be read
     files: the paths of its files, relative to root, with "/" between folders, in order
+    left_out: the paths of files that are too large to be looked at
 
     Raises PackageError if there is no such folder, no package.xml, or too much of it.
     """
@@ -60,28 +76,41 @@ class Package:
         if not self.root.is_dir():
             raise PackageError(f"{root} is no folder; expected the folder of a package.")
         self._bytes: dict[str, bytes] = {}
+        self.left_out: list[str] = []
         self.files = self._list()
         self._known = {*self.files}
         if "package.xml" not in self.files:
             raise PackageError(self._no_manifest())
 
     def _list(self) -> list[str]:
-        paths, size = [], 0
+        sizes: dict[str, int] = {}
+        total = 0
         for folder, folders, names in os.walk(self.root):
-            folders[:] = sorted(set(folders) - NOT_SOURCES)
-            for name in sorted(names):
+            if BUILT.intersection(names) and folder != str(self.root):
+                folders.clear()
+                continue
+            folders[:] = sorted(name for name in folders if not is_of_tools(name))
+            for name in sorted(name for name in names if not is_of_tools(name)):
                 path = pathlib.Path(folder) / name
                 # What is no regular file (a pipe, a link out of the folder) is never opened.
                 if not self._is_inside(path):
                     continue
-                size += path.stat().st_size
-                paths.append(path.relative_to(self.root).as_posix())
-                if len(paths) > MAX_FILES or size > MAX_BYTES:
-                    raise PackageError(
-                        f"{self.root} has more than {MAX_FILES} files or {MAX_BYTES // 10**6} MB: "
-                        "expected the folder of one package, without what was built."
-                    )
-        return paths
+                known, size = path.relative_to(self.root).as_posix(), path.stat().st_size
+                if size > MAX_BYTES:
+                    self.left_out.append(known)
+                    continue
+                sizes[known] = size
+                total += size
+                if len(sizes) > MAX_FILES or total > MAX_BYTES:
+                    raise PackageError(self._too_much(sizes))
+        return list(sizes)
+
+    def _too_much(self, sizes: dict[str, int]) -> str:
+        largest = max(sizes, key=lambda path: sizes[path])
+        return (
+            f"{self.root} has more than {MAX_FILES} files or {MAX_BYTES // 10**6} MB, such as"
+            f" {largest}: expected the folder of one package, without what was built."
+        )
 
     def _is_inside(self, path: pathlib.Path) -> bool:
         try:
@@ -175,6 +204,8 @@ class Package:
     @functools.cached_property
     def manifest(self) -> ElementTree.Element | None:
         """The root element of package.xml, or None if it is no XML."""
+        if declared_entity(self.bytes("package.xml")):
+            return None
         try:
             return ElementTree.fromstring(self.bytes("package.xml"))
         except (ElementTree.ParseError, ValueError, LookupError):

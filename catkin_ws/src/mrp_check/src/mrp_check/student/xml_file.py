@@ -8,7 +8,7 @@ import re
 import xml.parsers.expat
 
 from mrp_check.contract.finding import Finding
-from mrp_check.student.package import Package
+from mrp_check.student.package import Package, declared_entity
 
 
 @dataclasses.dataclass
@@ -21,8 +21,19 @@ class Element:
     parents: list
 
 
+class EntityError(xml.parsers.expat.ExpatError):
+    """The file declares an entity: it is not read at all."""
+
+    def __init__(self, line: int) -> None:
+        super().__init__("an entity is declared")
+        self.code, self.lineno = 0, line
+
+
 def elements(data: bytes) -> list[Element]:
     """Return the Elements of an XML file's bytes. Raises xml.parsers.expat.ExpatError."""
+    line = declared_entity(data)
+    if line:
+        raise EntityError(line)
     found: list[Element] = []
     stack: list[Element] = []
     parser = xml.parsers.expat.ParserCreate()
@@ -42,7 +53,7 @@ def xml_finding(
     id_: str, package: Package, path: str, error: xml.parsers.expat.ExpatError, why: str
 ) -> Finding:
     """Return the Finding about a file that is no XML."""
-    what = xml.parsers.expat.ErrorString(error.code)
+    what = xml.parsers.expat.ErrorString(error.code) or str(error)
     line = error.lineno
     hint, cause = "", line
     if what == "mismatched tag":
