@@ -113,14 +113,14 @@ def finder(path):
     zip_(path, files, entry=Named)
 
 
-def github(path):
-    """ "Download ZIP", as git makes it: only what is executable has a mode."""
+def github(path, executable=("mrp-main/src/node.py",)):
+    """GitHub's "Download ZIP", as git makes it: only what is executable has a mode."""
     with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
         archive.comment = COMMIT
         for name, content in below("mrp-main").items():
             info = zipfile.ZipInfo(name)
-            info.create_system = 3 if name.endswith(".py") else 0
-            info.external_attr = 0o100755 << 16 if name.endswith(".py") else 0
+            info.create_system = 3 if name in executable else 0
+            info.external_attr = 0o100755 << 16 if name in executable else 0
             archive.writestr(info, content)
 
 
@@ -133,7 +133,7 @@ def nested(path):
 
 
 def moodle(path):
-    """ "Download all submissions", unpacked: a folder of each student with the files."""
+    """Moodle's "Download all submissions", unpacked: a folder of each student with the files."""
     path.mkdir()
     zip_(path / "hand in.zip", below("mrp"))
     (path / "onlinetext.html").write_text("<p>see the zip</p>")
@@ -176,7 +176,12 @@ def dotnet(path):
 
 CRLF = {name: content.replace("\n", "\r\n") for name, content in FILES.items()}
 
-OF_WINDOWS = ("explorer.zip", "dotnet.zip", "seven_zip.zip")  # no modes
+BUILT = {**below("mrp"), "mrp/build/CMakeCache.txt": "", "mrp/build/node.py": ""}
+# Which files are executable, if not node.py alone: Windows has no modes.
+EXECUTABLE = dict.fromkeys(
+    ("explorer.zip", "dotnet.zip", "seven_zip.zip"), ("src/module", "src/node.py")
+)
+EXECUTABLE["none_executable.zip"] = ()
 
 # The entry of the class's folder -> what makes it.
 TAKEN = {
@@ -185,6 +190,7 @@ TAKEN = {
     "dotnet.zip": dotnet,
     "seven_zip.zip": lambda path: zip_(path, {"Übung/": "", **below("Übung/mrp")}, unix=0),
     "github.zip": github,
+    "none_executable.zip": lambda path: github(path, ()),
     "nested.zip": nested,
     "Anna Müller_12345_assignsubmission_file_": moodle,
     "Bert Ä_12346_assignsubmission_file_mrp.zip": lambda path: zip_(path, FILES),
@@ -196,6 +202,8 @@ TAKEN = {
     "clone": clone,
     "workspace": workspace,
     "workspace.tgz": workspace_tar,
+    "built": lambda path: folder(path, BUILT),
+    "built.zip": lambda path: zip_(path, BUILT),
     "deep": lambda path: folder(path / "/".join("abcdefg"), FILES),
     "crlf.zip": lambda path: zip_(path, CRLF),
     "large_beside.zip": large_beside,

@@ -88,8 +88,8 @@ def test_the_package_is_found(uploads, name):
     handed_in.TAKEN[name](uploads / name)
     (seen,) = read(uploads).seen.values()
     seen = {unicodedata.normalize("NFC", path): known for path, known in seen.items()}
-    scripts = ["src/node.py", *(["src/module"] if name in handed_in.OF_WINDOWS else [])]
-    assert seen == {path: (content, path in scripts) for path, content in FILES.items()}
+    executable = handed_in.EXECUTABLE.get(name, ("src/node.py",))
+    assert seen == {path: (content, path in executable) for path, content in FILES.items()}
 
 
 @proves(
@@ -254,7 +254,7 @@ def test_each_entry_has_its_line_and_its_own_result(uploads):
     }
     again = read(uploads)
     assert (again.checked, {one.kept for one in again.results_of.values()}) == ([], {True, False})
-    zip_(uploads / "anna.zip", {**FILES, "other.py": ""})
+    zip_(uploads / "anna.zip", {**FILES, "zap.py": ""})
     assert read(uploads).checked == ["anna.zip"]
 
 
