@@ -43,6 +43,8 @@ def archives(entry: pathlib.Path) -> list[pathlib.Path]:
             f"{entry.name} is a link out of the class's folder: it is not followed."
             " Copy the package there."
         )
+    if not entry.exists():
+        raise PackageError(f"There is no {entry.name}.")
     if not entry.is_dir() and not entry.is_file():
         raise PackageError(f"{entry.name} is neither a folder nor a file.")
     packages, packed, _ = _found_in(entry)
