@@ -72,15 +72,9 @@ def parser():
         epilog="exit code: 0 all requirements are met; 1 findings; 2 it could not check",
     )
     what = parser.add_mutually_exclusive_group(required=True)
-    what.add_argument(
-        "path", metavar="PATH", nargs="?", help="the package's folder, or an archive of it"
-    )
-    what.add_argument(
-        "--class",
-        dest="class_",
-        metavar="DIR",
-        help="check each folder or archive in DIR as one submission; DIR.checked keeps the reports",
-    )
+    what.add_argument("path", metavar="PATH", nargs="?", help="the package's folder or archive")
+    each = "check each folder or archive in DIR as one submission; DIR.checked keeps the reports"
+    what.add_argument("--class", dest="class_", metavar="DIR", help=each)
     which = "check the package NAME where there are several"
     parser.add_argument("--package", default="", metavar="NAME", help=which)
     without = "check a package that has no contract: report what fails"
