@@ -12,7 +12,6 @@ import filecmp
 import hashlib
 import json
 import pathlib
-import re
 import shutil
 from typing import Callable, Mapping, Sequence, TypeVar
 
@@ -52,9 +51,7 @@ class Workspace:
     ) -> None:
         self.package, self.timeout, self.progress = package, timeout, progress
         self.folder, self.given = folder / "workspace", folder / "given"
-        # catkin's own scripts cannot stand a space in a path.
-        name = re.sub(r"[^\w.-]", "_", package.root.resolve().name, flags=re.ASCII)
-        self.package_folder = self.folder / "src" / name
+        self.package_folder = self.folder / "src" / package.root.resolve().name
         self.given.mkdir(exist_ok=True)
         self._kept = self.given / "kept.json"
         self._read_by_cmake = _read_by_cmake(package)  # before it is copied: it may change then
