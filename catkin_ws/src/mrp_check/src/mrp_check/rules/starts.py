@@ -72,10 +72,12 @@ def _killed(package: Package, seen: Observed) -> Iterator[Finding]:
     """Yield a Finding if something has killed roslaunch: only the package itself can reach it."""
     code = seen.launch.code if seen.launch else None
     if code is not None and code < 0:
+        files = package.of_kind("python", "cpp")
+        place: Where = package.first_match(files, _KILLS) or (None, None)
         yield Finding(
             "starts",
             "A node kills roslaunch, and perhaps the other nodes.",
-            *package.first_match(package.of_kind("python", "cpp"), _KILLS) or (None, None),
+            *place,
             expected="nodes that end no program but themselves",
             seen=f"roslaunch ended {code_text(code)}",
         )
