@@ -151,10 +151,11 @@ def test_what_is_not_kept_is_a_note(tmp_path):
 
 
 def test_facts_say_what_the_source_says(tmp_path):
-    _, facts = check_rules.python_facts_of(tmp_path, HEAD)
+    text = HEAD.replace('"publisher_py_node")', '"publisher_py_node", sys.argv, True)')
+    _, facts = check_rules.python_facts_of(tmp_path, text)
     file = "src/odd.py"
     said = {place.kind: place for place in facts.places}
-    assert said[Kind.INIT] == Place(file, 20, Kind.INIT, "publisher_py_node")
+    assert said[Kind.INIT] == Place(file, 20, Kind.INIT, "publisher_py_node", anonymous=True)
     publisher = Place(file, 9, Kind.PUBLISHER, "great_topic", queue=10, queue_line=9)
     assert said[Kind.PUBLISHER] == publisher
     assert said[Kind.TIMER] == Place(file, 10, Kind.TIMER, period=0.5)

@@ -128,7 +128,7 @@ class _Node:
         return self.source.value(argument(self.node, position, keyword))
 
     def init(self, node: ast.Call) -> Iterator[Place]:
-        anonymous = self.value(1, "anonymous")
+        anonymous = self.value(2, "anonymous")
         yield self.place(Kind.INIT, self.value(0, "name"), anonymous=anonymous)
 
     def topic(self, kind: Kind, position: int) -> Iterator[Place]:
