@@ -64,6 +64,7 @@ def _sources(language: str) -> Seen:
     )
 
 
+# Each node in that language has a source.
 python, cpp = _sources("python"), _sources("cpp")
 
 
@@ -81,6 +82,7 @@ def _python_read(case: Case, name: str) -> str | None:
     return None if is_cpp else _read(case, name)
 
 
+# The sources of each node, or of each in Python, were read; or it ran.
 read, python_read = of_nodes(_read), of_nodes(_python_read)
 
 
