@@ -165,7 +165,7 @@ def large_beside(path):
     zip_(path, {**below("ws/src/mrp"), "ws/video.mp4": b"x" * 8_000_000})
     data = bytearray(path.read_bytes())
     at = data.index(b"ws/video.mp4") + len("ws/video.mp4")
-    data[at : at + 100] = b"\xff" * 100  # whoever unpacks it stops here
+    data[at : at + 100] = b"\xff" * 100  # a program that unpacks it stops here
     path.write_bytes(data)
 
 

@@ -13,7 +13,7 @@ import pytest
 from mrp_check import check
 from mrp_check.cli import check as check_command
 from mrp_check.contract.finding import Finding
-from mrp_check.report import console, github, json_, junit, place, sarif
+from mrp_check.report import annotation, console, github, json_, junit, sarif
 from mrp_check.report import html as html_report
 from mrp_check.rules import REQUIREMENTS
 from mrp_testing.proves import proves
@@ -248,7 +248,7 @@ def test_a_reader_s_paths_begin_at(git, working, base, repository, tmp_path, mon
         (tmp_path / "repo" / ".git").rmdir()
     (tmp_path / "elsewhere").mkdir()
     monkeypatch.chdir(tmp_path / working)
-    assert place.base_of(repository) == tmp_path / base
+    assert annotation.base_of(repository) == tmp_path / base
 
 
 @proves("The report counts what is suppressed, and shows the reason.")

@@ -29,8 +29,7 @@ class Comment(NamedTuple):
     reason: str
 
     def suppresses(self, finding: Finding) -> bool:
-        place = self.file, finding.line or 0
-        is_there = (finding.file, finding.line) == place and 0 <= place[1] - self.line <= 1
+        is_there = finding.file == self.file and finding.line in (self.line, self.line + 1)
         return is_there and self.id == finding.id and bool(self.reason)
 
 

@@ -114,7 +114,7 @@ class Classroom:
     def _fingerprint(self, packed, package):
         """Return a text that changes with everything that a report depends on.
 
-        Of a submission that is packed, these are the archives: they need not be unpacked for it.
+        For a packed submission, it is made of the archives, which are not unpacked for it.
         """
         digest = hashlib.sha256(self.spec_file.read_bytes())
         for path in sorted([*_HERE.rglob("*.py"), *resources.folder("templates").iterdir()]):

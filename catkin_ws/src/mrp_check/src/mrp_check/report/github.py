@@ -10,7 +10,7 @@ import secrets
 
 from mrp_check.contract.finding import ERROR, NOTE, WARNING
 from mrp_check.report import console
-from mrp_check.report.place import base_of
+from mrp_check.report.annotation import path_of, says_of
 
 _COMMANDS = {ERROR: "error", WARNING: "warning", NOTE: "notice"}
 _OF_MESSAGE = {"%": "%25", "\r": "%0D", "\n": "%0A"}
@@ -19,7 +19,6 @@ _OF_PROPERTY = {**_OF_MESSAGE, ":": "%3A", ",": "%2C"}
 
 def text(report):
     """Return a line for each finding that follows from no other."""
-    folder = report.folder and report.folder.relative_to(base_of(report.folder))
     lines = []
     for finding in report.findings:
         if finding.consequence_of:
@@ -27,9 +26,8 @@ def text(report):
         place = {"title": f"mrp_check: {finding.id}"}
         if finding.file:
             line = {"line": str(finding.line)} if finding.line else {}
-            place = {"file": (folder / finding.file).as_posix(), **line, **place}
-        says = [finding.message, *console.detail_lines(finding, ("expected", "seen", "fix"))]
-        lines.append(_command(_COMMANDS[finding.severity], place, "\n".join(says)))
+            place = {"file": path_of(finding, report), **line, **place}
+        lines.append(_command(_COMMANDS[finding.severity], place, "\n".join(says_of(finding))))
     if report.reason:
         lines.append(_command("error", {"title": "mrp_check"}, report.reason))
     return "\n".join(lines)

@@ -9,7 +9,7 @@ import urllib.parse
 from mrp_check.contract.finding import NOTE
 from mrp_check.contract.verdict import UNCHECKED
 from mrp_check.report import console
-from mrp_check.report.place import base_of
+from mrp_check.report.annotation import base_of, path_of, says_of
 from mrp_check.rules import REQUIREMENTS
 
 _SCHEMA = (
@@ -55,14 +55,14 @@ def _invocation(report):
 
 
 def _result(finding, report, rules):
-    says = [finding.message, *console.detail_lines(finding, ("expected", "seen", "fix"))]
+    says = says_of(finding)
     if finding.consequence_of:
         says.append(f"This follows from {finding.consequence_of}.")
     reason = {"kind": "inSource", "justification": console.plain(finding.suppressed)}
     result = {
         "ruleId": finding.id,
         "ruleIndex": rules.index(finding.id),
-        # What follows from another error is none by itself.
+        # A consequence of another error is not counted as an error.
         "level": NOTE if finding.consequence_of else finding.severity,
         "message": {"text": console.plain("\n".join(says))},
         "suppressions": [reason] if finding.suppressed else [],
@@ -78,8 +78,7 @@ def _result(finding, report, rules):
 
 
 def _artifact(finding, report):
-    path = (report.folder / finding.file).relative_to(base_of(report.folder)).as_posix()
-    name = path.encode("utf-8", "surrogateescape")
+    name = path_of(finding, report).encode("utf-8", "surrogateescape")
     return {"uri": urllib.parse.quote(name), "uriBaseId": _BASE}
 
 

@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Where a package is, for a reader who sees the whole repository."""
+"""What a reader who sees the whole repository is told of a finding, and at which path."""
 
 from __future__ import annotations
 
 import pathlib
+
+from mrp_check.report import console
 
 
 def base_of(folder: pathlib.Path) -> pathlib.Path:
@@ -16,3 +18,13 @@ def base_of(folder: pathlib.Path) -> pathlib.Path:
     repository = next((parent for parent in above if (parent / ".git").exists()), None)
     working = pathlib.Path.cwd()
     return repository or (working if working in above else folder)
+
+
+def path_of(finding, report):
+    """Return the path of a finding's file, below base_of() the report's package."""
+    return (report.folder / finding.file).relative_to(base_of(report.folder)).as_posix()
+
+
+def says_of(finding):
+    """Return the lines of a finding, without its place: the message, and what to do."""
+    return [finding.message, *console.detail_lines(finding, ("expected", "seen", "fix"))]
