@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What follows from what the observer has seen of a package's nodes, and from what it has not."""
 
+import subprocess
+import sys
+
 import check_rules
 import pytest
 from lab_package import OF_RUN, findings_of, make_package, spec_of
@@ -69,3 +72,27 @@ def test_what_a_dead_node_would_do_was_never_seen(tmp_path):
     # Nobody asks it to hear anything.
     assert {*of_run} - {*unseen} == {"received"}
     assert {*unseen.values()} == {"publisher_right did not run"}
+
+
+_WHILE_OTHERS_REGISTER = """
+import sys, threading
+from mrp_check.confined.observe import Observer
+sys.setswitchinterval(1e-6)  # threads take turns as often as they can
+def register():
+    for index in range(1000):
+        assert observer._handler.registerService("/o", f"/o{index}", "rosrpc://o:1", "http://o:1")[0]
+with Observer() as observer:
+    others = threading.Thread(target=register)
+    others.start()
+    while others.is_alive():
+        assert not observer.is_registered("/nobody")
+    print("registered" if observer.is_registered("/o") else "lost")
+"""
+
+
+def test_the_observer_reads_who_has_registered_while_others_register():
+    done = subprocess.run(
+        [sys.executable, "-c", _WHILE_OTHERS_REGISTER],
+        stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=60,
+    )  # fmt: skip
+    assert (done.returncode, done.stdout) == (0, "registered\n")

@@ -120,7 +120,7 @@ class Observer:
         """Return whether the master still knows anything of a node."""
         handler = self._handler
         kinds = (handler.publishers, handler.subscribers, handler.services)
-        return any(node in names for kind in kinds for _, names in kind.get_state())
+        return any(node in nodes for kind in kinds for nodes in handler.registered(kind).values())
 
     def nodes(self) -> Set[str]:
         """Return the names of all nodes that have registered anything so far."""
@@ -201,9 +201,8 @@ class Observer:
     def _shake_hands(self, node: str, topic: str) -> Optional[Dict[str, str]]:
         """Subscribe for a moment; return what the publisher says of it, or None."""
         try:
-            api = self._handler.publishers.get_apis(topic)
-            by_node = dict(zip(self._publisher_names(topic), api))
-            with xmlrpc.client.ServerProxy(by_node[node]) as proxy:
+            publishers = self._handler.registered(self._handler.publishers)
+            with xmlrpc.client.ServerProxy(publishers[topic][node]) as proxy:
                 answer: Any = proxy.requestTopic(NAME, topic, [["TCPROS"]])
             code, _, found = answer
             if code != 1 or not found:
@@ -215,9 +214,6 @@ class Observer:
                 return dict(said)
         except (KeyError, OSError, xmlrpc.client.Error, rosgraph.network.ROSHandshakeException):
             return None
-
-    def _publisher_names(self, topic: str) -> List[str]:
-        return list(dict(self._handler.publishers.get_state()).get(topic, []))
 
     # --- How busy the machine is
 
@@ -247,6 +243,13 @@ class _Master(rosmaster.master_api.ROSMasterHandler):  # type: ignore[misc]  # i
     def __init__(self, observer: Observer) -> None:
         super().__init__()
         self._observer = observer
+
+    def registered(self, kind: Any) -> Dict[str, Dict[str, str]]:
+        """Return topic or service -> node -> its address, of the publishers, for example.
+
+        Kept from changing meanwhile: nodes register from other threads, while this one reads."""
+        with self.ps_lock:
+            return {name: dict(nodes) for name, nodes in kind.map.items()}
 
     def registerPublisher(  # noqa: N802
         self, caller_id: str, topic: str, topic_type: str, caller_api: str
