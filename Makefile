@@ -227,8 +227,8 @@ clean:  ## delete all that was built
 	rm -rf catkin_ws/build catkin_ws/devel catkin_ws/install
 	rm -f catkin_ws/src/CMakeLists.txt catkin_ws/.catkin_workspace catkin_ws/compile_commands.json
 
-# Containers. DEBIAN names the release that the images are made of: bookworm (12) or trixie (13).
-export DEBIAN ?= bookworm
+# Containers. DEBIAN names the release that the images are made of: trixie (13) or bookworm (12).
+export DEBIAN ?= trixie
 IMAGE := mrp:$(DEBIAN)
 DOCKER_RESULTS := $(RESULTS)/$(DEBIAN)
 COMPOSE = $(shell docker compose version > /dev/null 2>&1 && echo docker compose || echo docker-compose)

@@ -64,7 +64,7 @@ def test_system_without_ros(patient, facts):
     patient.write("apt/tools.txt", "no-such-other-package\n")
     patient.examine(**facts).assert_only_failure(
         "packages",
-        "expected Debian 12 or 13, which have ROS packages; "
+        "expected Debian 13 or 12, which have ROS packages; "
         "found another system, without 2 of the 2 packages",
         "make docker-run",
         skipped=NEEDING_PACKAGES,

@@ -56,7 +56,7 @@ def check_packages(machine):
     if machine.debian_version.split(".")[0] in ("12", "13") and os.path.exists(machine.dpkg_query):
         return fail("all of run.txt and tools.txt", "no " + ", no ".join(missing), "make deps")
     found = f"another system, without {len(missing)} of the {len(lines)} packages"
-    return fail("Debian 12 or 13, which have ROS packages", found, "make docker-run")
+    return fail("Debian 13 or 12, which have ROS packages", found, "make docker-run")
 
 
 def check_python(machine):

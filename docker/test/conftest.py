@@ -22,7 +22,7 @@ def pytest_collection_modifyitems(items):
 @pytest.fixture(scope="session")
 def image():
     """The image under test: the one that `make docker-build` made."""
-    return "mrp:" + os.environ.get("DEBIAN", "bookworm")
+    return "mrp:" + os.environ.get("DEBIAN", "trixie")
 
 
 @pytest.fixture(scope="session", autouse=True)

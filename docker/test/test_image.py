@@ -106,9 +106,9 @@ def sources(image):
 
 
 @proves(
-    "DEBIAN=trixie builds from Debian 13's packages instead of Debian 12's.",
+    "DEBIAN=bookworm builds from Debian 12's packages instead of Debian 13's.",
     "These are the sizes of the image's files in MB, uncompressed.",
-    "It builds an image from Debian 12's packages, or from Debian 13's with DEBIAN=trixie.",
+    "It builds an image from Debian 13's packages, or from Debian 12's with DEBIAN=bookworm.",
 )
 def test_page_says_what_is_in_it(image, image_layers):
     owners = sources(image)
@@ -144,7 +144,7 @@ def test_opt_mrp_is_the_install_space(files):
 
 @proves(
     "It runs on Debian's own ROS 1 packages: you add no other package source.",
-    "Debian 12 and 13 have ROS 1 as ordinary packages.",
+    "Debian 13 and 12 have ROS 1 as ordinary packages.",
 )
 def test_ros_is_debians_own(image):
     lines = dpkg_query(image, "${source:Package}\t${Maintainer}\n").splitlines()

@@ -53,7 +53,7 @@ def built():
 
 
 @proves(
-    "This builds the image mrp:bookworm and runs the launch file in one container.",
+    "This builds the image mrp:trixie and runs the launch file in one container.",
     "make docker-run runs the tutorial in Docker.",
 )
 def test_docker_run_ends_on_ctrl_c_and_leaves_no_container(built):

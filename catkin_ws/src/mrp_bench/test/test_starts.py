@@ -295,7 +295,7 @@ def test_container_starts_and_stops(fake_docker, tmp_path):
 def test_container_that_cannot_be_measured(fake_docker, monkeypatch):
     fake_docker.with_suffix(".image").write_text("1")
     assert container.why_not() == (
-        "not measured: there is no image mrp:bookworm: make docker-build"
+        "not measured: there is no image mrp:bookworm: make docker-build DEBIAN=bookworm"
     )
     fake_docker.with_suffix(".engine").write_text("1")
     assert container.why_not() == "not measured: no Docker engine answers"

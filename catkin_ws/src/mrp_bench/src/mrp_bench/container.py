@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The tutorial's container, which `make docker-build` builds."""
+"""The tutorial's container, which `make docker-build DEBIAN=bookworm` builds."""
 
 import shutil
 import subprocess
@@ -17,7 +17,7 @@ def why_not():
     if not _succeeds("docker", "info"):
         return "not measured: no Docker engine answers"
     if not _succeeds("docker", "image", "inspect", IMAGE):
-        return f"not measured: there is no image {IMAGE}: make docker-build"
+        return f"not measured: there is no image {IMAGE}: make docker-build DEBIAN=bookworm"
     return None
 
 

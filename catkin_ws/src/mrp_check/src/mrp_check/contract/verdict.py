@@ -57,8 +57,9 @@ def public(report: Report, hidden: Collection[str]) -> Report:
         for f in report.findings
         if f.id not in hidden
     ]
+    follow = {finding.id for finding in report.findings if finding.consequence_of in hidden}
     unseen = {
-        id_: "its cause is not shown" if why.rpartition(" ")[2] in hidden else why
+        id_: "its cause is not shown" if id_ in follow else why
         for id_, why in report.unseen.items()
         if id_ not in hidden
     }
