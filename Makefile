@@ -319,8 +319,18 @@ docker-check: need-docker  ## check the package at PKG in a container without a 
 	  --env PYTHONPATH=catkin_ws/src/mrp_check/src mrp-test:$(DEBIAN) \
 	  /usr/bin/python3 catkin_ws/src/mrp_check/scripts/check /package
 
-.PHONY: docker-containers
-docker-containers: docker-build-ssh
+.PHONY: need-pytest
+need-pytest: need-docker
 	@/usr/bin/python3 -c 'import pytest, xdist' 2> /dev/null || \
 	  catkin_ws/tools/install_packages.sh <(printf '%s\n' '# to test the containers' python3-pytest-xdist)
-	@/usr/bin/python3 -m pytest -n 4 --dist loadgroup --junit-xml=$(DOCKER_RESULTS)/containers.xml docker/test
+
+.PHONY: docker-containers
+docker-containers: docker-build-ssh need-pytest
+	@/usr/bin/python3 -m pytest -n 4 --dist loadgroup -m 'not dev' \
+	  --junit-xml=$(DOCKER_RESULTS)/containers.xml docker/test
+
+# A node is built there, before it can run.
+.PHONY: docker-dev
+docker-dev: need-pytest
+	@catkin_ws/tools/install_others.sh
+	@MRP_TEST_DEADLINE=600 /usr/bin/python3 -m pytest -m dev docker/test

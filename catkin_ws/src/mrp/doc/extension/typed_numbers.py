@@ -17,7 +17,7 @@ _NUMBER = re.compile(
 
 # What a number may be that is typed -> why.
 EXCEPTIONS = {
-    r"Debian 12( (or|and) 13)?|Debian 13|ROS [12]|Python [23](\.\d+)?|CMake 4|WSL 2|4\.0": "the "
+    r"Debian 1[23]( (or|and) 1[23])?|ROS [12]|Python [23](\.\d+)?|CMake 4|WSL 2|4\.0": "the "
     "version of a program or a licence is a part of its name",
     r"RFC \d+(, [\d.]+)?": "a standard is named by its number",
     r"(in|in May|since the beginning of|Beuchat,) (19|20)\d\d": "a year does not change",

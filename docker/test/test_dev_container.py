@@ -1,0 +1,62 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The Dev Container: the Dev Containers CLI makes and starts it, as editors and Codespaces do.
+
+`make docker-dev` runs this; `make docker-containers` does not, as its image takes minutes.
+"""
+
+import json
+import os
+import shlex
+import subprocess
+
+import pytest
+from containers import ROOT, enough, removed, run
+from mrp_testing.process import Process
+from mrp_testing.proves import proves
+
+pytestmark = pytest.mark.dev
+
+CLI = ROOT / "catkin_ws" / "build" / "lint" / "node_modules" / ".bin" / "devcontainer"
+
+
+@pytest.fixture(scope="module")
+def checkout(tmp_path_factory):
+    """A clone, in which the container's user may write."""
+    folder = tmp_path_factory.mktemp("dev") / "mrp"
+    run("git", "clone", "--quiet", ROOT, folder)
+    file = folder / ".devcontainer" / "devcontainer.json"
+    asked = json.loads(file.read_text())
+    asked["build"]["options"] = shlex.split(os.environ.get("DOCKER_BUILD_OPTIONS", ""))
+    file.write_text(json.dumps(asked))
+    if os.geteuid() == 0:  # for every other user, the CLI gives ros that user's number
+        run("chown", "--recursive", "1000:1000", folder)
+    return folder
+
+
+@pytest.fixture(scope="module")
+def dev(checkout):
+    """The words that run a command in the started container."""
+    up = subprocess.run([CLI, "up", "--workspace-folder", checkout], stdout=-1, text=True)
+    started = json.loads(up.stdout.splitlines()[-1])
+    assert (up.returncode, started["outcome"], started["remoteUser"]) == (0, "success", "ros")
+    with removed(started["containerId"]):
+        yield [str(CLI), "exec", "--workspace-folder", str(checkout)]
+
+
+@proves("In its terminal, make run runs the four nodes, and installs nothing first.")
+def test_four_nodes_run_in_it(dev):
+    with Process(*dev, "make", "run") as process:
+        process.wait_for(lambda: enough(process.lines), "values at both subscribers")
+    assert not [line for line in process.lines if line.startswith("Installing")]
+
+
+@proves("make exercise shows an exercise, checks it, and says when it has passed.")
+def test_first_exercise_is_solved_in_it(dev, checkout):
+    assert run(*dev, "make", "exercise").stdout.startswith("Exercise 1 of ")
+    checked = run(*dev, "make", "exercise", check=False).stdout
+    assert "not yet" in checked and "'(' was never closed" in checked, checked
+
+    (package,) = (checkout / "catkin_ws" / "exercises").glob("01_*")
+    source = package / "src" / "subscriber_py_node.py"
+    source.write_text(source.read_text().replace(", msg.data\n", ", msg.data)\n"))
+    assert "01_a_parenthesis: passed" in run(*dev, "make", "exercise").stdout
