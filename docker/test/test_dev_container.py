@@ -10,7 +10,7 @@ import shlex
 import subprocess
 
 import pytest
-from containers import ROOT, enough, removed, run
+from containers import ROOT, enough, inspect, removed, run
 from mrp_testing.process import Process
 from mrp_testing.proves import proves
 
@@ -36,11 +36,19 @@ def checkout(tmp_path_factory):
 @pytest.fixture(scope="module")
 def dev(checkout):
     """The words that run a command in the started container."""
-    up = subprocess.run([CLI, "up", "--workspace-folder", checkout], stdout=-1, text=True)
-    started = json.loads(up.stdout.splitlines()[-1])
-    assert (up.returncode, started["outcome"], started["remoteUser"]) == (0, "success", "ros")
+    # Its log is on stderr, and one line of JSON on stdout.
+    said = subprocess.run(
+        [CLI, "up", "--workspace-folder", checkout], stdout=subprocess.PIPE, text=True
+    ).stdout
+    started = json.loads(said.splitlines()[-1])
+    assert started["outcome"] == "success", said
+    assert started["remoteUser"] == "ros"
+    image = inspect(started["containerId"])["Config"]["Image"]
     with removed(started["containerId"]):
         yield [str(CLI), "exec", "--workspace-folder", str(checkout)]
+    # Of these names there are two, if the CLI has changed the number of the user ros.
+    run("docker", "image", "rm", image)
+    run("docker", "image", "rm", image.removesuffix("-uid"), check=False)
 
 
 @proves("In its terminal, make run runs the four nodes, and installs nothing first.")

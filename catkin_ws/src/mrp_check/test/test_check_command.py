@@ -3,6 +3,7 @@
 
 import json
 import os
+import re
 import subprocess
 
 import pytest
@@ -59,6 +60,15 @@ def test_folder_without_manifest_names_the_package_in_it(tmp_path):
     assert done.stdout.startswith("::error title=mrp_check::") and "/src/a?" in done.stdout
     data = json.loads((tmp_path / "report.json").read_text())
     assert (data["verdict"], data["findings"]) == ("unchecked", [])
+
+
+@proves("--timing shows after how many seconds each part of the check begins.")
+def test_timing_shows_when_each_part_began():
+    done = run(WORKSPACE / "src" / "mrp", "--only", "manifest", "--timing")
+    shown = re.findall(r"check: +(\d+\.\d) s  (.+)\n", done.stderr)
+    seconds = [float(passed) for passed, _ in shown]
+    assert [what for _, what in shown] == ["stage files", "the end"], done.stderr
+    assert seconds == sorted(seconds)
 
 
 def test_wrong_option_is_exit_code_2():

@@ -7,6 +7,7 @@ import argparse
 import pathlib
 import signal
 import sys
+import time
 
 from mrp_check import check, sandbox
 from mrp_check.cli import classroom
@@ -88,6 +89,8 @@ def parser():
         parser.add_argument(f"--{option}", metavar="FILE", help=text)
     annotations = "print the findings as annotations of GitHub Actions, too"
     parser.add_argument("--github", action="store_true", help=annotations)
+    timing = "show after how many seconds each part of the check begins"
+    parser.add_argument("--timing", action="store_true", help=timing)
     number = "with --class: check N at the same time, 1 to 64 (default: %(default)s)"
     most, jobs = range(1, 65), classroom.JOBS
     parser.add_argument("--jobs", type=int, choices=most, default=jobs, metavar="N", help=number)
@@ -116,7 +119,7 @@ def _seconds(text):
 
 def run(options):
     """Check what the options say, write the reports, and return the exit code."""
-    of_package = {*OF_PACKAGE, "only", "any", "public", "github"} - {*OF_CLASS}
+    of_package = {*OF_PACKAGE, "only", "any", "public", "github", "timing"} - {*OF_CLASS}
     of_class = {*OF_CLASS} - {*OF_PACKAGE}
     try:
         for name in sorted(of_package if options.class_ else of_class):
@@ -186,7 +189,7 @@ def unpacked(options, scratch):
 
 def run_package(options):
     """Check a package, write its reports, and return its verdict. Raises CannotCheck."""
-    progress = console.Progress(sys.stderr)
+    progress = console.Progress(sys.stderr, time.monotonic() if options.timing else None)
     contract = None
     try:
         contract = None if options.any else spec.read(spec.find(options.spec), REQUIREMENTS)
@@ -194,6 +197,8 @@ def run_package(options):
             package = Package(unpacked(options, scratch))
             say_how_apart()
             report = check.check(package, contract, options.only, options.timeout, progress.show)
+            if options.timing:
+                progress.show("the end")
     except (PackageError, SpecError, CannotCheck) as error:
         report = unchecked(str(error))
     finally:

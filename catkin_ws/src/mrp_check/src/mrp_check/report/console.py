@@ -6,6 +6,7 @@ from __future__ import annotations
 import os
 import re
 import textwrap
+import time
 
 from mrp_check.contract.finding import ERROR, NOTE, WARNING
 from mrp_check.contract.requirements import STAGES
@@ -28,16 +29,20 @@ _UNFIT = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\ud800-\udfff\ufffe\uffff]")
 
 
 class Progress:
-    """Says what is being done: in one line of a terminal, or line by line."""
+    """Says what is being done: in one line of a terminal, or line by line.
 
-    def __init__(self, stream):
-        self.stream = stream
-        self.terminal = stream.isatty()
+    began: by time.monotonic(); then each line stays, with the seconds that had passed
+    """
+
+    def __init__(self, stream, began=None):
+        self.stream, self.began = stream, began
+        self.terminal = stream.isatty() and began is None
 
     def show(self, sentence):
         end = "" if self.terminal else "\n"
         start = "\r\x1b[K" if self.terminal else ""
-        print(f"{start}check: {plain(sentence)}", end=end, file=self.stream, flush=True)
+        passed = "" if self.began is None else f" {time.monotonic() - self.began:5.1f} s "
+        print(f"{start}check:{passed} {plain(sentence)}", end=end, file=self.stream, flush=True)
 
     def clear(self):
         if self.terminal:
