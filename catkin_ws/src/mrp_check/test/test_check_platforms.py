@@ -11,9 +11,10 @@ import pytest
 from check_rules import hand_in
 from mrp_check.cli import check as check_command
 from mrp_check.contract import spec
+from mrp_check.contract.by_hand import ByHand
 from mrp_check.contract.finding import Finding
 from mrp_check.contract.verdict import BROKEN, FINDINGS, MET, UNCHECKED, Report, public, unchecked
-from mrp_check.report import class_table, console, gradescope, html, json_, moodle
+from mrp_check.report import class_table, console, gradescope, html, json_, mail, moodle
 from mrp_check.rules import REQUIREMENTS
 from mrp_testing.proves import proves
 
@@ -147,17 +148,22 @@ SHOWN = {
     "console": lambda one: console.text(public(one, CONTRACT.hidden)),
     "page": lambda one: html.text(public(one, CONTRACT.hidden)),
     "json": lambda one: json_.text(public(one, CONTRACT.hidden)),
+    # Without the line of the mark: what is hidden counts.
+    "mail": lambda one: mail.text(submission("anna", one), CONTRACT).split("\n", 2)[2],
     "moodle": lambda one: moodle.text([submission(NAMED, one)], CONTRACT).split(",")[-1],
 }
 NAMED = "Anna Lee_12345_assignsubmission_file_"
 
 
-@proves("The student reads All public requirements are met, whether it is met or not.")
+@proves(
+    "It leaves out what the contract hides.",
+    "The student reads All public requirements are met, whether it is met or not.",
+)
 @pytest.mark.parametrize("kind", SHOWN)
 def test_a_student_does_not_see_which_hidden_requirement_failed(kind):
     shown = SHOWN[kind]
     assert shown(report(SPIN)) == shown(report(WRAP)) == shown(report())
-    if kind in ("gradescope", "console", "page", "moodle"):
+    if kind != "json":
         assert f"All public requirements are met: {len(REQUIREMENTS) - 2}" in str(
             shown(report(SPIN))
         )
@@ -252,6 +258,27 @@ def test_worksheet_has_what_moodle_reads():
     assert "spin" not in anna["Feedback comments"]
     assert (bea["Full name"], bea["Grade"]) == ("Bea O'Neil", "0")
     assert "It has no package.xml." in bea["Feedback comments"]
+
+
+def test_text_for_a_mail(tmp_path):
+    results = [*CLASS[:2], submission("n" * 252, report())]
+    (failed,) = mail.write(tmp_path, results, CONTRACT)
+    assert failed.endswith("nn.txt cannot be written: File name too long.")
+    anna, bea = ((tmp_path / f"{one.name}.txt").read_text() for one in CLASS[:2])
+    most = class_table.most(CONTRACT)
+    assert f"{NAMED}: mark {most - 7.5:g} of {most:g}\n" in anna
+    assert "src/a.py:9: error: It publishes <2>." in anna and "spin" not in anna
+    assert bea.endswith("It has no package.xml.\nNothing could be checked.\n")
+
+
+@proves("It is Moodle's grade, too, and the student reads what was set by hand.")
+def test_worksheet_has_the_mark_with_what_was_set_by_hand():
+    late = ByHand(late_days=1, off=2, override=9.5, reason="<b>", by="B. Roe")
+    bea = dataclasses.replace(CLASS[1], by_hand=late)
+    (row,) = csv.DictReader(moodle.text([bea], CONTRACT).splitlines())
+    assert row["Grade"] == "7.5"
+    said = "by hand: points set to 9.5; 1 day late: -2 (B. Roe: &lt;b&gt;)"
+    assert f"mark 7.5 of {class_table.most(CONTRACT):g}, {said}" in row["Feedback comments"]
 
 
 @proves(

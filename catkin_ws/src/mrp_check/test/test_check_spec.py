@@ -72,6 +72,8 @@ def test_line_pattern():
         ("launch:", "points: {valuse: 1}\nlaunch:", r":9: .*no requirement 'valuse'.*'values'\?"),
         ("launch:", "hidden:\n- wrap\n- valus\nlaunch:", r":11: hidden\.1: .*mean 'values'\?"),
         ("launch:", "hidden: values\nlaunch:", r":9: hidden: expected a list; found 'values'"),
+        ("launch:", "late: {points: 1, percent: 2}\nlaunch:", r":9: late: .*at most 1"),
+        ("launch:", "late: {percent: 101}\nlaunch:", r":9: late\.percent: .*at most 100"),
         ("launch:", "topics: {}\nlaunch:", r":9: .*the key 'topics' stands twice"),
         ("title: An", "title: [An", r":\d+: .*no valid YAML"),
         ("    type: std", "\ttype: std", r":4: .*no valid YAML"),
@@ -94,7 +96,7 @@ def test_line_pattern():
             r":9: messages\.Count\.count: there is no message 'uint23'",
         ),
     ],
-    ids=range(20),
+    ids=range(22),
 )
 def test_wrong_spec_is_told_in_one_sentence(old, new, says, tmp_path):
     path = tmp_path / "wrong.yaml"

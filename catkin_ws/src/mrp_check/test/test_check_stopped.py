@@ -50,7 +50,10 @@ def command(*arguments):
             checker.kill()
 
 
-@proves("rosrun mrp_check check PATH checks one package; --class checks a folder of them.")
+@proves(
+    "For each student there is a text for a mail, NAME.txt, beside the reports.",
+    "rosrun mrp_check check PATH checks one package; --class checks a folder of them.",
+)
 @pytest.mark.slow
 def test_one_that_hangs(tmp_path, seconds):
     """The real command: one submission's CMake never ends, another is an empty folder."""
@@ -69,6 +72,7 @@ def test_one_that_hangs(tmp_path, seconds):
     assert "berta" in output
     assert "2 of 2: " in errors
     assert "berta" in page.read_text()
+    assert "no package.xml" in (tmp_path / "class.checked" / "berta.txt").read_text()
     assert not processes_with(seconds)
 
 

@@ -11,7 +11,7 @@ import time
 
 from mrp_check import check, sandbox
 from mrp_check.cli import classroom
-from mrp_check.contract import spec
+from mrp_check.contract import by_hand, spec
 from mrp_check.contract.errors import CannotCheck, PackageError, SpecError
 from mrp_check.contract.verdict import FINDINGS, MET, UNCHECKED, public, unchecked
 from mrp_check.report import (
@@ -22,7 +22,9 @@ from mrp_check.report import (
     html,
     json_,
     junit,
+    mail,
     moodle,
+    moved,
     sarif,
 )
 from mrp_check.rules import REQUIREMENTS
@@ -87,6 +89,8 @@ def parser():
     parser.add_argument("--public", action="store_true", help=hidden)
     for option, (text, _) in {**OF_PACKAGE, **OF_CLASS}.items():
         parser.add_argument(f"--{option}", metavar="FILE", help=text)
+    set_ = "with --class: take late days, maxima and overrides of students' points from this CSV"
+    parser.add_argument("--by-hand", metavar="FILE", help=set_)
     annotations = "print the findings as annotations of GitHub Actions, too"
     parser.add_argument("--github", action="store_true", help=annotations)
     timing = "show after how many seconds each part of the check begins"
@@ -120,11 +124,12 @@ def _seconds(text):
 def run(options):
     """Check what the options say, write the reports, and return the exit code."""
     of_package = {*OF_PACKAGE, "only", "any", "public", "github", "timing"} - {*OF_CLASS}
-    of_class = {*OF_CLASS} - {*OF_PACKAGE}
+    of_class = {*OF_CLASS, "by_hand"} - {*OF_PACKAGE}
     try:
         for name in sorted(of_package if options.class_ else of_class):
             if getattr(options, name):
                 needed = "without" if options.class_ else "with"
+                name = name.replace("_", "-")
                 raise CannotCheck(f"--{name} goes {needed} --class.")
         result = run_class(options) if options.class_ else run_package(options)
     except (PackageError, SpecError, CannotCheck, OSError) as error:
@@ -151,13 +156,22 @@ def run_class(options):
     room = classroom.Classroom(
         options.class_, spec_file, options.jobs, options.timeout, progress.show, options.package
     )
+    set_ = {}
+    if options.by_hand:
+        names, points = [entry.name for entry in room.entries], class_table.most(contract)
+        set_ = by_hand.read(options.by_hand, names, points, contract.late)
     say_how_apart()
     try:
         checked = room.check()
     finally:
         progress.clear()
+    for one in checked:
+        one.by_hand = set_.get(one.name, one.by_hand)
+    moved.compare(room.results, checked, contract)
     for name, (_, text) in OF_CLASS.items():
         write(getattr(options, name), text, checked, contract, room.results)
+    for sentence in mail.write(room.results, checked, contract):
+        print(f"check: {sentence}", file=sys.stderr)
     if options.moodle:
         write_pages(options.moodle, checked, contract)
     print(class_table.text(checked, contract))

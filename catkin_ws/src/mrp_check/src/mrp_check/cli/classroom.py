@@ -3,7 +3,8 @@
 
 A process of its own checks each package, and several run at the same time. If one fails, the others
 go on. The folder DIR.checked, beside DIR, keeps their reports: after Ctrl-C the same command goes
-on from there. A package is checked again only if it, the spec or the checker has changed.
+on from there. A package is checked again only if it, the checker, or what the contract asks of it
+has changed.
 """
 
 from __future__ import annotations
@@ -22,7 +23,7 @@ import threading
 from mrp_check import confine
 from mrp_check.check import scratch_folder
 from mrp_check.confined import cpp_headers, variables
-from mrp_check.contract import resources
+from mrp_check.contract import resources, spec
 from mrp_check.contract.errors import CannotCheck, PackageError
 from mrp_check.contract.verdict import UNCHECKED, unchecked
 from mrp_check.report import json_
@@ -58,11 +59,13 @@ class Classroom:
         path = pathlib.Path(folder).resolve()
         self.results = path.with_name(path.name + ".checked")
         self._running, self._stopped, self._lock = set(), False, threading.Lock()
+        self._common = {}
         self._headers, self._reading = pathlib.Path(), threading.Lock()
 
     def check(self):
         """Check all that must be; return a Submission of each, in the order of their names."""
         self.results.mkdir(parents=True, exist_ok=True)
+        self._common = self._depended_on()
         with tempfile.TemporaryDirectory(prefix="mrp_check_class_") as folder:
             self._headers = pathlib.Path(folder) / "ros.pch"
             with concurrent.futures.ThreadPoolExecutor(self.jobs) as pool:
@@ -95,30 +98,39 @@ class Classroom:
         with scratch_folder() as scratch:
             packed = submissions.archives(entry)
             package = None if packed else self._package(entry, scratch)
-            fingerprint = self._fingerprint(packed, package)
+            depends_on = {"package": self._fingerprint(packed, package), **self._common}
             file = self.results / f"{entry.name}.json"
             kept = _read(file)
-            if kept and kept.get("fingerprint") == fingerprint:
-                return Submission(entry.name, kept["report"], kept=True)
+            if kept and kept.get("depends_on") == depends_on:
+                return Submission(entry.name, kept["report"], True, depends_on)
             package = package or self._package(entry, scratch)
             report = self.report_of(package.root, entry.name)
         if report["verdict"] != UNCHECKED:
             new = file.with_suffix(".new")
-            new.write_text(json.dumps({"fingerprint": fingerprint, "report": report}))
+            new.write_text(json.dumps({"depends_on": depends_on, "report": report}))
             new.rename(file)
-        return Submission(entry.name, report)
+        return Submission(entry.name, report, depends_on=depends_on)
 
     def _package(self, entry, scratch):
         return Package(submissions.package_in(entry, scratch, self.package))
 
+    def _depended_on(self):
+        """Return what all reports depend on: a text that changes with it."""
+        contract = repr(spec.read(self.spec_file).without_marks())
+        checker = hashlib.sha256()
+        for path in sorted([*_HERE.rglob("*.py"), *resources.folder("templates").iterdir()]):
+            checker.update(path.read_bytes())
+        return {
+            "contract": hashlib.sha256(contract.encode()).hexdigest(),
+            "checker": checker.hexdigest(),
+        }
+
     def _fingerprint(self, packed, package):
-        """Return a text that changes with everything that a report depends on.
+        """Return a text that changes with the package.
 
         For a packed submission, it is made of the archives, which are not unpacked for it.
         """
-        digest = hashlib.sha256(self.spec_file.read_bytes())
-        for path in sorted([*_HERE.rglob("*.py"), *resources.folder("templates").iterdir()]):
-            digest.update(path.read_bytes())
+        digest = hashlib.sha256()
         of_package = [(name, package.root / name) for name in package.files] if package else []
         for name, path in [*((f"{self.package}/{one.name}", one) for one in packed), *of_package]:
             entry = path.stat()

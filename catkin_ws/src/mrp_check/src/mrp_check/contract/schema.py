@@ -65,6 +65,7 @@ def sentence(error: jsonschema.ValidationError) -> str:
         "exclusiveMinimum": "more than",
         "minLength": "a length of at least",
         "minProperties": "entries: at least",
+        "maxProperties": "entries: at most",
     }
     if error.validator in limits:
         limit = f"{limits[error.validator]} {error.validator_value}"

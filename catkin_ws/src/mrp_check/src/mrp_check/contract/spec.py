@@ -125,6 +125,18 @@ class Shutdown:
 
 
 @dataclasses.dataclass(frozen=True)
+class Late:
+    """What each day takes off a mark: points, or percent of the contract's points."""
+
+    points: float = 0
+    percent: float = 0
+
+    def off(self, days: float, most: float) -> float:
+        """Return what so many days take off; most: the contract's points."""
+        return days * (self.points + most * self.percent / 100)
+
+
+@dataclasses.dataclass(frozen=True)
 class Spec:
     title: str
     topics: dict[str, Topic]
@@ -135,6 +147,7 @@ class Spec:
     install: bool = False
     points: dict[str, float] = dataclasses.field(default_factory=dict)
     hidden: tuple[str, ...] = ()  # requirements that count, and that no student sees
+    late: Late | None = None
     is_contract: bool = True  # if not, it only lists the nodes of a package
 
     def node_path(self, node_name: str, group: str | None = None) -> str:
@@ -145,6 +158,10 @@ class Spec:
     def points_of(self, id_: str) -> float:
         """Return the points of a requirement: 1 where the spec does not say."""
         return self.points.get(id_, 1)
+
+    def without_marks(self) -> Spec:
+        """Return all that a check depends on: a report does not change with the rest."""
+        return dataclasses.replace(self, points={}, hidden=(), late=None)
 
 
 def pattern(line: str, name: str | None = None) -> re.Pattern[str]:
@@ -242,6 +259,7 @@ class _Reader:
             install=data.get("install", False),
             points=data.get("points", {}),
             hidden=tuple(data.get("hidden", ())),
+            late=Late(**data["late"]) if "late" in data else None,
         )
         self.own_messages(spec.messages)
         for topic in topics.values():

@@ -11,6 +11,7 @@ from mrp_check.contract.finding import ERROR, Finding
 
 MET, FINDINGS, UNCHECKED = "met", "findings", "unchecked"
 BROKEN = "broken"
+WORDS = {MET: "met", BROKEN: "not met", UNCHECKED: "not checked"}  # for a reader
 
 
 @dataclasses.dataclass

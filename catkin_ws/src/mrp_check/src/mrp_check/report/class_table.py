@@ -8,9 +8,10 @@ import dataclasses
 import io
 import pathlib
 
+from mrp_check.contract.by_hand import ByHand
 from mrp_check.contract.finding import ERROR
-from mrp_check.contract.verdict import BROKEN, MET, UNCHECKED
-from mrp_check.report import console, html
+from mrp_check.contract.verdict import BROKEN, MET, UNCHECKED, public
+from mrp_check.report import console, html, json_
 from mrp_check.rules import REQUIREMENTS
 
 _MOST_CAUSES = 5  # in one line of the CSV
@@ -24,11 +25,17 @@ class Submission:
     name: of the folder or the file
     report: as in schema/report.json
     kept: whether it is the report of an earlier call
+    depends_on: what the report depends on -> a text that changes with it
+    by_hand: what a person has set
+    moved: how the mark has moved, as moved.py says
     """
 
     name: str
     report: dict
     kept: bool = False
+    depends_on: dict = dataclasses.field(default_factory=dict)
+    by_hand: ByHand = ByHand()
+    moved: str = ""
 
     def verdict_on(self, id_):
         """Return the verdict on one requirement: MET, BROKEN or UNCHECKED."""
@@ -37,6 +44,14 @@ class Submission:
     def points(self, spec):
         """Return the points of all requirements that are met."""
         return sum(spec.points_of(id_) for id_ in REQUIREMENTS if self.verdict_on(id_) == MET)
+
+    def mark(self, spec):
+        """Return the points with what a person has set."""
+        return self.by_hand.mark(self.points(spec))
+
+    def shown(self, spec):
+        """Return what the student may see of the Report."""
+        return public(json_.report_of(self.report), spec.hidden)
 
     def errors(self):
         return [f for f in self.report["findings"] if f["severity"] == ERROR]
@@ -59,10 +74,11 @@ def _one_line(finding):
 
 
 def csv_text(submissions, spec):
-    """Return one line for each submission: name, verdict, points, each requirement, and why."""
+    """Return one line for each submission: name, verdict, points, mark, and each requirement."""
     file = io.StringIO()
     writer = csv.writer(file)
-    writer.writerow(["submission", "package", "verdict", "points", "of", *REQUIREMENTS, "why"])
+    columns = ["submission", "package", "verdict", "points", "of", "by_hand", "mark", "moved"]
+    writer.writerow([*columns, *REQUIREMENTS, "why"])
     for one in submissions:
         writer.writerow(
             [
@@ -71,6 +87,9 @@ def csv_text(submissions, spec):
                 one.report["verdict"],
                 f"{one.points(spec):g}",
                 f"{most(spec):g}",
+                cell(str(one.by_hand)),
+                f"{one.mark(spec):g}",
+                cell(one.moved),
                 *map(one.verdict_on, REQUIREMENTS),
                 cell(" | ".join(one.causes()[:_MOST_CAUSES])),
             ]
@@ -83,6 +102,15 @@ def cell(text):
     return "'" * text.startswith(("=", "+", "-", "@", "\t")) + console.plain(text)
 
 
+def broken_in(submissions):
+    """Return (id, names of the submissions) for each requirement that is not met, most first."""
+    found = [
+        (id_, [one.name for one in submissions if one.verdict_on(id_) == BROKEN])
+        for id_ in REQUIREMENTS
+    ]
+    return sorted([entry for entry in found if entry[1]], key=lambda entry: -len(entry[1]))
+
+
 def html_text(submissions, spec, pages):
     """Return one page with a table of all submissions.
 
@@ -93,8 +121,18 @@ def html_text(submissions, spec, pages):
         page = pathlib.Path(pages) / f"{one.name}.html"
         return page.resolve().as_uri() if one.report["requirements"] and page.is_file() else ""
 
-    values = {"submissions": submissions, "spec": spec, "most": most(spec), "page_of": page_of}
-    return html.render("class.html", signs=_SIGNS, **values)
+    return html.render(
+        "class.html",
+        signs=_SIGNS,
+        submissions=submissions,
+        spec=spec,
+        most=most(spec),
+        page_of=page_of,
+        broken=broken_in(submissions),
+        address_of=html.address_of,
+        has_marks=any(str(one.by_hand) for one in submissions),
+        has_moved=any(one.moved for one in submissions),
+    )
 
 
 def text(submissions, spec):
@@ -108,4 +146,12 @@ def text(submissions, spec):
         lines.append(
             f"{one.name:{width}}  {one.report['verdict']:9}  {points:>7}  {reason}".rstrip()
         )
+    lines += [f"{one.name}: {said_of_mark(one, spec)}" for one in submissions if str(one.by_hand)]
+    lines += [f"{one.name}: {one.moved}" for one in submissions if one.moved]
     return console.plain("\n".join(lines))
+
+
+def said_of_mark(one, spec):
+    """Return a submission's mark, and what a person has set."""
+    said = f"mark {one.mark(spec):g} of {most(spec):g}"
+    return f"{said}, by hand: {one.by_hand}" if str(one.by_hand) else said

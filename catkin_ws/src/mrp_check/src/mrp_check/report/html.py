@@ -8,12 +8,11 @@ import pathlib
 import jinja2
 
 from mrp_check.contract import resources
-from mrp_check.contract.verdict import BROKEN, MET, UNCHECKED
+from mrp_check.contract.verdict import WORDS
 from mrp_check.report import console
 from mrp_check.rules import REQUIREMENTS
 
 _SITE = pathlib.Path(__file__).resolve().parents[5] / "build" / "docs"
-_WORDS = {MET: "met", BROKEN: "not met", UNCHECKED: "not checked"}
 
 _TEMPLATES = jinja2.Environment(
     loader=jinja2.FileSystemLoader(resources.folder("templates")),
@@ -27,7 +26,7 @@ _TEMPLATES = jinja2.Environment(
 
 def render(template, **values):
     """Return the page that one of the templates makes of these values."""
-    page = _TEMPLATES.get_template(template).render(values, requirements=REQUIREMENTS, words=_WORDS)
+    page = _TEMPLATES.get_template(template).render(values, requirements=REQUIREMENTS, words=WORDS)
     return console.plain(page)
 
 
@@ -46,11 +45,11 @@ def text(report, has_links=True):
         why_not=console.why_not,
         pages=console.pages,
         suppressed_line=console.suppressed_line,
-        address_of=_address_of if has_links else lambda page: "",
+        address_of=address_of if has_links else lambda page: "",
     )
 
 
-def _address_of(page):
+def address_of(page):
     """Return where a page of the tutorial is on this machine, or "" if it has not been built."""
     path, hash_, anchor = page.partition("#")
     return (_SITE / path).as_uri() + hash_ + anchor if (_SITE / path).is_file() else ""

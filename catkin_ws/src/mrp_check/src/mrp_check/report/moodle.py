@@ -17,8 +17,7 @@ import re
 import zipfile
 
 from mrp_check.contract.finding import ERROR
-from mrp_check.contract.verdict import public
-from mrp_check.report import class_table, console, json_
+from mrp_check.report import class_table, console
 from mrp_check.report import html as page
 
 _COLUMNS = "Identifier,Full name,Grade,Maximum Grade,Last modified (grade),Feedback comments"
@@ -31,9 +30,9 @@ def text(submissions, spec):
     writer = csv.writer(file)
     writer.writerow(_COLUMNS.split(","))
     for one, name, number in _numbered(submissions):
-        points, most = f"{one.points(spec):g}", f"{class_table.most(spec):g}"
-        row = [f"Participant {number}", class_table.cell(name), points, most, "-"]
-        writer.writerow([*row, _comment(_shown(one, spec))])
+        mark, most = f"{one.mark(spec):g}", f"{class_table.most(spec):g}"
+        row = [f"Participant {number}", class_table.cell(name), mark, most, "-"]
+        writer.writerow([*row, _comment(one, spec)])
     return file.getvalue()
 
 
@@ -42,7 +41,7 @@ def write_pages(path, submissions, spec):
     with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
         for one, name, number in _numbered(submissions):
             folder = f"{name}_{number}_assignsubmission_file_"
-            report = page.text(_shown(one, spec), has_links=False)
+            report = page.text(one.shown(spec), has_links=False)
             archive.writestr(f"{folder}/feedback.html", report)
 
 
@@ -60,13 +59,11 @@ def _numbered(submissions):
     return [entry for entry in named if counts[entry[2]] == 1]
 
 
-def _shown(one, spec):
-    return public(json_.report_of(one.report), spec.hidden)
-
-
-def _comment(report):
-    """Return the HTML of what is wrong, a line for each cause."""
+def _comment(one, spec):
+    """Return the HTML of what a person has set, and of what is wrong, a line for each cause."""
+    report = one.shown(spec)
     causes = [f for f in report.findings if f.severity == ERROR and not f.consequence_of]
     said = [f"{console.where(f, report)}: {f.message}" for f in causes]
-    lines = [console.summary(report), *filter(None, [report.reason]), *said]
+    by_hand = class_table.said_of_mark(one, spec) if str(one.by_hand) else ""
+    lines = [console.summary(report), *filter(None, [report.reason, by_hand]), *said]
     return "<br>".join(html.escape(console.plain(line)) for line in lines)

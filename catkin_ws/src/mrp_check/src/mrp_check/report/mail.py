@@ -1,0 +1,26 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A submission's report as a text for a mail, without what the contract hides."""
+
+from __future__ import annotations
+
+from mrp_check.report import class_table, console
+
+
+def text(one, spec):
+    """Return the text for the student of one submission."""
+    report = one.shown(spec)
+    said = console.text(report) if report.requirements else console.summary(report)
+    mark = f"{one.name}: {class_table.said_of_mark(one, spec)}"
+    return console.plain("\n".join([spec.title, mark, report.reason, said])) + "\n"
+
+
+def write(folder, submissions, spec):
+    """Write NAME.txt for each submission; return a sentence on each that cannot be written."""
+    failed = []
+    for one in submissions:
+        file = folder / f"{one.name}.txt"
+        try:
+            file.write_text(text(one, spec), encoding="utf-8", errors="replace")
+        except OSError as error:
+            failed.append(f"{console.plain(str(file))} cannot be written: {error.strerror}.")
+    return failed
