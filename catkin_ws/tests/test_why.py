@@ -47,6 +47,12 @@ NO_ERRORS = (
     "[INFO] [1795222168.878456]: [PUBLISHER PY NODE] namespace of node = /mrp/publisher_py_node",
     "[ 50%] Built target publisher_cpp_node",
     "process[rosout-1]: started with pid [4242]",
+    "fatal: not a git repository (or any of the parent directories): .git",
+    "npm ERR! code ERESOLVE\nnpm ERR! ERESOLVE unable to resolve dependency tree",
+    "ORA-00942: table or view does not exist",
+    "! LaTeX Error: File `biblatex.sty' not found.",
+    "The name 'Console' does not exist in the current context",
+    "Trying to getState() when no goal is running. You are incorrectly using SimpleActionClient",
 )
 PACKAGE_XML = """<package format="2">
 <name>a</name><version>0.1.0</version><description>a</description>

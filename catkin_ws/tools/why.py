@@ -57,6 +57,8 @@ _WORD = re.compile(r"[^\W\d_]+|\d+")
 _NAME = re.compile(r"""'[^'\s]+'|"[^"\s]+"|\[[^][\s]+\]""")
 # A text is near an entry if it has this part of the entry's words, or the entry this part of its.
 _OF_ENTRY, _OF_TEXT = 0.5, 0.7
+# It also shares rare words with the entry, not "does not exist" alone, or has all of its words.
+_SCORE = 18.5
 _TOGETHER = 3  # lines: long messages are broken into that many
 # Lines around any error, which say nothing of it.
 _EVERYWHERE = re.compile(
@@ -177,7 +179,7 @@ class Index:
         best = {}
         for words in _passages(text):
             for row, number, score in self._search(words):
-                if score > best.get(number, 0) and _is_near(set(words), self._sure[row - 1]):
+                if score > best.get(number, 0) and _is_near(set(words), self._sure[row - 1], score):
                     best[number] = score
         ranked = [self._entries[number] for number in sorted(best, key=lambda one: -best[one])]
         ends = [one for one in ranked if one.above][1:]
@@ -195,9 +197,10 @@ class Index:
             yield from self._table.execute(query, (" OR ".join(sorted(terms)),))
 
 
-def _is_near(words, others):
+def _is_near(words, others, score):
     shared = words & others
-    enough = len(shared) > 1 or len(others) == 1
+    enough = score >= _SCORE or others <= words
+    enough = enough and (len(shared) > 1 or len(others) == 1)
     return enough and (
         len(shared) / len(others) >= _OF_ENTRY or len(shared) / len(words) >= _OF_TEXT
     )
