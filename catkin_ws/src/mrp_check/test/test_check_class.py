@@ -77,7 +77,7 @@ def test_each_folder_is_a_submission(tmp_path):
     hand_in(tmp_path / "class", "anna")
     room = Room(tmp_path / "class")
     assert room.verdicts() == {"anna": check.FINDINGS, "berta": check.FINDINGS}
-    assert sorted(line.split(": ", 1)[1] for line in room.said) == [
+    assert sorted(line.split(";")[0].split(": ", 1)[1] for line in room.said) == [
         "anna: findings",
         "berta: findings",
     ]
@@ -104,6 +104,32 @@ def test_jobs_says_how_many_are_checked_at_a_time(tmp_path, jobs):
     assert set(Together(tmp_path / "class", jobs=options.jobs).verdicts().values()) == {
         check.FINDINGS
     }
+
+
+@proves(
+    "As each check ends, a line says which others run, and about how many minutes are left.",
+)
+def test_progress_says_what_runs_and_how_long_it_takes(tmp_path):
+    """The check of anna ends while that of berta runs."""
+    for name in ("anna", "berta"):
+        hand_in(tmp_path / "class", name)
+    begun, ended, said = threading.Event(), threading.Event(), []
+
+    def progress(line):
+        said.append(line)
+        ended.set()
+
+    class OneByOne(Room):
+        def report_of(self, package_folder, name):
+            if name == "berta":
+                begun.set()
+            assert (begun if name == "anna" else ended).wait(DEADLINE)
+            return super().report_of(package_folder, name)
+
+    OneByOne(tmp_path / "class", progress=progress).check()
+    assert re.fullmatch(r"1 of 2: anna: findings; about \d+ min left; now: berta", said[0])
+    assert said[1:] == ["2 of 2: berta: findings"]
+    assert classroom.minutes_left(seconds=90, ended=3, left=5) == 3
 
 
 def two_packages(folder):

@@ -3,6 +3,7 @@
 
 import dataclasses
 import html.parser
+import io
 import json
 import pathlib
 import re
@@ -264,3 +265,15 @@ def test_what_is_suppressed_is_shown_with_its_reason():
         {"kind": "inSource", "justification": "It is kept elsewhere."}
     ]
     assert one.verdict == check.MET
+
+
+DIGITS = "0123456789abcdefghij"
+
+
+def test_progress_is_one_line_of_a_terminal_and_whole_in_a_log(monkeypatch):
+    monkeypatch.setenv("COLUMNS", "20")
+    for is_terminal, said in ((True, "\r\x1b[Kcheck: 0123456789ab"), (False, f"check: {DIGITS}\n")):
+        stream = io.StringIO()
+        monkeypatch.setattr(stream, "isatty", lambda answer=is_terminal: answer)
+        console.Progress(stream).show(DIGITS)
+        assert stream.getvalue() == said

@@ -12,6 +12,7 @@ from __future__ import annotations
 import concurrent.futures
 import hashlib
 import json
+import math
 import os
 import pathlib
 import signal
@@ -19,6 +20,7 @@ import subprocess
 import sys
 import tempfile
 import threading
+import time
 
 from mrp_check import confine
 from mrp_check.check import scratch_folder
@@ -34,6 +36,7 @@ from mrp_check.student.package import Package
 JOBS = 2
 _HERE = pathlib.Path(__file__).resolve().parents[1]
 _CHUNK = 2**20  # bytes that are read at once
+_MOST_NAMED = 4  # in the sentence on the progress
 _GRACE = 60  # seconds that a check may take beyond its own limit
 
 
@@ -59,13 +62,13 @@ class Classroom:
         path = pathlib.Path(folder).resolve()
         self.results = path.with_name(path.name + ".checked")
         self._running, self._stopped, self._lock = set(), False, threading.Lock()
-        self._common = {}
+        self._common, self._begun, self._now, self._ended = {}, 0.0, [], 0
         self._headers, self._reading = pathlib.Path(), threading.Lock()
 
     def check(self):
         """Check all that must be; return a Submission of each, in the order of their names."""
         self.results.mkdir(parents=True, exist_ok=True)
-        self._common = self._depended_on()
+        self._common, self._begun = self._depended_on(), time.monotonic()
         with tempfile.TemporaryDirectory(prefix="mrp_check_class_") as folder:
             self._headers = pathlib.Path(folder) / "ros.pch"
             with concurrent.futures.ThreadPoolExecutor(self.jobs) as pool:
@@ -82,7 +85,14 @@ class Classroom:
 
     def _say(self, number, one):
         kept = ", as before" if one.kept else ""
-        self.progress(f"{number} of {len(self.entries)}: {one.name}: {one.report['verdict']}{kept}")
+        said = [f"{number} of {len(self.entries)}: {one.name}: {one.report['verdict']}{kept}"]
+        left = len(self.entries) - number
+        if left and self._ended:
+            minutes = minutes_left(time.monotonic() - self._begun, self._ended, left)
+            said.append(f"about {minutes} min left")
+        if self._now:
+            said.append(f"now: {', '.join(self._now[:_MOST_NAMED])}")
+        self.progress("; ".join(said))
 
     def _checked(self, entry):
         """Return a Submission, whatever happens: what is wrong with one stops no other."""
@@ -104,7 +114,12 @@ class Classroom:
             if kept and kept.get("depends_on") == depends_on:
                 return Submission(entry.name, kept["report"], True, depends_on)
             package = package or self._package(entry, scratch)
-            report = self.report_of(package.root, entry.name)
+            self._now.append(entry.name)
+            try:
+                report = self.report_of(package.root, entry.name)
+            finally:
+                self._now.remove(entry.name)
+                self._ended += 1
         if report["verdict"] != UNCHECKED:
             new = file.with_suffix(".new")
             new.write_text(json.dumps({"depends_on": depends_on, "report": report}))
@@ -205,6 +220,11 @@ class Classroom:
             confine.stop()
             for popen in self._running:
                 _kill(popen)
+
+
+def minutes_left(seconds, ended, left):
+    """Return how long the rest takes, at most, if so many checks ended in so many seconds."""
+    return math.ceil(seconds / ended * left / 60)
 
 
 def _kill(popen):

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import os
 import re
+import shutil
 import textwrap
 import time
 
@@ -39,10 +40,12 @@ class Progress:
         self.terminal = stream.isatty() and began is None
 
     def show(self, sentence):
-        end = "" if self.terminal else "\n"
-        start = "\r\x1b[K" if self.terminal else ""
+        start, end = ("\r\x1b[K", "") if self.terminal else ("", "\n")
         passed = "" if self.began is None else f" {time.monotonic() - self.began:5.1f} s "
-        print(f"{start}check:{passed} {plain(sentence)}", end=end, file=self.stream, flush=True)
+        said = f"check:{passed} {plain(sentence)}"
+        if self.terminal:  # the next one overwrites one line
+            said = said[: shutil.get_terminal_size().columns - 1]
+        print(f"{start}{said}", end=end, file=self.stream, flush=True)
 
     def clear(self):
         if self.terminal:
