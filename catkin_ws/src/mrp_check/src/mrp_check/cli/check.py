@@ -55,6 +55,12 @@ OF_CLASS = {  # of the submissions, the contract, and the folder of the submissi
         lambda checked, contract, _: moodle.text(checked, contract),
     ),
 }
+FLAGS = {  # what --help says of each
+    "any": "check a package that has no contract: report what fails",
+    "public": "leave the contract's hidden requirements out of the reports",
+    "github": "print the findings as annotations of GitHub Actions, too",
+    "timing": "show after how many seconds each part of the check begins",
+}
 
 
 def main(arguments=None):
@@ -80,21 +86,15 @@ def parser():
     what.add_argument("--class", dest="class_", metavar="DIR", help=each)
     which = "check the package NAME where there are several"
     parser.add_argument("--package", default="", metavar="NAME", help=which)
-    without = "check a package that has no contract: report what fails"
-    parser.add_argument("--any", action="store_true", help=without)
     parser.add_argument(
         "--spec", default="pub_sub", metavar="FILE", help="the contract (default: %(default)s)"
     )
-    hidden = "leave the contract's hidden requirements out of the reports"
-    parser.add_argument("--public", action="store_true", help=hidden)
     for option, (text, _) in {**OF_PACKAGE, **OF_CLASS}.items():
         parser.add_argument(f"--{option}", metavar="FILE", help=text)
     set_ = "with --class: take late days, maxima and overrides of students' points from this CSV"
     parser.add_argument("--by-hand", metavar="FILE", help=set_)
-    annotations = "print the findings as annotations of GitHub Actions, too"
-    parser.add_argument("--github", action="store_true", help=annotations)
-    timing = "show after how many seconds each part of the check begins"
-    parser.add_argument("--timing", action="store_true", help=timing)
+    for flag, text in FLAGS.items():
+        parser.add_argument(f"--{flag}", action="store_true", help=text)
     number = "with --class: check N at the same time, 1 to 64 (default: %(default)s)"
     most, jobs = range(1, 65), classroom.JOBS
     parser.add_argument("--jobs", type=int, choices=most, default=jobs, metavar="N", help=number)
@@ -123,7 +123,7 @@ def _seconds(text):
 
 def run(options):
     """Check what the options say, write the reports, and return the exit code."""
-    of_package = {*OF_PACKAGE, "only", "any", "public", "github", "timing"} - {*OF_CLASS}
+    of_package = {*OF_PACKAGE, *FLAGS, "only"} - {*OF_CLASS}
     of_class = {*OF_CLASS, "by_hand"} - {*OF_PACKAGE}
     try:
         for name in sorted(of_package if options.class_ else of_class):

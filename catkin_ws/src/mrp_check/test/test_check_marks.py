@@ -1,0 +1,199 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The marks of a class: what a person sets stands apart, and what has moved has its reason."""
+
+import csv
+import dataclasses
+import re
+
+import pytest
+from check_rules import hand_in
+from mrp_check import check
+from mrp_check.cli import check as check_command
+from mrp_check.cli import classroom
+from mrp_check.contract import by_hand, errors, spec
+from mrp_check.report import class_table, moved
+from mrp_check.rules import REQUIREMENTS
+from mrp_testing.proves import proves
+from test_check_class import SPEC_FILE, Room, Tags
+
+pytestmark = pytest.mark.quick
+
+
+BY_HAND = """student,late_days,maximum,override,reason,by
+anna,2,,,,
+berta,1,30,35.5,"the demo, too",B. Roe
+
+carl,,20,,,
+dora,30,,,,
+"""
+LATE = dataclasses.replace(spec.read(SPEC_FILE), late=spec.Late(points=2))
+
+
+def written(folder, text, encoding="utf-8"):
+    file = folder / "hand.csv"
+    file.write_bytes(text.encode(encoding))
+    return file
+
+
+@proves(
+    "student is a submission's name, and each other column or cell can be left out.",
+    "override counts instead of the points that were measured; late days take points off, and no "
+    "mark is above maximum.",
+    "The tables show the points that were measured, what was set by hand, and the mark.",
+)
+def test_a_person_s_marks_stand_apart_from_what_was_measured(tmp_path):
+    for name in ("anna", "berta", "carl", "dora", "zoe"):
+        hand_in(tmp_path / "class", name)
+    room, most = Room(tmp_path / "class"), class_table.most(LATE)
+    file = written(tmp_path, BY_HAND, "utf-8-sig")
+    found = by_hand.read(file, [entry.name for entry in room.entries], most, LATE.late)
+    results = room.check()
+    for one in results:
+        one.by_hand = found.get(one.name, one.by_hand)
+    measured = most - 2
+    marks = {"anna": measured - 4, "berta": 30, "carl": 20, "dora": 0, "zoe": measured}
+    rows = list(csv.DictReader(class_table.csv_text(results, LATE).splitlines()))
+    assert {row["submission"]: float(row["mark"]) for row in rows} == marks
+    assert {float(row["points"]) for row in rows} == {measured}
+    assert [row["by_hand"] for row in rows] == [
+        "2 days late: -4",
+        "points set to 35.5; 1 day late: -2; at most 30 (B. Roe: the demo, too)",
+        "at most 20",
+        "30 days late: -60",
+        "",
+    ]
+    page = Tags(class_table.html_text(results, LATE, tmp_path))
+    assert page.tags.count("td") == len(results) * (5 + len(REQUIREMENTS))
+    assert {*rows[1].values()} & {*page.texts} >= {rows[1]["by_hand"], "30"}
+    said = class_table.text(results, LATE)
+    assert f"anna: mark {marks['anna']} of {most}, by hand: 2 days late: -4" in said
+    assert "zoe: mark" not in said
+
+
+@proves(
+    "The contract says what a late day takes off: late: {points: 2}, or late: {percent: 10} of "
+    "all points.",
+)
+def test_late_days_take_points_or_percent():
+    assert spec.Late(points=1.5).off(2, 40) == 3
+    assert spec.Late(percent=10).off(2, 40) == 8
+
+
+@proves(
+    "A line that names nobody, a number that is none, or an override without a reason is an error.",
+)
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        ("student\nanna\nana\n", r":3: there is no submission 'ana'\. Did you mean 'anna'\?"),
+        ("student,by\nanna,\n,B. Roe\n", r":3: there is no submission ''\."),
+        ("student\nanna\nberta\nanna\n", r":4: 'anna' stands twice: see line 2\."),
+        ("student,late_days\nanna,two\n", r":2: late_days: expected a number .* found 'two'\."),
+        ("student,late_days\nanna,-1\n", r":2: late_days: .* found '-1'\."),
+        ("student,late_days\nanna,0.5\n", r":2: late_days: expected whole days; found 0\.5\."),
+        ("student,maximum\nanna,nan\n", r":2: maximum: expected a number .* found 'nan'\."),
+        ("student,maximum\nanna,41\n", r":2: maximum: expected a number from 0 to 40; found"),
+        ("student,override\nanna,3\n", r":2: override is 3, but no reason is given\."),
+        ("student,override,reason\n\nanna,'7,x\n", r":3: override: .* found ''7'\."),
+        ("student,reason\nanna,a,b\n", r":2: expected 2 cells, .*; found 3\."),
+        ("student;maximum\nanna;3\n", r":1: there is no column 'student;maximum'"),
+        ("student,maximun\n", r":1: there is no column 'maximun'.* Did you mean 'maximum'\?"),
+        ("student,by,by\n", r":1: the column 'by' stands twice\."),
+        ("by\nanna\n", r":1: expected the column 'student'; it is missing\."),
+        ('student,reason\nanna,"x\ny"\n"berta\n', r":4: this is no valid CSV"),
+        ("student\nj\xfcrgen\n", r":2: expected UTF-8 text"),
+        ("", r":1: expected a line with the columns: student, late_days"),
+    ],
+)
+def test_a_line_that_cannot_be_used_is_an_error(tmp_path, text, says):
+    file = written(tmp_path, text, "latin-1")
+    with pytest.raises(errors.CannotCheck) as error:
+        by_hand.read(file, ["anna", "berta"], 40, spec.Late(percent=10))
+    assert str(error.value).startswith(str(file))
+    assert re.search(says, str(error.value)), error.value
+    assert "\n" not in str(error.value)
+
+
+@proves("Then nothing is checked.")
+def test_nothing_is_checked_before_the_file_can_be_used(tmp_path, monkeypatch, capsys):
+    hand_in(tmp_path / "class", "anna")
+    file = written(tmp_path, "student,late_days\nanna,1\n")
+    monkeypatch.setattr(classroom.Classroom, "check", lambda room: pytest.fail("it checks"))
+    with pytest.raises(SystemExit) as end:
+        check_command.main(["--class", str(tmp_path / "class"), "--by-hand", str(file)])
+    assert end.value.code == 2
+    assert f"{file}:2: late_days is 1, but the contract does not say" in capsys.readouterr().err
+
+
+def test_a_name_may_be_composed_in_two_ways(tmp_path):
+    file = written(tmp_path, "student,maximum\nJ\u00fcrgen,3\n")
+    assert by_hand.read(file, ["Ju\u0308rgen"], 40, None)["Ju\u0308rgen"].maximum == 3
+
+
+def marked(tmp_path, contract, package="", **broken):
+    """Return a submission of each name, after its mark has been compared with the last one."""
+    results = [
+        class_table.Submission(
+            name,
+            {
+                "verdict": check.FINDINGS if ids else check.MET,
+                "package": "a_pkg",
+                "requirements": {
+                    id_: check.BROKEN if id_ in ids else check.MET for id_ in REQUIREMENTS
+                },
+                "findings": [],
+            },
+            depends_on={"package": name + package, "contract": "1", "checker": "1"},
+        )
+        for name, ids in broken.items()
+    ]
+    moved.compare(tmp_path, results, contract)
+    return results
+
+
+def moves(results):
+    return {one.name: one.moved for one in results}
+
+
+@proves(
+    "The tables say whose marks have moved and why, such as 9 of 11 -> 9 of 10: wrap is no longer "
+    "required.",
+)
+def test_who_calls_again_sees_whose_marks_have_moved_and_why(tmp_path):
+    contract, all_ = spec.read(SPEC_FILE), len(REQUIREMENTS)
+    first = dataclasses.replace(contract, points={"wrap": 3})
+    other = dataclasses.replace(contract, points={"wrap": 0, "spin": 3})
+    class_ = {"anna": ["wrap", "queue"], "berta": []}
+    assert moves(marked(tmp_path, first, **class_)) == {"anna": "", "berta": ""}
+    why = "spin is worth 3 now, before 1; wrap is no longer required"
+    changed = {
+        "anna": f"{all_ - 2} of {all_ + 2} -> {all_} of {all_ + 1}: {why}",
+        "berta": f"{all_ + 2} of {all_ + 2} -> {all_ + 1} of {all_ + 1}: {why}",
+    }
+    assert moves(marked(tmp_path, other, **class_)) == changed
+    assert moves(marked(tmp_path, other, **class_)) == changed
+    results = marked(tmp_path, other, **class_, carl=[])
+    assert moves(results) == {**changed, "carl": ""}
+
+    rows = list(csv.DictReader(class_table.csv_text(results, other).splitlines()))
+    assert [row["moved"] for row in rows] == [*changed.values(), ""]
+    assert changed["anna"] in Tags(class_table.html_text(results, other, tmp_path)).texts
+    assert f"anna: {changed['anna']}" in class_table.text(results, other)
+
+
+def test_what_a_student_or_a_person_has_changed_moves_a_mark_too(tmp_path):
+    contract, all_ = spec.read(SPEC_FILE), len(REQUIREMENTS)
+    ids = [*REQUIREMENTS][:8]
+    marked(tmp_path, contract, anna=ids, berta=["wrap"])
+    found = marked(tmp_path, contract, package="2", anna=[], berta=["wrap"])
+    assert moves(found) == {
+        "anna": f"{all_ - 8} -> {all_} of {all_}: {', '.join(ids[:5])}, 3 more are met now,"
+        " before not met; changed: package",
+        "berta": "",
+    }
+    found[1].by_hand = by_hand.ByHand(maximum=3)
+    moved.compare(tmp_path, found, contract)
+    assert moves(found) == {
+        "anna": "",
+        "berta": f"{all_ - 1} -> 3 of {all_}: by hand",
+    }
