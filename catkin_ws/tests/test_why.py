@@ -106,8 +106,9 @@ def roscore(tmp_path_factory):
 def env(request, tmp_path, known_compiler, roscore):
     """The environment of a user with a home of its own, and a master if the entry needs one. A
     master that entries share would go on to know nodes that were ended and could not say so."""
-    # Below make, a make says make[1].
-    env = {k: v for k, v in os.environ.items() if not k.startswith(("CCACHE", "MAKE", "MFLAGS"))}
+    # Below make, a make says make[1]. The logs belong into the home.
+    not_theirs = ("CCACHE", "MAKE", "MFLAGS", "ROS_LOG_DIR")
+    env = {k: v for k, v in os.environ.items() if not k.startswith(not_theirs)}
     needs = request.getfixturevalue("entry").needs.split()
     port = free_port()
     if "roscpp" in needs:
