@@ -57,8 +57,9 @@ _WORD = re.compile(r"[^\W\d_]+|\d+")
 _NAME = re.compile(r"""'[^'\s]+'|"[^"\s]+"|\[[^][\s]+\]""")
 # A text is near an entry if it has this part of the entry's words, or the entry this part of its.
 _OF_ENTRY, _OF_TEXT = 0.5, 0.7
-# It also shares rare words with the entry, not "does not exist" alone, or has all of its words.
-_SCORE = 18.5
+# It also shares more with the entry than "does not exist" and the like, or has all of its words.
+_SCORE = 15
+_COMMON = set("a an and are be does error exist in is no not of or such that the this to".split())
 _TOGETHER = 3  # lines: long messages are broken into that many
 # Lines around any error, which say nothing of it.
 _EVERYWHERE = re.compile(
@@ -199,7 +200,7 @@ class Index:
 
 def _is_near(words, others, score):
     shared = words & others
-    enough = score >= _SCORE or others <= words
+    enough = others <= words or (score >= _SCORE and not shared <= _COMMON)
     enough = enough and (len(shared) > 1 or len(others) == 1)
     return enough and (
         len(shared) / len(others) >= _OF_ENTRY or len(shared) / len(words) >= _OF_TEXT
