@@ -61,14 +61,18 @@ def test_one_that_hangs(tmp_path, seconds):
     (tmp_path / "class" / "berta").mkdir()
     table = tmp_path / "table.csv"
     page = tmp_path / "table.html"
+    by_hand = tmp_path / "hand.csv"
+    by_hand.write_text("student,override,reason\nberta,3,I saw it.\n")
     arguments = ("--class", tmp_path / "class", "--timeout", 5, "--csv", table, "--html", page)
-    with command(*arguments) as checker:
+    with command(*arguments, "--by-hand", by_hand) as checker:
         output, errors = checker.communicate()
     assert checker.returncode == 1, errors
     rows = list(csv.DictReader(table.read_text().splitlines()))
     assert [row["submission"] for row in rows] == ["anna", "berta"]
     assert rows[0]["verdict"] in (check.FINDINGS, check.UNCHECKED)
     assert rows[1]["verdict"] == check.UNCHECKED
+    assert (rows[0]["mark"], rows[1]["points"], rows[1]["mark"]) == (rows[0]["points"], "0", "3")
+    assert (tmp_path / "class.checked" / ".marks.json").is_file()
     assert "berta" in output
     assert "2 of 2: " in errors
     assert "berta" in page.read_text()
