@@ -26,6 +26,7 @@ extensions = [
     "picture",
     "exercises",
     "error_texts",
+    "contract_keys",
     "book",
 ]
 

@@ -29,6 +29,7 @@ def run(*arguments, **variables):
 @proves(
     "The exit code is 0 if all requirements are met, 1 if one is not, and 2 if the package could "
     "not be checked.",
+    "It then runs nothing, and ends with exit code 2.",
 )
 @pytest.mark.parametrize(
     ("arguments", "says"),
@@ -36,8 +37,9 @@ def run(*arguments, **variables):
         (["no_such_folder"], "check: There is no folder no_such_folder.\n"),
         ([os.devnull], "check: /dev/null is no folder; expected the folder of a package.\n"),
         ([".", "--spec", "none.yaml"], "check: none.yaml: the spec cannot be read: No such file"),
+        ([".", "--spec", __file__], f"check: {__file__}:"),
     ],
-    ids=range(3),
+    ids=range(4),
 )
 def test_what_cannot_be_checked_is_exit_code_2(arguments, says):
     done = run(*arguments)

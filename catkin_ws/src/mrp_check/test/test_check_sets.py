@@ -95,6 +95,9 @@ def shown(findings):
     "This is the tutorial's spec, and the tutorial's package meets it:",
     "relay.yaml is for a node that doubles what it receives, with its own type of message.",
     "replay.yaml is for a node that publishes what is in a bag.",
+    "talker_listener_py.yaml and talker_listener_cpp.yaml are for the pair of the ROS wiki: texts, "
+    "a loop, and no launch file.",
+    "A package meets it, and packages in which one thing is wrong do not:",
     "Exit code 0 means that all requirements are met.",
 )
 @pytest.mark.parametrize("style", parameters(check_sets.STYLES, str))
@@ -118,6 +121,7 @@ def test_correct_package_is_met(style, tmp_path, run_check):
     "not be checked.",
     "They check packages with one defect each, and it reports the right file and line, and "
     "nothing else.",
+    "A package meets it, and packages in which one thing is wrong do not:",
     "Check: make check PKG=~/catkin_ws/src/my_package checks a package that you wrote.",
 )
 @pytest.mark.parametrize(

@@ -28,13 +28,15 @@ launch:
 """
 
 
-@proves("The folder specs has two more examples.")
+@proves("The folder specs has more examples:")
 def test_our_specs_can_be_read():
     names = {path.stem for path in spec.find("pub_sub").parent.iterdir()}
-    assert names == {"pub_sub", "relay", "replay"}
+    wiki = {"talker_listener_cpp", "talker_listener_py"}
+    assert names == {"pub_sub", "relay", "replay"} | wiki
     for name in names:
         contract = spec.read(spec.find(name))
-        assert contract.nodes and contract.topics and contract.launch.file
+        assert contract.nodes and contract.topics
+        assert bool(contract.launch.file) == contract.asks("launch-file") == (name not in wiki)
 
 
 def test_values_wrap_round():
@@ -58,13 +60,34 @@ def test_line_pattern():
     assert not spec.pattern(line, "/mrp/a").fullmatch("[A] /mrp/b has 12")
 
 
+def test_a_text_says_a_number():
+    topic = spec.Topic("a", "std_msgs/String", text="a (b) {value}.")
+    said = ("a (b) 12.", "a (b) -1.5.", "a (b) 12", "a b 12.", "a (b) {value}.", 3)
+    assert [topic.value_in(one) for one in said] == [12, -1.5, None, None, None, 3]
+
+
+def test_each_key_says_what_it_is():
+    """The page is made of it."""
+    schema = json.loads(spec.SCHEMA.read_text())
+    definitions = schema.pop("definitions")
+    for entry in (schema, *definitions.values()):
+        for key, value in entry.get("properties", {}).items():
+            referred = definitions[value["$ref"].split("/")[-1]] if "$ref" in value else {}
+            assert value.get("description") or referred.get("description"), key
+
+
+@proves("If a contract is wrong, the checker names the line and says what is wrong.")
 @pytest.mark.parametrize(
     ("old", "new", "says"),
     [
         ("title: An exercise\n", "", r":1: .*expected the key 'title'; it is missing\."),
         ("topic: a_topic", "topic: a_topik", r":8: .*no topic 'a_topik'.*mean 'a_topic'\?"),
         ("publishes:", "publish:", r":6: .*no key 'publish'.*mean 'publishes'\?"),
-        ("type: std_msgs/UInt32", "type: UInt32", r":4: topics\.a_topic\.type: 'UInt32' does not"),
+        (
+            "type: std_msgs/UInt32",
+            "type: UInt32",
+            r":4: topics\.a_topic\.type: expected a type such as",
+        ),
         ("type: std_msgs/UInt32", "type: 3", r":4: .*expected a text; found 3\."),
         ("topic: a_topic", "topic: a_topic\n      queue: 0", r":9: .*at least 1; found 0\."),
         ("topic: a_topic", "topic: a_topic\n    prints: ['[A']", r":9: .*no regular expression"),
@@ -95,8 +118,11 @@ def test_line_pattern():
             "messages: {Count: {count: uint23}}\nlaunch:",
             r":9: messages\.Count\.count: there is no message 'uint23'",
         ),
+        ("std_msgs/UInt32", "std_msgs/UInt32\n    text: a {value}", r":5: .*is a uint32\."),
+        ("std_msgs/UInt32", "std_msgs/String\n    text: hello", r":5: .*text with \{value\} in it"),
+        ("launch:", "not_asked: [quue]\nlaunch:", r":9: not_asked\.0: .*mean 'queue'\?"),
     ],
-    ids=range(22),
+    ids=range(25),
 )
 def test_wrong_spec_is_told_in_one_sentence(old, new, says, tmp_path):
     path = tmp_path / "wrong.yaml"
@@ -109,6 +135,15 @@ def test_wrong_spec_is_told_in_one_sentence(old, new, says, tmp_path):
     assert "\n" not in str(error.value)
     if "YAML" not in str(error.value):
         assert str(error.value).endswith(str(spec.SCHEMA))
+
+
+@pytest.mark.parametrize("key", ["values: {start: 1, step: 1}", "rises: true"])
+def test_only_numbers_count(key, tmp_path):
+    path = tmp_path / "wrong.yaml"
+    text = MINIMAL.replace("UInt32", "String") + "\n"
+    path.write_text(text.replace("topic: a_topic", f"topic: a_topic\n      {key}"))
+    with pytest.raises(SpecError, match=r":9: nodes\.a_node\.publishes\.\w+: data of .* no number"):
+        spec.read(path)
 
 
 def test_minimal_spec_can_be_read(tmp_path):

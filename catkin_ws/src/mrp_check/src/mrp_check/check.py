@@ -52,7 +52,7 @@ def check(
     if missing:
         raise CannotCheck(missing)
     rules = [rule for rule in RULES if rule.only != (ANY if spec else CONTRACT)]
-    asked = REQUIREMENTS if spec else {id_ for rule in rules for id_ in rule.ids}
+    asked = {id_ for rule in rules for id_ in rule.ids if not spec or spec.asks(id_)}
     ids = [id_ for id_ in REQUIREMENTS if id_ in asked and (id_ in only or not only)]
     with contextlib.nullcontext(kept) if kept else scratch_folder() as folder:
         case = (Case if spec else AnyCase)(package, spec, folder, timeout, progress)
@@ -183,7 +183,7 @@ class _Examination:
             },
             reason=" ".join(self.reasons),
             unseen={id_: unseen[id_] for id_ in self.ids if id_ in unseen},
-            left_out=[id_ for id_ in REQUIREMENTS if id_ not in self.asked],
+            left_out=[id_ for id_ in REQUIREMENTS if is_any and id_ not in self.asked],
             console=_console(known.get("observed")),
             suppressed=[finding for finding in suppressed if finding.id in self.ids],
             folder=package.root.resolve(),

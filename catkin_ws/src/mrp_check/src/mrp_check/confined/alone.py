@@ -123,7 +123,9 @@ class _Node:
     def _send_one(self, publisher: rospy.Publisher, value: int) -> None:
         try:
             message = self.message_class()
-            _set_field(message, self.plan.field, value)
+            text = self.plan.text
+            said = text.replace("{value}", str(value)) if text else value
+            _set_field(message, self.plan.field, said)
             publisher.publish(message)
         except Exception:  # another type than the contract's
             pass
@@ -236,7 +238,7 @@ class _Node:
         return events
 
 
-def _set_field(message: typing.Any, path: Optional[str], value: int) -> None:
+def _set_field(message: typing.Any, path: Optional[str], value: typing.Union[int, str]) -> None:
     *above, name = (path or "").split(".")
     for part in above:
         message = getattr(message, part)

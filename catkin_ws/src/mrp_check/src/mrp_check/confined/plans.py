@@ -96,6 +96,7 @@ class DirectNode:
     publishes: how many messages of it are enough; 0 if it publishes nothing by itself
     values: what it is sent at once; paced: what it is sent then, one by one
     field, type: of the messages in which it is sent these; None if it is sent nothing
+    text: what the field says, with {value} in the value's place; None: the value itself
     received: as of a LaunchNode
     hook: of a Python node
     """
@@ -108,6 +109,7 @@ class DirectNode:
     values: List[int]
     paced: List[int]
     field: Optional[str]
+    text: Optional[str]
     type: Optional[str]
     received: Optional[str]
     hook: Optional[Hook]

@@ -3,12 +3,41 @@
 
 from __future__ import annotations
 
-from typing import Any, Hashable, Iterable
+import typing
+from typing import Any, Hashable, Iterable, Mapping
 
-import jsonschema
 import yaml
 
 from mrp_check.contract.words import nearest
+
+if typing.TYPE_CHECKING:
+    import jsonschema  # the site, which shows words(), is built without it
+
+KINDS = {
+    "object": "keys with values",
+    "array": "a list",
+    "string": "a text",
+    "integer": "a whole number",
+    "number": "a number",
+    "boolean": "true or false",
+}
+LIMITS = {
+    "minimum": "at least",
+    "maximum": "at most",
+    "exclusiveMinimum": "more than",
+    "minLength": "a length of at least",
+    "minProperties": "entries: at least",
+    "maxProperties": "entries: at most",
+}
+
+
+def words(entry: Mapping[str, Any]) -> str:
+    """Return what a schema takes, in words: such as "a whole number, at least 1"."""
+    if "enum" in entry:
+        return f"one of: {', '.join(entry['enum'])}"
+    kind = entry.get("title") or KINDS[entry["type"]]
+    limits = ("exclusiveMinimum", "minimum", "maximum")
+    return ", ".join([kind, *(f"{LIMITS[key]} {entry[key]}" for key in limits if key in entry)])
 
 
 class Loader(yaml.SafeLoader):
@@ -44,31 +73,14 @@ def sentence(error: jsonschema.ValidationError) -> str:
     if error.validator == "required":
         missing = [key for key in error.validator_value if key not in error.instance]
         return f"expected the key '{missing[0]}'; it is missing."
-    kinds = {
-        "object": "keys with values",
-        "array": "a list",
-        "string": "a text",
-        "integer": "a whole number",
-        "number": "a number",
-        "boolean": "true or false",
-    }
     if error.validator == "type":
-        return f"expected {kinds[error.validator_value]}; found {_shown(error.instance)}."
+        return f"expected {KINDS[error.validator_value]}; found {_shown(error.instance)}."
     if error.validator == "enum":
-        allowed = ", ".join(map(str, error.validator_value))
-        return f"expected one of: {allowed}; found {_shown(error.instance)}."
+        return f"expected {words(error.schema)}; found {_shown(error.instance)}."
     if error.validator == "pattern":
-        return f"'{error.instance}' does not match {error.validator_value}."
-    limits = {
-        "minimum": "at least",
-        "maximum": "at most",
-        "exclusiveMinimum": "more than",
-        "minLength": "a length of at least",
-        "minProperties": "entries: at least",
-        "maxProperties": "entries: at most",
-    }
-    if error.validator in limits:
-        limit = f"{limits[error.validator]} {error.validator_value}"
+        return f"expected {words(error.schema)}; found {_shown(error.instance)}."
+    if error.validator in LIMITS:
+        limit = f"{LIMITS[error.validator]} {error.validator_value}"
         return f"expected {limit}; found {_shown(error.instance)}."
     return f"{error.message}."
 

@@ -19,20 +19,41 @@ from mrp_check.contract.resources import SHARES
 from mrp_check.contract.schema import Loader, near, no_such, sentence
 
 SCHEMA = resources.folder("schema") / "spec.json"
+_SCHEMA = json.loads(SCHEMA.read_text())
+_PAGE = "What can be said: pages/contract.html, which is made of"
+_NUMBER = re.compile(r"u?int\d+|float\d+|byte|char|bool")  # types of a message's fields
+_WHOLE, _DECIMALS = r"-?\d+", r"(?:\.\d+)?"
 PACKAGE = "PACKAGE"  # in a type: the package's own name
+
+
+def _default(key: str, *kind: str) -> Any:
+    """Return what a key has if it is left out: the schema says it, and the page made of that."""
+    entry = _SCHEMA["definitions"][kind[0]] if kind else _SCHEMA
+    return entry["properties"][key]["default"]
 
 
 @dataclasses.dataclass(frozen=True)
 class Topic:
     name: str
     type: str
-    field: str = "data"
-    namespace: str = "group"
+    field: str = _default("field", "topic")
+    namespace: str = _default("namespace", "topic")
+    text: str | None = None  # all that the field says, with {value} in the value's place
 
     def type_in(self, package_name: str) -> str:
         """Return the type with the package's name in it."""
         package, name = self.type.split("/")
         return f"{package_name if package == PACKAGE else package}/{name}"
+
+    def value_in(self, said: object) -> int | float | None:
+        """Return the number that the field's content says, or None: it may be of any type."""
+        if self.text and isinstance(said, str):
+            shape = re.escape(self.text).replace(r"\{value\}", f"({_WHOLE}({_DECIMALS}))")
+            found = re.fullmatch(shape, said)
+            if not found:
+                return None
+            return float(found.group(1)) if found.group(2) else int(found.group(1))
+        return said if isinstance(said, (int, float)) else None
 
 
 @dataclasses.dataclass(frozen=True)
@@ -53,9 +74,10 @@ class Publishes:
     topic: Topic
     queue: int | None = None
     period: float | None = None  # seconds
-    tolerance: float = 0.1  # as a part of the period
-    latched: bool = False
+    tolerance: float = _default("tolerance", "publishes")  # as a part of the period
+    latched: bool = _default("latched", "publishes")
     values: Values | None = None
+    rises: bool = _default("rises", "publishes")
 
 
 @dataclasses.dataclass(frozen=True)
@@ -71,7 +93,7 @@ class Relays:
     source: Topic
     target: Topic
     queue: int | None = None
-    times: int = 1
+    times: int = _default("times", "relays")
     modulus: int | None = None
 
     def of(self, value: int) -> int:
@@ -83,7 +105,8 @@ class Relays:
 @dataclasses.dataclass(frozen=True)
 class Node:
     name: str
-    language: str = "any"  # cpp, python or any
+    language: str = _default("language", "node")  # cpp, python or any
+    anonymous: bool = _default("anonymous", "node")
     file: str | None = None
     executable: str | None = None
     publishes: Publishes | None = None
@@ -110,18 +133,23 @@ class Node:
         """The line for a value that the node receives, one of `prints`, or None."""
         return next((line for line in self.prints if "{value}" in line), None)
 
+    def pattern(self, line: str, name: str | None = None) -> re.Pattern[str]:
+        """Return the compiled regular expression of one of `prints`: see below."""
+        topic = self.subscribing or self.publishing
+        return pattern(line, name, bool(topic and topic.text))
+
 
 @dataclasses.dataclass(frozen=True)
 class Launch:
-    file: str
+    file: str = ""  # without one, the checker starts the nodes by one of its own
     group: str | None = None
 
 
 @dataclasses.dataclass(frozen=True)
 class Shutdown:
-    signal: str = "SIGINT"
-    exit_code: int = 0
-    seconds: float = 10.0
+    signal: str = _default("signal", "shutdown")
+    exit_code: int = _default("exit_code", "shutdown")
+    seconds: float = _default("seconds", "shutdown")
 
 
 @dataclasses.dataclass(frozen=True)
@@ -141,11 +169,12 @@ class Spec:
     title: str
     topics: dict[str, Topic]
     nodes: dict[str, Node]
-    launch: Launch
+    launch: Launch = Launch()
     shutdown: Shutdown = Shutdown()
     messages: dict[str, dict[str, str]] = dataclasses.field(default_factory=dict)
-    install: bool = False
+    install: bool = _default("install")
     points: dict[str, float] = dataclasses.field(default_factory=dict)
+    not_asked: tuple[str, ...] = ()  # requirements that do not count
     hidden: tuple[str, ...] = ()  # requirements that count, and that no student sees
     late: Late | None = None
     is_contract: bool = True  # if not, it only lists the nodes of a package
@@ -155,24 +184,29 @@ class Spec:
         group = self.launch.group if group is None else group
         return f"/{group}/{node_name}" if group else f"/{node_name}"
 
+    def asks(self, id_: str) -> bool:
+        """Return whether a requirement counts."""
+        of_launch = id_.startswith("launch-") and not self.launch.file
+        return not of_launch and id_ not in self.not_asked
+
     def points_of(self, id_: str) -> float:
         """Return the points of a requirement: 1 where the spec does not say."""
-        return self.points.get(id_, 1)
+        return self.points.get(id_, 1) if self.asks(id_) else 0
 
     def without_marks(self) -> Spec:
         """Return all that a check depends on: a report does not change with the rest."""
         return dataclasses.replace(self, points={}, hidden=(), late=None)
 
 
-def pattern(line: str, name: str | None = None) -> re.Pattern[str]:
+def pattern(line: str, name: str | None = None, has_decimals: bool = False) -> re.Pattern[str]:
     """Return the compiled regular expression of a line in `prints`.
 
     name: the node's full name, put in for {name}; any name if None. {value} is any whole number,
-    which is the group `value`.
+    or any number if it has decimals, which is the group `value`.
     """
     name_pattern = re.escape(name) if name is not None else r"\S*"
-    text = line.replace("{name}", name_pattern).replace("{value}", r"(?P<value>-?\d+)")
-    return re.compile(text)
+    value = f"(?P<value>{_WHOLE}{_DECIMALS if has_decimals else ''})"
+    return re.compile(line.replace("{name}", name_pattern).replace("{value}", value))
 
 
 def find(name: str) -> pathlib.Path:
@@ -220,7 +254,7 @@ class _Reader:
         """Raise SpecError about the entry at `place`, a list of keys and indices."""
         line = self.line(place)
         name = ".".join(map(str, place)) or "the spec"
-        raise SpecError(f"{self.path}:{line}: {name}: {sentence} What can be said: {SCHEMA}")
+        raise SpecError(f"{self.path}:{line}: {name}: {sentence} {_PAGE} {SCHEMA}")
 
     def line(self, place: Iterable[str | int]) -> int:
         """Return the line of the entry at `place`, or of the nearest one above it."""
@@ -239,8 +273,7 @@ class _Reader:
         return line
 
     def spec(self, data: Entry) -> Spec:
-        schema = json.loads(SCHEMA.read_text())
-        errors = list(jsonschema.Draft7Validator(schema).iter_errors(data))
+        errors = list(jsonschema.Draft7Validator(_SCHEMA).iter_errors(data))
         if errors:
             error = min(
                 errors, key=lambda error: (self.line(error.path), list(map(str, error.path)))
@@ -253,22 +286,48 @@ class _Reader:
             nodes={
                 name: self.node(name, entry or {}, topics) for name, entry in data["nodes"].items()
             },
-            launch=Launch(**data["launch"]),
+            launch=Launch(**data.get("launch", {})),
             shutdown=Shutdown(**data.get("shutdown", {})),
             messages=data.get("messages", {}),
-            install=data.get("install", False),
+            install=data.get("install", Spec.install),
             points=data.get("points", {}),
+            not_asked=tuple(data.get("not_asked", ())),
             hidden=tuple(data.get("hidden", ())),
             late=Late(**data["late"]) if "late" in data else None,
         )
         self.own_messages(spec.messages)
-        for topic in topics.values():
-            self.field(topic, spec.messages)
+        kinds = {name: self.field(topic, spec.messages) for name, topic in topics.items()}
+        for name, topic in topics.items():
+            if topic.text and kinds[name] != "string":
+                self.fail(
+                    ["topics", name, "text"],
+                    f"only a string has a text; {topic.field} of {topic.type} is a {kinds[name]}.",
+                )
+        for node in spec.nodes.values():
+            self.numbers(node, kinds)
         for id_ in spec.points:
             self.requirement(["points", id_], id_)
-        for index, id_ in enumerate(spec.hidden):
-            self.requirement(["hidden", index], id_)
+        for key in ("not_asked", "hidden"):
+            for index, id_ in enumerate(data.get(key, ())):
+                self.requirement([key, index], id_)
         return spec
+
+    def numbers(self, node: Node, kinds: Mapping[str, str]) -> None:
+        """See that a topic has numbers, if the node is to publish certain ones.
+
+        kinds: topic -> the type of its field
+        """
+        role = node.publishes
+        if role is None:
+            return
+        topic = role.topic
+        for key in ("values", "rises"):
+            if getattr(role, key) and not topic.text and not _NUMBER.fullmatch(kinds[topic.name]):
+                self.fail(
+                    ["nodes", node.name, "publishes", key],
+                    f"{topic.field} of {topic.type} is a {kinds[topic.name]}, and no number."
+                    " A string has one if the topic has a 'text'.",
+                )
 
     def requirement(self, place: Sequence[str | int], id_: str) -> None:
         """See that there is such a requirement."""
@@ -300,8 +359,8 @@ class _Reader:
             self.fail(place, f"there is no message '{kind}' on this machine." + near(kind, names))
         return dict(zip(found.names, found.types))
 
-    def field(self, topic: Topic, messages: Messages) -> None:
-        """See that a topic's type is one that there is, and has the topic's field."""
+    def field(self, topic: Topic, messages: Messages) -> str:
+        """See that a topic's type is one that there is, and return the type of its field."""
         kind, place = topic.type, ["topics", topic.name, "type"]
         for part in topic.field.split("."):
             package, _, message = kind.partition("/")
@@ -320,6 +379,7 @@ class _Reader:
                     + near(part, fields),
                 )
             kind = fields[part]
+        return kind
 
     def node(self, name: str, entry: Entry, topics: dict[str, Topic]) -> Node:
         def topic(role: str, key: str = "topic") -> Topic:
@@ -346,7 +406,7 @@ class _Reader:
                     "a node that relays has no 'publishes' or 'subscribes' besides: 'from' and"
                     " 'to' say both.",
                 )
-        rest = {key: entry[key] for key in ("language", "file", "executable") if key in entry}
+        rest = {key: entry[key] for key in ("language", "anonymous", "executable") if key in entry}
         return Node(name, prints=self.lines(name, entry.get("prints", ())), **roles, **rest)
 
     def lines(self, node: str, lines: Sequence[str]) -> tuple[str, ...]:

@@ -77,8 +77,9 @@ def csv_text(submissions, spec):
     """Return one line for each submission: name, verdict, points, mark, and each requirement."""
     file = io.StringIO()
     writer = csv.writer(file)
+    asked = [id_ for id_ in REQUIREMENTS if spec.asks(id_)]
     columns = ["submission", "package", "verdict", "points", "of", "by_hand", "mark", "moved"]
-    writer.writerow([*columns, *REQUIREMENTS, "why"])
+    writer.writerow([*columns, *asked, "why"])
     for one in submissions:
         writer.writerow(
             [
@@ -90,7 +91,7 @@ def csv_text(submissions, spec):
                 cell(str(one.by_hand)),
                 f"{one.mark(spec):g}",
                 cell(one.moved),
-                *map(one.verdict_on, REQUIREMENTS),
+                *map(one.verdict_on, asked),
                 cell(" | ".join(one.causes()[:_MOST_CAUSES])),
             ]
         )

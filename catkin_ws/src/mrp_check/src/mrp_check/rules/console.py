@@ -10,7 +10,6 @@ from typing import Iterator, Sequence
 from mrp_check import evidence
 from mrp_check.confined.places import Kind
 from mrp_check.confined.seen import Log
-from mrp_check.contract import spec as specs
 from mrp_check.contract.finding import Finding
 from mrp_check.contract.requirements import CONTRACT, Requirement, Rule
 from mrp_check.running.node import Node, each_node
@@ -48,12 +47,13 @@ def _runs_of(node: Node) -> Iterator[tuple[str, Sequence[Log], Sequence[str]]]:
 
 
 def _line_findings(node: Node, line: str) -> Iterator[Finding]:
-    runs = [(path, logs, lines, specs.pattern(line, path)) for path, logs, lines in _runs_of(node)]
+    wanted_of = node.wanted.pattern
+    runs = [(path, logs, lines, wanted_of(line, path)) for path, logs, lines in _runs_of(node)]
     if not runs:
         return
     good = [log for path, logs, _, pattern in runs for log in logs if pattern.fullmatch(log.text)]
     path, logs, lines, pattern = runs[0]
-    wanted = sample(line, None, path)
+    wanted = sample(line, "...", path)
     if good:
         yield from _level_finding(node, good[0], wanted)
         return
@@ -65,7 +65,8 @@ def _line_findings(node: Node, line: str) -> Iterator[Finding]:
         return
     near = _nearest(node, wanted, logs)
     if near:
-        yield other_words(node, near, wanted, _name_hint(near.text, wanted, path))
+        if near.text not in node.wrong_texts():  # else it has been said: it logs what it publishes
+            yield other_words(node, near, wanted, _name_hint(near.text, wanted, path))
         return
     shown = [t for t in lines if _ratio(t, wanted) > 0.8 and not PREFIX.match(t)]
     yield node.finding(
@@ -115,7 +116,7 @@ def _name_hint(text: str, wanted: str, path: str) -> str:
 
 
 def _nearest(node: Node, wanted: str, logs: Sequence[Log]) -> Log | None:
-    others = [specs.pattern(line) for line in node.wanted.prints]
+    others = [node.wanted.pattern(line) for line in node.wanted.prints]
     taken = [log for log in logs if any(p.fullmatch(log.text) for p in others)]
     rest = [log for log in logs if log not in taken or _ratio(log.text, wanted) > _NEAR]
     best = max(rest, key=lambda log: _ratio(log.text, wanted), default=None)
@@ -124,12 +125,12 @@ def _nearest(node: Node, wanted: str, logs: Sequence[Log]) -> Log | None:
 
 def _level_findings(node: Node, line: str) -> Iterator[Finding]:
     """The line of a received value: is it a whole line, and of the right level?"""
-    pattern = specs.pattern(line)
+    pattern = node.wanted.pattern(line)
     logs = [log for log in node.seen.logs + node.seen_alone.logs if pattern.search(log.text)]
     if not logs:
         return
     log, found = logs[0], pattern.search(logs[0].text)
-    wanted = sample(line, int(found["value"]) if found else None)
+    wanted = sample(line, found["value"] if found else "...")
     if not pattern.fullmatch(log.text):
         yield other_words(node, log, wanted)
     else:
@@ -147,7 +148,7 @@ def _level_finding(node: Node, log: Log, wanted: str) -> Iterator[Finding]:
         )
 
 
-def sample(line: str, value: int | None, path: str = "") -> str:
+def sample(line: str, value: int | str, path: str = "") -> str:
     """Return a line of the spec as it reads on the console."""
     text = line.replace("{name}", path).replace("{value}", str(value))
     return re.sub(r"\\(.)", r"\1", text)
@@ -156,7 +157,7 @@ def sample(line: str, value: int | None, path: str = "") -> str:
 def received_pattern(node: Node) -> re.Pattern[str] | None:
     """Return the compiled pattern of the line for a value that the node receives, or None."""
     line = node.wanted.received_line
-    return specs.pattern(line) if line else None
+    return node.wanted.pattern(line) if line else None
 
 
 def _is_logged(text: str, pattern: re.Pattern[str]) -> bool:

@@ -29,7 +29,7 @@ def _of(node: Node) -> Iterator[Finding]:
             fix=f'Write "{node.name}".',
             change=(f'"{name}"', f'"{node.name}"'),
         )
-    elif init.anonymous is True:
+    elif init.anonymous is True and not node.wanted.anonymous:
         yield node.finding(
             "node-name",
             "The node asks for an anonymous name: rosrun starts it under another name each time.",

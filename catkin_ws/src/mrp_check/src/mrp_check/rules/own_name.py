@@ -18,7 +18,18 @@ def _of(node: Node) -> Iterator[Finding]:
     if not own:
         return
     name = last_part(own)
-    if re.fullmatch(rf"{re.escape(node.name)}_\d+(_\d+)?", name):
+    is_anonymous = re.fullmatch(rf"{re.escape(node.name)}_\d+(_\d+)?", name) is not None
+    if node.wanted.anonymous and name == node.name:
+        yield node.finding(
+            "node-name",
+            f"{node.name} does not ask for an anonymous name, as the contract says: a second one of"
+            " it ends the first.",
+            node.places.of(node.name, Kind.INIT),
+            expected=f"{name}_ and a number",
+            seen=name,
+            fix="Give the call anonymous=True in Python, ros::init_options::AnonymousName in C++.",
+        )
+    elif is_anonymous and not node.wanted.anonymous:
         yield node.finding(
             "node-name",
             "The node asks for an anonymous name: rosrun starts it under another name each time;"
@@ -28,7 +39,7 @@ def _of(node: Node) -> Iterator[Finding]:
             expected=node.name,
             seen=name,
         )
-    elif name != node.name:
+    elif name != node.name and not is_anonymous:
         yield node.finding(
             "node-name",
             f"Started by itself, {node.name} calls itself {name}: the launch file hides it, but"

@@ -24,7 +24,7 @@ def _of(node: Node) -> Iterator[Finding]:
     if not role or not sent or pattern is None:
         return
     logs = node.seen_alone.logs
-    heard = {int(m["value"]) for m in (pattern.search(log.text) for log in logs) if m}
+    heard = {*_values(logs, pattern)}
     lost = [value for value in sent if value not in heard]
     if not lost or heard - set(sent):
         yield from _repeated_finding(node, sent, logs, pattern)
@@ -50,6 +50,11 @@ def _of(node: Node) -> Iterator[Finding]:
         yield _short_queue(node, role, lost, heard & set(BURST))
     else:
         yield _gaps(node, sent, lost, heard, _logged_place(node, logs, pattern))
+
+
+def _values(logs: Sequence[Log], pattern: re.Pattern[str]) -> list[int]:
+    found = (pattern.search(log.text) for log in logs)
+    return [int(float(match["value"])) for match in found if match]
 
 
 def _short_queue(
@@ -97,7 +102,7 @@ def _whose(node: Node, lost: Sequence[int], heard: Collection[int]) -> str:
 def _repeated_finding(
     node: Node, sent: Sequence[int], logs: Sequence[Log], pattern: re.Pattern[str]
 ) -> Iterator[Finding]:
-    values = [int(m["value"]) for m in (pattern.search(log.text) for log in logs) if m]
+    values = _values(logs, pattern)
     extra = [value for value in values if value not in sent]
     repeated = [value for value in sent if values.count(value) > 1]
     if extra:

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import Iterator, Sequence
 
 from mrp_check import evidence
@@ -10,7 +11,7 @@ from mrp_check.confined.places import Kind
 from mrp_check.confined.seen import Number
 from mrp_check.contract.finding import Finding, Where
 from mrp_check.contract.requirements import CONTRACT, Requirement, Rule
-from mrp_check.contract.spec import Publishes, Values
+from mrp_check.contract.spec import Publishes, Topic, Values
 from mrp_check.running.node import Node, each_node
 from mrp_check.running.planning import resolved
 from mrp_check.running.words import few
@@ -38,8 +39,40 @@ def _of(node: Node) -> Iterator[Finding]:
         )
     values = [node.value(m, role.topic) for m in messages]
     numbers = [value for value in values if value is not None]
-    if role.values and numbers and len(numbers) == len(values):
-        yield from _value_findings(node, numbers, role.values, _rule_text(role))
+    for text in node.wrong_texts()[:1]:
+        yield _other_text(node, text, role.topic)
+    if numbers and len(numbers) == len(values):
+        if role.values:
+            yield from _value_findings(node, numbers, role.values, _rule_text(role))
+        if role.rises:
+            yield from _not_rising(node, numbers, _rule_text(role))
+
+
+def _other_text(node: Node, said: str, topic: Topic) -> Finding:
+    """Return the Finding about a message that says something else than the contract's text."""
+    begin = re.split(r"\d", said)[0].strip()
+    sources = [file for file in node.places.sources(node.name) if begin]
+    lines = [(file, node.package.find_line(file, begin)) for file in sources]
+    publish = node.places.of(node.name, Kind.PUBLISH)
+    return node.finding(
+        "values",
+        f"{node.name} publishes “{said}”, where the contract says “{topic.text}”.",
+        next(((file, line) for file, line in lines if line), publish),
+        expected=f"{topic.text}, with a number for {{value}}",
+        seen=said,
+    )
+
+
+def _not_rising(node: Node, values: Sequence[Number], expected: str) -> Iterator[Finding]:
+    wrong = next(((a, b) for a, b in zip(values, values[1:]) if b <= a), None)
+    if wrong:
+        yield node.finding(
+            "values",
+            f"{node.name} publishes {few(values)}: after {wrong[0]:g} came {wrong[1]:g}.",
+            node.places.of(node.name, Kind.PUBLISH),
+            expected=expected,
+            seen=few(values),
+        )
 
 
 def _silent_seconds(node: Node) -> float:
@@ -121,6 +154,8 @@ def _relayed(node: Node) -> Iterator[Finding]:
 
 def _rule_text(role: Publishes) -> str:
     rule = role.values
+    if role.rises:
+        return "numbers, each larger than the one before"
     if not rule:
         return f"messages on {role.topic.name}"
     values = [rule.start, rule.start + rule.step, rule.start + 2 * rule.step]
@@ -128,7 +163,7 @@ def _rule_text(role: Publishes) -> str:
 
 
 _published = evidence.of_publisher(
-    lambda role: role.values, Node.published_numbers, "published no number"
+    lambda role: role.values or role.rises, Node.published_numbers, "published no number"
 )
 _sent = evidence.when(Node.sent, "was sent nothing", lambda wanted: wanted.relays)
 

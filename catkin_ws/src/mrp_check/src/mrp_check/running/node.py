@@ -63,6 +63,14 @@ class Node(Traces):
         values = [self.value(message, topic) for message in self.published() if topic]
         return [value for value in values if value is not None]
 
+    def wrong_texts(self) -> list[str]:
+        """Return the texts that it published, and that are not what the spec says of its topic."""
+        topic = self.wanted.publishing
+        if topic is None or not topic.text:
+            return []
+        said = [(message.fields or {}).get(topic.field) for message in self.published()]
+        return [one for one in said if isinstance(one, str) and topic.value_in(one) is None]
+
     def has_wrapped(self) -> bool:
         """Return whether it was seen what is published past the largest value: in Python when it
         ran, in C++ by the type of the counter."""

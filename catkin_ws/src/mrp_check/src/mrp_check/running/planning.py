@@ -171,6 +171,7 @@ class Planner:
             values=list(BURST) if topic else [],
             paced=list(PACED) if topic else [],
             field=topic.field if topic else None,
+            text=topic.text if topic else None,
             type=topic.type_in(self.workspace.package.name) if topic else None,
             received=_received(node),
             hook=hook,
@@ -198,4 +199,4 @@ def resolved(topic: specs.Topic, path: str) -> str:
 
 def _received(node: specs.Node) -> str | None:
     """Return the regular expression of the line that a node logs on receiving, or None."""
-    return specs.pattern(node.received_line).pattern if node.received_line else None
+    return node.pattern(node.received_line).pattern if node.received_line else None

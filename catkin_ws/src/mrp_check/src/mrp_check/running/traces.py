@@ -82,9 +82,8 @@ class Traces:
         return Finding(id_, message, file, line, severity, node=self.name, **rest)
 
     def value(self, message: Message, topic: specs.Topic) -> Number | None:
-        """Return the number in a message, or None: it may be of any type."""
-        value = (message.fields or {}).get(topic.field)
-        return value if isinstance(value, (int, float)) else None
+        """Return the number in a message, or None."""
+        return topic.value_in((message.fields or {}).get(topic.field))
 
     def counter_names(self) -> list[str]:
         """Return the names of what holds its counter, as far as they were found."""
