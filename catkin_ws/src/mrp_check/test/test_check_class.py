@@ -297,6 +297,17 @@ def test_points_come_from_the_spec(results):
     assert by_name["empty"].points(contract) == 0
 
 
+def test_what_is_not_asked_earns_no_points_and_has_no_column(results, tmp_path):
+    contract = spec.read(SPEC_FILE)
+    less = dataclasses.replace(contract, launch=spec.Launch(), not_asked=("wrap",))
+    asked = [id_ for id_ in REQUIREMENTS if id_ != "wrap" and not id_.startswith("launch-")]
+    assert class_table.most(less) == len(asked) < class_table.most(contract) - 3
+    (header, *_) = csv.reader(class_table.csv_text(results, less).splitlines())
+    assert header[5:-1] == asked
+    page = Tags(class_table.html_text(results, less, tmp_path))
+    assert page.tags.count("td") == len(results) * (3 + len(asked))
+
+
 @proves(
     "The table has a column for each requirement.",
     "Its line gives the reason.",

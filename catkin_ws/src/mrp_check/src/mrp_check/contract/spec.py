@@ -297,12 +297,6 @@ class _Reader:
         )
         self.own_messages(spec.messages)
         kinds = {name: self.field(topic, spec.messages) for name, topic in topics.items()}
-        for name, topic in topics.items():
-            if topic.text and kinds[name] != "string":
-                self.fail(
-                    ["topics", name, "text"],
-                    f"only a string has a text; {topic.field} of {topic.type} is a {kinds[name]}.",
-                )
         for node in spec.nodes.values():
             self.numbers(node, kinds)
         for id_ in spec.points:
@@ -313,24 +307,19 @@ class _Reader:
         return spec
 
     def numbers(self, node: Node, kinds: Mapping[str, str]) -> None:
-        """See that a topic has numbers, if the node is to publish certain ones.
-
-        kinds: topic -> the type of its field
-        """
+        """See that a node can publish numbers, if it is to. kinds: topic -> its field's type"""
         role = node.publishes
-        if role is None:
-            return
-        topic = role.topic
-        for key in ("values", "rises"):
-            if getattr(role, key) and not topic.text and not _NUMBER.fullmatch(kinds[topic.name]):
+        if role and not role.topic.text and not _NUMBER.fullmatch(kinds[role.topic.name]):
+            key = "values" if role.values else "rises"
+            if role.values or role.rises:
                 self.fail(
                     ["nodes", node.name, "publishes", key],
-                    f"{topic.field} of {topic.type} is a {kinds[topic.name]}, and no number."
-                    " A string has one if the topic has a 'text'.",
+                    f"{role.topic.field} of {role.topic.type} is a {kinds[role.topic.name]}, and no"
+                    " number. A string has one if the topic has a 'text'.",
                 )
 
     def requirement(self, place: Sequence[str | int], id_: str) -> None:
-        """See that there is such a requirement."""
+        """See that it exists."""
         if self.requirements is not None and id_ not in self.requirements:
             self.fail(place, no_such("requirement", id_, self.requirements))
 
@@ -379,6 +368,9 @@ class _Reader:
                     + near(part, fields),
                 )
             kind = fields[part]
+        if topic.text and kind != "string":
+            said = f"only a string has a text; {topic.field} of {topic.type} is a {kind}."
+            self.fail(place[:-1] + ["text"], said)
         return kind
 
     def node(self, name: str, entry: Entry, topics: dict[str, Topic]) -> Node:
