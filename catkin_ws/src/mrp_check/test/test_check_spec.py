@@ -7,7 +7,7 @@ import re
 
 import pytest
 from mrp_check import rules
-from mrp_check.contract import resources, spec
+from mrp_check.contract import lines, resources, spec
 from mrp_check.contract.errors import SpecError
 from mrp_check.contract.requirements import STAGES
 from mrp_check.rules import REQUIREMENTS
@@ -55,9 +55,9 @@ def test_relay_doubles():
 
 def test_line_pattern():
     line = r"\[A\] {name} has {value}"
-    match = spec.pattern(line, "/mrp/a").fullmatch("[A] /mrp/a has 12")
+    match = lines.pattern(line, "/mrp/a").fullmatch("[A] /mrp/a has 12")
     assert match.group("value") == "12"
-    assert not spec.pattern(line, "/mrp/a").fullmatch("[A] /mrp/b has 12")
+    assert not lines.pattern(line, "/mrp/a").fullmatch("[A] /mrp/b has 12")
 
 
 def test_a_text_says_a_number():
@@ -91,6 +91,8 @@ def test_each_key_says_what_it_is():
         ("type: std_msgs/UInt32", "type: 3", r":4: .*expected a text; found 3\."),
         ("topic: a_topic", "topic: a_topic\n      queue: 0", r":9: .*at least 1; found 0\."),
         ("topic: a_topic", "topic: a_topic\n    prints: ['[A']", r":9: .*no regular expression"),
+        ("topic: a_topic", "topic: a_topic\n    prints: ['{valeu}']", r":9: .*mean 'value'\?"),
+        ("topic: a_topic", "topic: a_topic\n    prints: ['[AB] 1']", r":9: .*one letter of 'AB'"),
         ("std_msgs/UInt32", "PACKAGE/Count", r":4: .*'messages' has no message 'Count'"),
         ("launch:", "points: {valuse: 1}\nlaunch:", r":9: .*no requirement 'valuse'.*'values'\?"),
         ("launch:", "hidden:\n- wrap\n- valus\nlaunch:", r":11: hidden\.1: .*mean 'values'\?"),
@@ -122,7 +124,7 @@ def test_each_key_says_what_it_is():
         ("std_msgs/UInt32", "std_msgs/String\n    text: hello", r":5: .*text with \{value\} in it"),
         ("launch:", "not_asked: [quue]\nlaunch:", r":9: not_asked\.0: .*mean 'queue'\?"),
     ],
-    ids=range(25),
+    ids=range(27),
 )
 def test_wrong_spec_is_told_in_one_sentence(old, new, says, tmp_path):
     path = tmp_path / "wrong.yaml"

@@ -13,7 +13,7 @@ import genmsg
 import jsonschema
 import yaml
 
-from mrp_check.contract import resources
+from mrp_check.contract import lines, resources
 from mrp_check.contract.errors import SpecError
 from mrp_check.contract.resources import SHARES
 from mrp_check.contract.schema import Loader, near, no_such, sentence
@@ -22,7 +22,6 @@ SCHEMA = resources.folder("schema") / "spec.json"
 _SCHEMA = json.loads(SCHEMA.read_text())
 _PAGE = "What can be said: pages/contract.html, which is made of"
 _NUMBER = re.compile(r"u?int\d+|float\d+|byte|char|bool")  # types of a message's fields
-_WHOLE, _DECIMALS = r"-?\d+", r"(?:\.\d+)?"
 PACKAGE = "PACKAGE"  # in a type: the package's own name
 
 
@@ -48,7 +47,7 @@ class Topic:
     def value_in(self, said: object) -> int | float | None:
         """Return the number that the field's content says, or None: it may be of any type."""
         if self.text and isinstance(said, str):
-            shape = re.escape(self.text).replace(r"\{value\}", f"({_WHOLE}({_DECIMALS}))")
+            shape = re.escape(self.text).replace(r"\{value\}", f"({lines.WHOLE}({lines.DECIMALS}))")
             found = re.fullmatch(shape, said)
             if not found:
                 return None
@@ -134,9 +133,9 @@ class Node:
         return next((line for line in self.prints if "{value}" in line), None)
 
     def pattern(self, line: str, name: str | None = None) -> re.Pattern[str]:
-        """Return the compiled regular expression of one of `prints`: see below."""
+        """Return the compiled regular expression of one of `prints`."""
         topic = self.subscribing or self.publishing
-        return pattern(line, name, bool(topic and topic.text))
+        return lines.pattern(line, name, bool(topic and topic.text))
 
 
 @dataclasses.dataclass(frozen=True)
@@ -196,17 +195,6 @@ class Spec:
     def without_marks(self) -> Spec:
         """Return all that a check depends on: a report does not change with the rest."""
         return dataclasses.replace(self, points={}, hidden=(), late=None)
-
-
-def pattern(line: str, name: str | None = None, has_decimals: bool = False) -> re.Pattern[str]:
-    """Return the compiled regular expression of a line in `prints`.
-
-    name: the node's full name, put in for {name}; any name if None. {value} is any whole number,
-    or any number if it has decimals, which is the group `value`.
-    """
-    name_pattern = re.escape(name) if name is not None else r"\S*"
-    value = f"(?P<value>{_WHOLE}{_DECIMALS if has_decimals else ''})"
-    return re.compile(line.replace("{name}", name_pattern).replace("{value}", value))
 
 
 def find(name: str) -> pathlib.Path:
@@ -399,17 +387,12 @@ class _Reader:
                     " 'to' say both.",
                 )
         rest = {key: entry[key] for key in ("language", "anonymous", "executable") if key in entry}
-        return Node(name, prints=self.lines(name, entry.get("prints", ())), **roles, **rest)
+        return Node(name, prints=self.prints(name, entry.get("prints", ())), **roles, **rest)
 
-    def lines(self, node: str, lines: Sequence[str]) -> tuple[str, ...]:
+    def prints(self, node: str, prints: Sequence[str]) -> tuple[str, ...]:
         """Return a node's lines, each of which is a regular expression."""
-        for index, line in enumerate(lines):
-            try:
-                pattern(line)
-            except re.error as error:
-                self.fail(
-                    ["nodes", node, "prints", index],
-                    f"'{line}' is no regular expression: {error}. A literal bracket is written"
-                    r" \[ or \].",
-                )
-        return tuple(lines)
+        for index, line in enumerate(prints):
+            fault = lines.fault(line)
+            if fault:
+                self.fail(["nodes", node, "prints", index], fault)
+        return tuple(prints)
