@@ -324,11 +324,10 @@ def test_a_process_that_has_just_ended_is_no_error(tmp_path, monkeypatch):
 def test_the_checkers_own_programs_run_where_they_are_copied_to(monkeypatch):
     """Without namespaces, root copies them for another user; they find one another there."""
     monkeypatch.setattr(sandbox, "isolation", lambda: sandbox.Isolation.USER)
-    sandbox.code.cache_clear()
-    try:
-        reader = sandbox.code() / "cpp_facts.py"
-    finally:
-        sandbox.code.cache_clear()
+    reader = sandbox.code() / "cpp_facts.py"
+    # With namespaces there is no copy: what is in /tmp is not to be seen there.
+    monkeypatch.setattr(sandbox, "isolation", lambda: sandbox.Isolation.NAMESPACES)
+    assert sandbox.code() == sandbox.PACKAGE / "confined"
     assert not reader.is_relative_to(pathlib.Path(confine.__file__).parent)
     task = json.dumps({"folder": "/", "headers": "", "units": []})
     command = ["/usr/bin/python3", str(reader), task]

@@ -182,11 +182,14 @@ def _new_owner(folder: str) -> int:
     return owner
 
 
-@functools.lru_cache(maxsize=None)
 def code() -> pathlib.Path:
     """Return the folder `confined`, as a command can read it: a home of root's may be closed."""
-    if isolation() is not Isolation.USER:
-        return PACKAGE / "confined"
+    return copied_code() if isolation() is Isolation.USER else PACKAGE / "confined"
+
+
+@functools.lru_cache(maxsize=None)
+def copied_code() -> pathlib.Path:
+    """Copy the folder `confined`, and return the copy: it is deleted with this process's end."""
     folder = tempfile.mkdtemp(prefix="mrp_check_code_")
     atexit.register(shutil.rmtree, folder, ignore_errors=True)
     os.chmod(folder, 0o755)
