@@ -46,7 +46,7 @@ def dev(checkout):
     image = inspect(started["containerId"])["Config"]["Image"]
     with removed(started["containerId"]):
         yield [str(CLI), "exec", "--workspace-folder", str(checkout)]
-    # Of these names there are two, if the CLI has changed the number of the user ros.
+    # Where the CLI changes the number of the user ros, it makes a second image, called NAME-uid.
     run("docker", "image", "rm", image)
     run("docker", "image", "rm", image.removesuffix("-uid"), check=False)
 

@@ -112,7 +112,7 @@ class _Line:
         )
 
     def value(self, column: str, most: float) -> float | None:
-        """Return the number in a column, or None if there is none."""
+        """Return the number in a column; None if the cell is empty."""
         text = self.cells.get(column, "")
         if not text:
             return None

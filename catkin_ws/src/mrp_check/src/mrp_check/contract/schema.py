@@ -75,9 +75,7 @@ def sentence(error: jsonschema.ValidationError) -> str:
         return f"expected the key '{missing[0]}'; it is missing."
     if error.validator == "type":
         return f"expected {KINDS[error.validator_value]}; found {_shown(error.instance)}."
-    if error.validator == "enum":
-        return f"expected {words(error.schema)}; found {_shown(error.instance)}."
-    if error.validator == "pattern":
+    if error.validator in ("enum", "pattern"):
         return f"expected {words(error.schema)}; found {_shown(error.instance)}."
     if error.validator in LIMITS:
         limit = f"{LIMITS[error.validator]} {error.validator_value}"

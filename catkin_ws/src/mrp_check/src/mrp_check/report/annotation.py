@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What a reader who sees the whole repository is told of a finding, and at which path."""
+"""A finding, for somebody who sees the whole repository: its text, and the path of its file."""
 
 from __future__ import annotations
 

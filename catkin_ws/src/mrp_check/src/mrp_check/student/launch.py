@@ -56,9 +56,9 @@ def find(package: Package, spec: Spec) -> str | None:
 
 def readable(package: Package, spec: Spec) -> tuple[str | None, list[Finding]]:
     """Return (path of the launch file or None, the Findings that say why it cannot be loaded)."""
-    path = find(package, spec)
     if not spec.launch.file:
         return None, []
+    path = find(package, spec)
     if path is None:
         others = package.of_kind("launch")
         near = nearest(spec.launch.file, [last_part(o) for o in others], 0)
