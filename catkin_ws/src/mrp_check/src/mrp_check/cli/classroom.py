@@ -11,7 +11,6 @@ from __future__ import annotations
 
 import concurrent.futures
 import hashlib
-import json
 import math
 import os
 import pathlib
@@ -110,7 +109,7 @@ class Classroom:
             package = None if packed else self._package(entry, scratch)
             depends_on = {"package": self._fingerprint(packed, package), **self._common}
             file = self.results / f"{entry.name}.json"
-            kept = _read(file)
+            kept = json_.kept(file)
             if kept and kept.get("depends_on") == depends_on:
                 return Submission(entry.name, kept["report"], True, depends_on)
             package = package or self._package(entry, scratch)
@@ -121,9 +120,7 @@ class Classroom:
                 self._now.remove(entry.name)
                 self._ended += 1
         if report["verdict"] != UNCHECKED:
-            new = file.with_suffix(".new")
-            new.write_text(json.dumps({"depends_on": depends_on, "report": report}))
-            new.rename(file)
+            json_.keep(file, {"depends_on": depends_on, "report": report})
         return Submission(entry.name, report, depends_on=depends_on)
 
     def _package(self, entry, scratch):
@@ -165,7 +162,7 @@ class Classroom:
         with scratch_folder() as scratch:
             command = self._command(package, name, scratch / "report.json")
             code, said = self._run(command, self._environment(scratch))
-            report = _read(scratch / "report.json")
+            report = json_.kept(scratch / "report.json")
         if not report:
             raise CannotCheck(said[-1] if said else f"The check ended with {code}.")
         return report
@@ -233,11 +230,3 @@ def _kill(popen):
         os.killpg(popen.pid, signal.SIGKILL)
     except OSError:
         pass
-
-
-def _read(file):
-    """Return the JSON in a file, or None."""
-    try:
-        return json.loads(file.read_text(encoding="utf-8"))
-    except (OSError, ValueError):
-        return None

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The report as JSON: see schema/report.json."""
+"""The report as JSON: see schema/report.json. And the files that keep what was said, as JSON."""
 
 from __future__ import annotations
 
@@ -46,3 +46,18 @@ def _finding(data):
 
 def text(report):
     return json.dumps(data(report), indent=2, ensure_ascii=False) + "\n"
+
+
+def keep(file, value):
+    """Write a value into a file, whole or not at all."""
+    new = file.with_suffix(".new")
+    new.write_text(json.dumps(value))
+    new.rename(file)
+
+
+def kept(file):
+    """Return the value in a file; None if it has none that can be read."""
+    try:
+        return json.loads(file.read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return None

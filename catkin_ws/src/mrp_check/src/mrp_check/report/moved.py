@@ -7,9 +7,8 @@ others: the same command says the same again.
 
 from __future__ import annotations
 
-import json
-
 from mrp_check.contract.verdict import UNCHECKED, WORDS
+from mrp_check.report import json_
 from mrp_check.rules import REQUIREMENTS
 
 _FILE = ".marks.json"  # hidden, as no submission is
@@ -19,12 +18,10 @@ _MOST_IDS = 5  # in one sentence
 def compare(folder, submissions, spec):
     """Say in each submission's `moved` how its mark has moved; keep the marks in the folder."""
     file, now = folder / _FILE, _marks(submissions, spec)
-    last, before = json.loads(file.read_text()) if file.is_file() else (None, None)
+    last, before = json_.kept(file) or (None, None)
     if last and not _goes_on(last, now):
         before = last
-    new = file.with_suffix(".new")
-    new.write_text(json.dumps([now, before]))
-    new.rename(file)
+    json_.keep(file, [now, before])
     for one in submissions:
         if before and one.name in before["students"]:
             one.moved = _moved(before, now, one.name)
