@@ -137,11 +137,12 @@ def master(port):
         process.join()
 
 
-def missing(entry, lines):
-    """Return the lines of an entry's texts that were not printed. CMake breaks long lines."""
-    printed = why.mask(" ".join(list(lines)))
+def missing(entry, process):
+    """Return the lines of an entry's texts that were not printed. CMake breaks long lines, and what
+    else it prints may come between those of an error."""
+    printed = [why.mask(" ".join(list(lines))) for lines in (process.lines, process.errors)]
     expected = [line for text in entry.shows for line in why.shown_on(text, RELEASE)]
-    return [line for line in expected if why.mask(line) not in printed]
+    return [line for line in expected if not any(why.mask(line) in one for one in printed)]
 
 
 def parameters():
@@ -176,11 +177,9 @@ def test_text_is_printed(entry, tmp_path, env):
     folder = lay_out(entry, tmp_path / "here")
     process = Process("bash", "-c", f"cd {folder}\n{entry.try_}", env=env, extra_env=LIVE)
     with process:
-        wait_until(
-            lambda: process.code is not None or not missing(entry, process.lines), process.__str__
-        )
+        wait_until(lambda: process.code is not None or not missing(entry, process), process.__str__)
         end(process)
-    assert missing(entry, process.lines) == [], str(process)
+    assert missing(entry, process) == [], str(process)
 
 
 def end(process):

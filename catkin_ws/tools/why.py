@@ -68,12 +68,13 @@ _EVERYWHERE = re.compile(
     r"|The traceback for the exception was written to the log file"
     r"|\.\.\. logging to .*|Checking log directory .*|Press Ctrl-C to interrupt"
     r"|Done checking log file .*|started roslaunch server .*|ROS_MASTER_URI=.*"
-    r"|auto-starting new master|setting /run_id .*|started core service .*"
+    r"|log file: .*|auto-starting new master|setting /run_id .*|started core service .*"
     r"|process\[.*\]: started with pid .*"
     r"|all processes on machine have died.*|(?:\.\.\. )?shutting down processing monitor.*"
     r"|-- (?:Using|Found) .*|\[ *\d+%\] .*)\s*"
 )
-# A line of code in a traceback, below the line that names its file: the error stands further below.
+# A line of code in a traceback, below the line that names its file: the error stands further below,
+# unless the text was cut off there.
 _CODE = re.compile(r'^([ \t]*)File "[^"\n]*", line \d+.*\n\1[ \t]+\S.*$', re.MULTILINE)
 
 
@@ -177,14 +178,19 @@ class Index:
 
     def nearest(self, text, count=ANSWERS):
         """Return the entries that are near to a text, the nearest one first."""
+        best = self._scores(_CODE.sub("", text)) or self._scores(text)
+        ranked = [self._entries[number] for number in sorted(best, key=lambda one: -best[one])]
+        ends = [one for one in ranked if one.above][1:]
+        return [one for one in ranked if one not in ends][:count]
+
+    def _scores(self, text):
+        """Return the scores of the entries that are near to a text, by their numbers."""
         best = {}
         for words in _passages(text):
             for row, number, score in self._search(words):
                 if score > best.get(number, 0) and _is_near(set(words), self._sure[row - 1], score):
                     best[number] = score
-        ranked = [self._entries[number] for number in sorted(best, key=lambda one: -best[one])]
-        ends = [one for one in ranked if one.above][1:]
-        return [one for one in ranked if one not in ends][:count]
+        return best
 
     def _search(self, words):
         """Yield (row, number of the entry, score) of all texts that have one of the words."""
@@ -214,7 +220,6 @@ def _words(text):
 
 def _passages(text):
     """Yield the words of each line of a text, and of lines that follow each other."""
-    text = _CODE.sub("", text)
     lines = [line for line in text.splitlines() if not _EVERYWHERE.fullmatch(line)]
     lines = [words for words in map(_words, lines) if words]
     seen = set()
