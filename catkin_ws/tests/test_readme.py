@@ -65,22 +65,19 @@ def test_ci_and_the_workflow_call_targets_of_the_list():
     "make run prints roslaunch's own lines, and each line of the nodes as it happens:",
 )
 def test_console_is_what_make_run_prints():
-    block = console_block()
+    shown = {mask(line) for line in console_block()}
     assert make("build").returncode == 0
     with Process(
         "make", "--no-print-directory", "-C", str(ROOT), "run", env=environment()
     ) as process:
-        received = re.compile("received message with data")
-        count = sum(1 for line in block if received.search(line))
+        # On a busy machine, one node may have received many values before another one has started.
         process.wait_for(
-            lambda: sum(1 for line in list(process.lines) if received.search(line)) >= count,
-            "as many values as in the README",
+            lambda: shown <= {mask(line) for line in list(process.lines)},
+            "all lines that the README shows",
         )
         # Ctrl-C reaches make and all that it runs.
         os.killpg(process.pid, signal.SIGINT)
         process.wait()
-    shown = {mask(line) for line in block}
-    assert shown - set(map(mask, process.lines)) == set(), str(process)
     # What the README leaves out is roslaunch's heading, and what it says after Ctrl-C.
     left_out = [line for line in process.lines if mask(line) not in shown]
     assert [line for line in left_out if not ROSLAUNCH_LINE.fullmatch(line)] == [], str(process)

@@ -21,6 +21,7 @@ MESSAGES = 63
 PERIOD = 0.25  # seconds between two messages of the lab with spinOnce
 TOPIC = "/loop_spin_once/great_topic"
 QUEUE_SIZE = 4  # messages, of each subscriber
+TURNS = 400  # ten times as many as it takes until the slow loop has missed messages
 
 
 class TestLoop(unittest.TestCase):
@@ -99,7 +100,10 @@ class TestLoop(unittest.TestCase):
                 "all subscribers are connected",
             )
             clock.begin(lab, 4, PERIOD, lambda: lab.values(python))
+            turns = 0
             while len(batches(lab.values(seldom))) <= 3:
+                turns += 1
+                self.assertLess(turns, TURNS, f"{seldom} misses nothing\n{lab}")
                 count = len(lab.values(python))
                 clock.turn(PERIOD)
                 lab.wait_for_count(python, count + 1)
