@@ -20,7 +20,7 @@ pytestmark = pytest.mark.quick
 
 EXERCISES = defects.exercises()
 COUNT = 3  # of the exercises with which a course is made here
-FIRST = "01_a_parenthesis"
+FIRST = "a_parenthesis"
 
 
 @pytest.fixture(autouse=True)
@@ -51,7 +51,7 @@ def checked(monkeypatch):
 def test_first_call_shows_the_task_and_makes_the_package(tmp_path, capsys, checked):
     assert plain.run_once(tmp_path / "mine") == plain.PASSED
     printed = capsys.readouterr().out
-    place = tmp_path / "mine" / FIRST
+    place = tmp_path / "mine" / f"01_{FIRST}"
     assert f"Exercise 1 of {COUNT}\n\n# A parenthesis" in printed
     assert f"The package: {place}" in printed
     assert (place / "TASK.md").read_text() in printed
@@ -70,8 +70,8 @@ def test_not_yet_says_what_and_where_and_not_how(tmp_path, capsys, checked):
     assert f"Exercise 1 of {COUNT}, {FIRST}: not yet." in printed
     assert "src/a.py:7: It ends.\n  expected: spin\n" in printed
     assert "Do this." not in printed and "It follows." not in printed
-    assert str(tmp_path / FIRST / "TASK.md") in printed
-    assert checked.folders == [tmp_path / FIRST]
+    assert str(tmp_path / f"01_{FIRST}" / "TASK.md") in printed
+    assert checked.folders == [tmp_path / f"01_{FIRST}"]
 
 
 @proves("If your copy meets the contract, without a warning, the exercise is passed.")
@@ -89,9 +89,22 @@ def test_passed_goes_on_to_the_next_until_all_are_passed(tmp_path, capsys, check
         assert f"Exercise {number} of {COUNT}\n" in printed
     plain.run_once(tmp_path)
     assert f"All {COUNT} exercises are passed." in capsys.readouterr().out
-    assert [path.name for path in checked.folders] == [
-        one.name for one in Course(tmp_path).exercises
-    ]
+    assert checked.folders == [one.place for one in Course(tmp_path).exercises]
+
+
+def test_another_number_changes_neither_the_progress_nor_the_copy(tmp_path, checked, monkeypatch):
+    """Also what a version kept that wrote the number, too."""
+    for _ in range(2):
+        plain.run_once(tmp_path)
+    passed, copied, _ = Course(tmp_path).exercises
+    numbered = [EXERCISES[2], EXERCISES[1], EXERCISES[0]]
+    monkeypatch.setattr(defects, "exercises", lambda: numbered)
+    for kept in (f"{passed.name}\n", f"01_{passed.name}\n"):
+        (tmp_path / "passed.txt").write_text(kept)
+        course = Course(tmp_path)
+        assert [course.is_passed(one) for one in course.exercises] == [False, False, True]
+        assert [one.place for one in course.exercises[1:]] == [copied.place, passed.place]
+        assert course.exercises[0].place.name.startswith("01_")
 
 
 @proves(
@@ -110,7 +123,7 @@ def test_hint(tmp_path, capsys, checked):
 )
 def test_reset_begins_anew(tmp_path, checked):
     plain.run_once(tmp_path)
-    script = tmp_path / FIRST / "src" / "subscriber_py_node.py"
+    script = tmp_path / f"01_{FIRST}" / "src" / "subscriber_py_node.py"
     before = script.read_text()
     script.write_text("")
     plain.run_once(tmp_path)
@@ -195,6 +208,8 @@ def test_without_a_terminal_it_goes_on_to_the_last(tmp_path, capsys, checked):
 
 def test_the_solution_is_a_diff_that_solves_it(tmp_path, monkeypatch):
     monkeypatch.setattr(defects, "exercises", lambda: EXERCISES)
+    names = [exercise.name for exercise in Course(tmp_path).exercises]
+    assert len({*names}) == len(names)
     for exercise in Course(tmp_path).exercises:
         correct = tmp_path / exercise.defect.base
         check_sets.lay_out(exercise.defect.base, correct)

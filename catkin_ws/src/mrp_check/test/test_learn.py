@@ -9,7 +9,7 @@ import check_sets
 import pexpect
 import pyte
 import pytest
-from mrp_check import check
+from mrp_check import check, confine
 from mrp_check.cli import learn
 from mrp_check.confined import variables
 from mrp_check.contract import defects, spec
@@ -159,34 +159,69 @@ def test_lines_without_a_terminal_and_the_end_by_a_signal(tmp_path, env):
 @proves("What has not changed is not built again.")
 def test_what_has_not_changed_is_not_built_again(tmp_path, monkeypatch):
     """An old file that is put back is new to make; and an executable of the build before does not
-    stand in for one that cannot be built now."""
+    stand in for one that cannot be built now. What a Python file says reaches neither make nor
+    roslaunch, unless a file of theirs runs a command of its own."""
     monkeypatch.setenv(variables.CCACHE, CACHE)
-    said, place = [], tmp_path / "package"
-    source = place / "src" / "publisher_cpp_node.cpp"
-    check_sets.lay_out("mrp", place)
+    source, script, cmake, launch = (
+        tmp_path / "package" / path
+        for path in (
+            *("src/publisher_cpp_node.cpp", "src/publisher_py_node.py"),
+            *("CMakeLists.txt", "launch/pub_sub.launch"),
+        )
+    )
+    checked = checks_of(tmp_path, monkeypatch, "compile", "lifetime")
+    ids, ran, first = checked()
+    assert (ids, ran.count("catkin_make"), len(first)) == ([], 2, 2)
+    assert checked() == ([], [], first)
+    append(script, "# Another line.\n")
+    assert checked() == ([], [], first)
+    append(launch, "<!-- Another line. -->\n")
+    assert checked() == ([], ["launch_dump.py"], first)
     correct, times = source.read_bytes(), source.stat()
-    with check.scratch_folder() as scratch:
-        devel = scratch / "workspace" / "devel" / "lib" / "mrp"
+    source.write_bytes(correct.replace(b";", b"", 1))
+    ids, ran, built = checked()
+    assert (ids, ran.count("catkin_make")) == (["compile"], 1)
+    assert "publisher_cpp_node" not in built
+    source.write_bytes(correct)
+    os.utime(source, ns=(times.st_atime_ns, times.st_mtime_ns))
+    ids, ran, again = checked()
+    assert (ids, ran.count("catkin_make"), {*again}) == ([], 1, {*first})
+    append(cmake, "add_custom_target(own ALL COMMAND true)\n")
+    said = '<launch><param name="said" command="echo"/>'
+    launch.write_text(launch.read_text().replace("<launch>", said))
+    ids, ran, _ = checked()
+    assert (ids, ran.count("catkin_make")) == ([], 2)
+    append(script, "# Another line.\n")
+    ids, ran, _ = checked()
+    assert (ids, sorted(ran)) == ([], ["catkin_make", "launch_dump.py"])
 
-        def checked():
-            """Return the ids of the findings, what was done, and what is built: name -> time."""
-            said.clear()
-            contract = spec.read(spec.find("pub_sub"))
-            report = check.check(
-                Package(place), contract, ("compile",), progress=said.append, kept=scratch
-            )
-            built = {path.name: path.stat().st_mtime_ns for path in devel.glob("*_cpp_node")}
-            return [f.id for f in report.findings], "configuring with CMake" in said, built
 
-        found, configured, first = checked()
-        assert (found, configured, len(first)) == ([], True, 2)
-        assert checked() == ([], False, first)
-        source.write_bytes(correct.replace(b";", b"", 1))
-        found, configured, built = checked()
-        assert (found, configured, "publisher_cpp_node" in built) == (["compile"], False, False)
-        source.write_bytes(correct)
-        os.utime(source, ns=(times.st_atime_ns, times.st_mtime_ns))
-        found, configured, again = checked()
-        assert (found, configured, {*again}) == ([], False, {*first})
-        (place / "CMakeLists.txt").open("a").write("# Another line.\n")
-        assert checked()[:2] == ([], True)
+def append(path, text):
+    path.write_text(path.read_text() + text)
+
+
+def checks_of(tmp_path, monkeypatch, *only):
+    """Return a function that checks the tutorial's package, in a scratch folder that is kept, for
+    these requirements. It returns the ids of the findings, the programs that ran, and the C++
+    nodes that are built: name -> time."""
+    place, scratch, ran = tmp_path / "package", tmp_path / "scratch", []
+    check_sets.lay_out("mrp", place)
+    scratch.mkdir(mode=0o711)
+    run = confine.run
+
+    def spied(command, *arguments, **options):
+        program = command[1] if command[0] == "/usr/bin/python3" else command[0]
+        ran.append(os.path.basename(program))
+        return run(command, *arguments, **options)
+
+    monkeypatch.setattr(confine, "run", spied)
+
+    def checked():
+        ran.clear()
+        contract = spec.read(spec.find("pub_sub"))
+        report = check.check(Package(place), contract, only, kept=scratch)
+        built = (scratch / "workspace" / "devel" / "lib" / "mrp").glob("*_cpp_node")
+        times = {path.name: path.stat().st_mtime_ns for path in built}
+        return [f.id for f in report.findings], [*ran], times
+
+    return checked

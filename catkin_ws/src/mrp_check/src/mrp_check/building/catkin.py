@@ -50,7 +50,7 @@ class Catkin:
     def __init__(self, workspace: Workspace) -> None:
         self.workspace = workspace
         self.folder = workspace.folder
-        self._building: concurrent.futures.Future[confine.Result] | None = None
+        self._building: concurrent.futures.Future[Step] | None = None
 
     def _catkin_make(self, *arguments: str) -> confine.Result:
         trace = self.folder / "trace.json"
@@ -127,15 +127,21 @@ class Catkin:
         if self._building is None and self.configured.ok:
             self._building = self.workspace.submit(self._build)
 
-    def _build(self) -> confine.Result:
-        if self.workspace.compiles_again:
+    def _build(self) -> Step:
+        workspace = self.workspace
+        if workspace.made:
+            step = Step(*workspace.made)
+            workspace.keep(self.configured, step)
+            return step
+        if workspace.compiles_again:
             # An executable of an earlier build must not stand in for one that cannot be built now.
             made = ["find", "devel/lib", "-type", "f", "-newer", "build/Makefile", "-delete"]
-            self.workspace.run("env", f"--chdir={self.folder}", *made)
+            workspace.run("env", f"--chdir={self.folder}", *made)
         result = self._catkin_make("-k", "-j2")
+        step = self._step(result)
         if result.ended_by is None:
-            self.workspace.keep(self.configured)
-        return result
+            workspace.keep(self.configured, step)
+        return step
 
     @functools.cached_property
     def built(self) -> Step | None:
@@ -143,8 +149,9 @@ class Catkin:
         self.start_building()
         if self._building is None:
             return None
-        self.workspace.progress("building")
-        return self._step(self._building.result())
+        if not self.workspace.made:
+            self.workspace.progress("building")
+        return self._building.result()
 
     def wait_until_built(self) -> None:
         """Wait until building has ended, if CMake succeeded; `built` says how."""

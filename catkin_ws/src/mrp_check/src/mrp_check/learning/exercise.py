@@ -81,27 +81,35 @@ def _diff(path: pathlib.Path, *roots: pathlib.Path) -> Iterator[str]:
 
 
 def _name(defect: defects.Defect) -> str:
-    """Return the number and the title: the defect's own name would say too much."""
-    words = re.findall(r"[a-z0-9]+", defect.title.lower())
-    return "_".join([f"{defect.order:02}", *words])
+    """Return the title as a name: the defect's own name would say too much."""
+    return "_".join(re.findall(r"[a-z0-9]+", defect.title.lower()))
+
+
+def _without_number(name: str) -> str:
+    return re.sub(r"^\d+_", "", name)
 
 
 class Course:
     """All exercises, from the easiest on, and which of them are passed.
 
     folder: of the student's copies; in it passed.txt, with the name of one exercise in each line
+
+    A later version may number the exercises anew: so an exercise is known by its name alone.
     """
 
     def __init__(self, folder: pathlib.Path) -> None:
         self.folder = folder.resolve()
         self.folder.mkdir(parents=True, exist_ok=True)
         found = defects.exercises()
-        self.exercises = [
-            Exercise(defect, number, len(found), self.folder / _name(defect))
-            for number, defect in enumerate(found, 1)
-        ]
+        copies = {_without_number(path.name): path for path in sorted(self.folder.iterdir())}
+        self.exercises = []
+        for number, defect in enumerate(found, 1):
+            new = self.folder / f"{number:02}_{_name(defect)}"
+            place = copies.get(_name(defect), new)
+            self.exercises.append(Exercise(defect, number, len(found), place))
         self._file = self.folder / "passed.txt"
-        self._passed = self._file.read_text(errors="replace").split() if self._file.exists() else []
+        lines = self._file.read_text(errors="replace").split() if self._file.exists() else []
+        self._passed = [_without_number(line) for line in lines]
 
     @property
     def open(self) -> list[Exercise]:

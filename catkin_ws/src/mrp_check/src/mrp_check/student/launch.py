@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import dataclasses
+import re
 import xml.parsers.expat
 from typing import Iterable
 
@@ -20,6 +21,7 @@ from mrp_check.student.workspace import Workspace
 from mrp_check.student.xml_file import Element, elements, xml_finding
 
 SECONDS = 180  # that loading a launch file may take
+_OF_OTHERS = re.compile(rb"\b(command|textfile|binfile)\s*=")  # attributes of a <param>
 _SAID = 500  # characters of what roslaunch's reader says when it fails
 
 
@@ -95,13 +97,12 @@ def load(workspace: Workspace, file: str) -> Launch:
     Raises CannotCheck.
     """
     copy, reader = workspace.package_folder, sandbox.code() / "launch_dump.py"
-    done = workspace.run(
-        "/usr/bin/python3",
-        str(reader),
-        str(copy / file),
-        seconds=SECONDS,
-        env={variables.PACKAGES: workspace.ros_packages},
-    )
+    command = ["/usr/bin/python3", str(reader), str(copy / file)]
+    env = {variables.PACKAGES: workspace.ros_packages}
+    if _reads_more(workspace.package):
+        done = workspace.run(*command, seconds=SECONDS, env=env)
+    else:
+        done = workspace.run_once(*command, of=("launch",), seconds=SECONDS, env=env)
     try:
         launch = crossing.from_json(Launch, done.output)
     except crossing.CrossingError as error:
@@ -118,6 +119,11 @@ def load(workspace: Workspace, file: str) -> Launch:
         name for name in (relative(one, copy.resolve()) for one in launch.files) if name
     ]
     return launch
+
+
+def _reads_more(package: Package) -> bool:
+    """Return whether a launch file may take a parameter from a program, or from any file."""
+    return any(_OF_OTHERS.search(package.bytes(path)) for path in package.of_kind("launch"))
 
 
 def _find_lines(package: Package, nodes: Iterable[Started]) -> None:

@@ -2,30 +2,35 @@
 """A scratch workspace with a copy of a package, in which the package's programs run, confined.
 
 Another check may have left it, with what it has built. If nothing has changed since then that CMake
-reads, only the files that are different are copied, and only what needs them is built again.
+reads, only the files that are different are copied, and only what needs them is made or read again.
 """
 
 from __future__ import annotations
 
 import concurrent.futures
+import dataclasses
 import filecmp
 import hashlib
 import json
+import os
 import pathlib
 import shutil
-from typing import Callable, Mapping, Sequence, TypeVar
+from typing import Callable, Mapping, Sequence, Tuple, TypeVar
 
 from mrp_check import confine
-from mrp_check.confined import variables
+from mrp_check.confined import variables, written
 from mrp_check.contract.resources import SHARES
 from mrp_check.student.package import Package
 
 T = TypeVar("T")
+Done = Tuple[bool, str, str]  # a catkin.Step
 
 # Of this machine's own ROS, whatever workspace the user's shell has sourced.
 NOETIC = pathlib.Path("/opt/ros/noetic/setup.bash")
 _AT_ONCE = 3  # commands that run in the background at the same time
 _BUILT = ("cpp", "header", "launch")  # kinds of files that CMake does not read
+_NOT_MADE = {"python", "launch"}  # kinds that make does not read, but for a command of one's own
+_OWN_COMMAND = b"add_custom_"
 _OF_RUNS = variables.FOLDERS.values()  # folders that the commands of one check write to
 
 
@@ -37,6 +42,7 @@ class Workspace:
     given: the folder of what the checker itself writes
     package_folder: the copy of the package
     configured: what came of CMake when the copy was configured, if it need not be done again
+    made: the same of make, if there is nothing that it would make again
     compiles_again: whether a C++ file is different from that of the last check
     timeout: seconds that the whole check may take
     progress: called with a sentence that says what is being done
@@ -55,13 +61,20 @@ class Workspace:
         self.given.mkdir(exist_ok=True)
         self._kept = self.given / "kept.json"
         self._read_by_cmake = _read_by_cmake(package)  # before it is copied: it may change then
-        self.configured = self._take_kept()
+        kept = self._take_kept()
+        self.configured = kept and kept["configured"]
         if not self.configured and self.folder.exists():
             confine.remove(self.folder)
         self.folder.mkdir(mode=0o700, exist_ok=True)
         copied = [path for path in package.files if self._copy(path)]
         changed = {package.kind(path) for path in copied if self.configured}
         self.compiles_again = bool(changed & {"cpp", "header"})
+        is_made = not changed <= _NOT_MADE or any(
+            _OWN_COMMAND in package.bytes(path)
+            for path in package.files
+            if package.kind(path) == "cmake"
+        )
+        self.made = None if is_made else kept and kept["made"]
         self._pool = concurrent.futures.ThreadPoolExecutor(max_workers=_AT_ONCE)
 
     def _copy(self, path: str) -> bool:
@@ -77,7 +90,7 @@ class Workspace:
         shutil.copy(source, target)
         return True
 
-    def _take_kept(self) -> tuple[bool, str, str] | None:
+    def _take_kept(self) -> dict[str, Done] | None:
         """Return what keep() was given, if it fits the package. It holds once: what is built from
         now on may be cut short."""
         if not self._kept.exists():
@@ -87,11 +100,11 @@ class Workspace:
         for folder in (*self.folder.glob("nodes_*"), *map(self.folder.joinpath, _OF_RUNS)):
             if folder.exists():
                 confine.remove(folder)
-        return kept["configured"] if kept["of"] == self._read_by_cmake else None
+        return kept if kept["of"] == self._read_by_cmake else None
 
-    def keep(self, configured: tuple[bool, str, str]) -> None:
+    def keep(self, configured: Done, made: Done) -> None:
         """Let the next check go on with what is built now."""
-        kept = {"of": self._read_by_cmake, "configured": configured}
+        kept = {"of": self._read_by_cmake, "configured": configured, "made": made}
         self._kept.write_text(json.dumps(kept))
 
     def close(self) -> None:
@@ -125,6 +138,29 @@ class Workspace:
             readable=[self.given],
             writable=writable,
         )
+
+    def run_once(
+        self,
+        *command: str,
+        of: Sequence[str],
+        seconds: float | None = None,
+        env: Mapping[str, str] | None = None,
+    ) -> confine.Result:
+        """As run(), unless an earlier check has run it on the same: then return what came of it.
+
+        of: the kinds of files that it reads, beside what CMake reads or makes
+        """
+        # Of the copy: a file that is saved just now may be different.
+        read = [written.read(self.package_folder / path) for path in self.package.of_kind(*of)]
+        made = sorted(os.walk(self.folder / "devel" / "include"))
+        known = repr((command, env, self._read_by_cmake, read, made)).encode()
+        path = self.given / hashlib.sha256(known).hexdigest()
+        if path.exists():
+            return confine.Result(**json.loads(path.read_text()))
+        result = self.run(*command, seconds=seconds, env=env)
+        if result.code == 0:
+            path.write_text(json.dumps(dataclasses.asdict(result)))
+        return result
 
     @property
     def ros_packages(self) -> str:
