@@ -10,14 +10,13 @@ import re
 import threading
 
 import pytest
-from check_rules import hand_in
+from check_rules import ASKED, hand_in
 from mrp_check import check
 from mrp_check.cli import check as check_command
 from mrp_check.cli import classroom
 from mrp_check.contract import errors, spec
 from mrp_check.contract.verdict import unchecked
 from mrp_check.report import class_table, json_
-from mrp_check.rules import REQUIREMENTS
 from mrp_check.student import package
 from mrp_testing.proves import proves
 from mrp_testing.waiting import DEADLINE
@@ -45,7 +44,7 @@ class Room(classroom.Classroom):
             "message": "publishes <2>",
             "consequence_of": None,
         }
-        verdicts = {id_: check.MET for id_ in REQUIREMENTS}
+        verdicts = {id_: check.MET for id_ in ASKED}
         return {
             "verdict": check.FINDINGS,
             "package": "student_pkg",
@@ -287,7 +286,7 @@ def results(tmp_path):
 )
 def test_points_come_from_the_spec(results):
     contract = spec.read(SPEC_FILE)
-    all_ids = len(REQUIREMENTS)
+    all_ids = len(ASKED)
     of_spec = dataclasses.replace(contract, points={"values": 5, "topic": 2.5})
     by_name = {one.name: one for one in results}
     assert class_table.most(contract) == all_ids
@@ -300,10 +299,10 @@ def test_points_come_from_the_spec(results):
 def test_what_is_not_asked_earns_no_points_and_has_no_column(results, tmp_path):
     contract = spec.read(SPEC_FILE)
     less = dataclasses.replace(contract, launch=spec.Launch(), not_asked=("wrap",))
-    asked = [id_ for id_ in REQUIREMENTS if id_ != "wrap" and not id_.startswith("launch-")]
+    asked = [id_ for id_ in ASKED if id_ != "wrap" and not id_.startswith("launch-")]
     assert class_table.most(less) == len(asked) < class_table.most(contract) - 3
     (header, *_) = csv.reader(class_table.csv_text(results, less).splitlines())
-    assert header[8:-1] == asked
+    assert header[9:-1] == asked
     page = Tags(class_table.html_text(results, less, tmp_path))
     assert page.tags.count("td") == len(results) * (3 + len(asked))
 
@@ -343,11 +342,11 @@ class Tags(html.parser.HTMLParser):
 def test_html(results, tmp_path):
     page = Tags(class_table.html_text(results, spec.read(SPEC_FILE), tmp_path))
     assert page.tags.count("tr") == 1 + len(results)
-    assert page.tags.count("td") == len(results) * (3 + len(REQUIREMENTS))
+    assert page.tags.count("td") == len(results) * (3 + len(ASKED))
     assert "b" not in page.tags
     assert "<b>anna" in page.texts
     assert "src/a.py:3: publishes <2>" in page.texts
     assert page.texts.count("✗") == 2
     assert page.texts.count("2 of 3") == 1
     assert [id_ for id_, _ in class_table.broken_in(results)] == ["values"]
-    assert REQUIREMENTS["values"].title in map(str.strip, page.texts)
+    assert ASKED["values"].title in map(str.strip, page.texts)

@@ -5,15 +5,15 @@ import csv
 import dataclasses
 import pathlib
 import re
+import zipfile
 
 import pytest
-from check_rules import hand_in
+from check_rules import ASKED, hand_in
 from mrp_check import check
 from mrp_check.cli import check as check_command
 from mrp_check.cli import classroom
 from mrp_check.contract import by_hand, errors, spec
-from mrp_check.report import class_table, moved
-from mrp_check.rules import REQUIREMENTS
+from mrp_check.report import class_table, mail, moodle, moved
 from mrp_testing.proves import proves
 from test_check_class import SPEC_FILE, Room, Tags
 
@@ -59,7 +59,7 @@ def test_a_person_s_marks_stand_apart_from_what_was_measured(tmp_path):
         "",
     ]
     page = Tags(class_table.html_text(results, LATE, tmp_path))
-    assert page.tags.count("td") == len(results) * (5 + len(REQUIREMENTS))
+    assert page.tags.count("td") == len(results) * (5 + len(ASKED))
     assert {*rows[1].values()} & {*page.texts} >= {rows[1]["by_hand"], "30"}
     said = class_table.text(results, LATE)
     assert f"anna: mark {marks['anna']} of {most}, by hand: 2 days late: -4" in said
@@ -135,9 +135,8 @@ def marked(tmp_path, contract, package="", **broken):
             {
                 "verdict": check.FINDINGS if ids else check.MET,
                 "package": "a_pkg",
-                "requirements": {
-                    id_: check.BROKEN if id_ in ids else check.MET for id_ in REQUIREMENTS
-                },
+                "spec": "s",
+                "requirements": {id_: check.BROKEN if id_ in ids else check.MET for id_ in ASKED},
                 "findings": [],
             },
             depends_on={"package": name + package, "contract": "1", "checker": "1"},
@@ -157,7 +156,7 @@ def moves(results):
     "required.",
 )
 def test_who_calls_again_sees_whose_marks_have_moved_and_why(tmp_path):
-    contract, all_ = spec.read(SPEC_FILE), len(REQUIREMENTS)
+    contract, all_ = spec.read(SPEC_FILE), len(ASKED)
     first = dataclasses.replace(contract, points={"wrap": 3})
     other = dataclasses.replace(contract, points={"wrap": 0, "spin": 3})
     class_ = {"anna": ["wrap", "queue"], "berta": []}
@@ -179,8 +178,8 @@ def test_who_calls_again_sees_whose_marks_have_moved_and_why(tmp_path):
 
 
 def test_what_a_student_or_a_person_has_changed_moves_a_mark_too(tmp_path):
-    contract, all_ = spec.read(SPEC_FILE), len(REQUIREMENTS)
-    ids = [*REQUIREMENTS][:8]
+    contract, all_ = spec.read(SPEC_FILE), len(ASKED)
+    ids = [*ASKED][:8]
     marked(tmp_path, contract, anna=ids, berta=["wrap"])
     found = marked(tmp_path, contract, package="2", anna=[], berta=["wrap"])
     assert moves(found) == {
@@ -194,3 +193,48 @@ def test_what_a_student_or_a_person_has_changed_moves_a_mark_too(tmp_path):
         "anna": "",
         "berta": f"{all_ - 1} -> 3 of {all_}: by hand",
     }
+
+
+@proves(
+    "--before shows what each student has gained and lost since an earlier hand-in.",
+    "The page of the class, that of the student, and the mail have it; the student reads nothing "
+    "of hidden requirements there.",
+)
+def test_progress_since_an_earlier_hand_in(tmp_path):
+    """Moodle has another number for each hand-in, and an archive may become a folder."""
+    contract, all_ = spec.read(SPEC_FILE), len(ASKED)
+    first, second = tmp_path / "1.checked", tmp_path / "2.checked"
+    for folder in (first, second):
+        folder.mkdir()
+    anna = "Anna M_{}_assignsubmission_file_".format
+    names = {anna(12): ["wrap", "spin", "queue"], "bert.zip": ["rate"], "carl": []}
+    marked(first, contract, **names, **{"two.zip": [], "two.tar.gz": []})
+    hidden = dataclasses.replace(contract, hidden=("wrap",))
+    later = {anna(77): ["queue", "rate"], "bert": ["rate"], "zoe": [], "two": []}
+    results = marked(second, hidden, **later)
+    moved.since(moved.before(first), results)
+
+    one = f"{all_ - 3} -> {all_ - 2} of {all_}; met now: {{}}; lost: rate".format
+    said = {anna(77): one("spin, wrap"), "bert": f"{all_ - 1} -> {all_ - 1} of {all_}"}
+    rows = csv.DictReader(class_table.csv_text(results, hidden).splitlines())
+    assert {row["submission"]: row["progress"] for row in rows if row["progress"]} == said
+    page = Tags(class_table.html_text(results, hidden, second)).texts
+    students = "1 of 2 students have more points, 0 have fewer"
+    sum_ = f"Since the earlier hand-in, {students}; all together +1."
+    assert {*said.values(), sum_} <= {*page}
+    assert sum_ in class_table.text(results, hidden)
+
+    assert mail.write(second, results, hidden) == []
+    name = anna(77)
+    assert f"Since the earlier hand-in: {one('spin')}\n" in (second / f"{name}.txt").read_text()
+    assert one("spin, wrap").replace(">", "&gt;") in (second / f"{name}.html").read_text()
+    moodle.write_pages(tmp_path / "marks.zip", results, hidden)
+    with zipfile.ZipFile(tmp_path / "marks.zip") as archive:
+        shown = archive.read(f"{name}/feedback.html").decode()
+    assert one("spin").replace(">", "&gt;") in shown
+    assert not (second / "zoe.html").exists()
+
+
+def test_a_folder_that_has_no_marks_is_named(tmp_path):
+    with pytest.raises(errors.CannotCheck, match="has no marks of a class"):
+        moved.before(tmp_path)

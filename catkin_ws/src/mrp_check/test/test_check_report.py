@@ -258,6 +258,7 @@ def test_what_is_suppressed_is_shown_with_its_reason():
     line = "src/a.py:4: suppressed (lifetime): It is kept elsewhere."
     assert line in console.text(one) and line in Reader(html_report.text(one)).text
     assert console.text(one).endswith("; suppressed: 1.")
+    assert f"<system-out>{line}</system-out>" in junit.text(one)
     (shown,) = json.loads(json_.text(one))["suppressed"]
     assert (shown["id"], shown["reason"]) == ("lifetime", "It is kept elsewhere.")
     (result,) = sarif.data(one)["runs"][0]["results"]

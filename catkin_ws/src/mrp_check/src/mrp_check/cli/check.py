@@ -15,6 +15,7 @@ from mrp_check.contract import by_hand, spec
 from mrp_check.contract.errors import CannotCheck, PackageError, SpecError
 from mrp_check.contract.verdict import FINDINGS, MET, UNCHECKED, public, unchecked
 from mrp_check.report import (
+    alike,
     class_table,
     console,
     github,
@@ -44,15 +45,19 @@ OF_PACKAGE = {  # of the report and the contract
         lambda report, _: html.text(report),
     ),
 }
-OF_CLASS = {  # of the submissions, the contract, and the folder of the submissions' pages
+OF_CLASS = {  # of the submissions, the contract, the folder of their pages, and who are alike
     "html": (OF_PACKAGE["html"][0], class_table.html_text),
     "csv": (
         "with --class: write the table as CSV",
-        lambda checked, contract, _: class_table.csv_text(checked, contract),
+        lambda checked, contract, *_: class_table.csv_text(checked, contract),
     ),
     "moodle": (
         "with --class: write Moodle's grading worksheet, and beside it a zip of feedback files",
-        lambda checked, contract, _: moodle.text(checked, contract),
+        lambda checked, contract, *_: moodle.text(checked, contract),
+    ),
+    "alike": (
+        "with --class: write as CSV which submissions are alike; --html shows them, too",
+        lambda checked, contract, _, pairs: alike.csv_text(pairs),
     ),
 }
 FLAGS = {  # what --help says of each
@@ -93,6 +98,10 @@ def parser():
         parser.add_argument(f"--{option}", metavar="FILE", help=text)
     set_ = "with --class: take late days, maxima and overrides of students' points from this CSV"
     parser.add_argument("--by-hand", metavar="FILE", help=set_)
+    given = "with --alike: a package that all students were given, of which nothing counts"
+    parser.add_argument("--template", metavar="PATH", action="append", default=[], help=given)
+    since = "with --class: show what has changed since an earlier hand-in, whose DIR.checked it is"
+    parser.add_argument("--before", metavar="FOLDER", help=since)
     for flag, text in FLAGS.items():
         parser.add_argument(f"--{flag}", action="store_true", help=text)
     number = "with --class: check N at the same time, 1 to 64 (default: %(default)s)"
@@ -124,7 +133,7 @@ def _seconds(text):
 def run(options):
     """Check what the options say, write the reports, and return the exit code."""
     of_package = {*OF_PACKAGE, *FLAGS, "only"} - {*OF_CLASS}
-    of_class = {*OF_CLASS, "by_hand"} - {*OF_PACKAGE}
+    of_class = {*OF_CLASS, "by_hand", "template", "before"} - {*OF_PACKAGE}
     try:
         for name in sorted(of_package if options.class_ else of_class):
             if getattr(options, name):
@@ -160,6 +169,10 @@ def run_class(options):
     if options.by_hand:
         names, points = [entry.name for entry in room.entries], class_table.most(contract)
         set_ = by_hand.read(options.by_hand, names, points, contract.late)
+    earlier = moved.before(options.before) if options.before else None
+    pairs = []
+    if options.alike:
+        pairs = alike.pairs_in(room.entries, options.package, options.template)
     say_how_apart()
     try:
         checked = room.check()
@@ -168,13 +181,15 @@ def run_class(options):
     for one in checked:
         one.by_hand = set_.get(one.name, one.by_hand)
     moved.compare(room.results, checked, contract)
+    if earlier:
+        moved.since(earlier, checked)
     for name, (_, text) in OF_CLASS.items():
-        write(getattr(options, name), text, checked, contract, room.results)
+        write(getattr(options, name), text, checked, contract, room.results, pairs)
     for sentence in mail.write(room.results, checked, contract):
         print(f"check: {sentence}", file=sys.stderr)
     if options.moodle:
         write_pages(options.moodle, checked, contract)
-    print(class_table.text(checked, contract))
+    print("\n".join(filter(None, [class_table.text(checked, contract), alike.text(pairs)])))
     all_met = all(one.report["verdict"] == MET for one in checked)
     return MET if all_met else FINDINGS
 

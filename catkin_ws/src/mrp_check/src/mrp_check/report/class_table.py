@@ -28,6 +28,7 @@ class Submission:
     depends_on: what the report depends on -> a text that changes with it
     by_hand: what a person has set
     moved: how the mark has moved, as moved.py says
+    before: the verdicts and the mark in an earlier hand-in, of `most` points
     """
 
     name: str
@@ -36,6 +37,7 @@ class Submission:
     depends_on: dict = dataclasses.field(default_factory=dict)
     by_hand: ByHand = ByHand()
     moved: str = ""
+    before: dict = dataclasses.field(default_factory=dict)
 
     def verdict_on(self, id_):
         """Return the verdict on one requirement: MET, BROKEN or UNCHECKED."""
@@ -48,6 +50,24 @@ class Submission:
     def mark(self, spec):
         """Return the points with what a person has set."""
         return self.by_hand.mark(self.points(spec))
+
+    def progress(self, spec, hidden=()):
+        """Return what has been gained and lost since the earlier hand-in: empty without one.
+
+        hidden: requirements of which nothing is said
+        """
+        if not self.before:
+            return ""
+        old, new = self.before["verdicts"], self.report["requirements"]
+        asked = [id_ for id_ in REQUIREMENTS if spec.asks(id_) and id_ not in hidden]
+        ids = {
+            "met now": [id_ for id_ in asked if new.get(id_) == MET != old.get(id_)],
+            "lost": [id_ for id_ in asked if old.get(id_) == MET != new.get(id_)],
+        }
+        points, before = most(spec), self.before["most"]
+        of = "" if before == points else f" of {before:g}"
+        said = [f"{self.before['mark']:g}{of} -> {self.mark(spec):g} of {points:g}"]
+        return "; ".join([*said, *(f"{what}: {', '.join(ids[what])}" for what in ids if ids[what])])
 
     def shown(self, spec):
         """Return what the student may see of the Report."""
@@ -78,7 +98,17 @@ def csv_text(submissions, spec):
     file = io.StringIO()
     writer = csv.writer(file)
     asked = [id_ for id_ in REQUIREMENTS if spec.asks(id_)]
-    columns = ["submission", "package", "verdict", "points", "of", "by_hand", "mark", "moved"]
+    columns = [
+        "submission",
+        "package",
+        "verdict",
+        "points",
+        "of",
+        "by_hand",
+        "mark",
+        "moved",
+        "progress",
+    ]
     writer.writerow([*columns, *asked, "why"])
     for one in submissions:
         writer.writerow(
@@ -91,6 +121,7 @@ def csv_text(submissions, spec):
                 cell(str(one.by_hand)),
                 f"{one.mark(spec):g}",
                 cell(one.moved),
+                cell(one.progress(spec)),
                 *map(one.verdict_on, asked),
                 cell(" | ".join(one.causes()[:_MOST_CAUSES])),
             ]
@@ -112,10 +143,11 @@ def broken_in(submissions):
     return sorted([entry for entry in found if entry[1]], key=lambda entry: -len(entry[1]))
 
 
-def html_text(submissions, spec, pages):
+def html_text(submissions, spec, pages, pairs=()):
     """Return one page with a table of all submissions.
 
     pages: the folder of the submissions' own pages; the table links to them
+    pairs: of submissions that are alike
     """
 
     def page_of(one):
@@ -133,6 +165,8 @@ def html_text(submissions, spec, pages):
         address_of=html.address_of,
         has_marks=any(str(one.by_hand) for one in submissions),
         has_moved=any(one.moved for one in submissions),
+        since=since(submissions, spec),
+        pairs=pairs,
     )
 
 
@@ -149,7 +183,21 @@ def text(submissions, spec):
         )
     lines += [f"{one.name}: {said_of_mark(one, spec)}" for one in submissions if str(one.by_hand)]
     lines += [f"{one.name}: {one.moved}" for one in submissions if one.moved]
+    lines += [f"{one.name}: {one.progress(spec)}" for one in submissions if one.before]
+    lines += filter(None, [since(submissions, spec)])
     return console.plain("\n".join(lines))
+
+
+def since(submissions, spec):
+    """Return how many have more or fewer points than in the earlier hand-in; empty without one."""
+    gains = [one.mark(spec) - one.before["mark"] for one in submissions if one.before]
+    if not gains:
+        return ""
+    more, fewer = sum(gain > 0 for gain in gains), sum(gain < 0 for gain in gains)
+    return (
+        f"Since the earlier hand-in, {more} of {len(gains)} students have more points, {fewer} have"
+        f" fewer; all together {sum(gains):+g}."
+    )
 
 
 def said_of_mark(one, spec):

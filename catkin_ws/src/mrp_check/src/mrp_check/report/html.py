@@ -30,14 +30,16 @@ def render(template, **values):
     return console.plain(page)
 
 
-def text(report, has_links=True):
+def text(report, has_links=True, progress=""):
     """Return the page of one package's report.
 
     has_links: whether it links to the tutorial's pages, which are on this machine alone
+    progress: what has changed since an earlier hand-in
     """
     return render(
         "package.html",
         report=report,
+        progress=progress,
         summary=console.summary(report),
         groups=console.with_consequences(report.findings),
         stages=console.by_stage(report),

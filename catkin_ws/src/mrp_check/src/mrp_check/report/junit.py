@@ -20,7 +20,9 @@ def text(report):
     for id_, verdict in report.requirements.items():
         case = _case(suite, f"mrp_check.{REQUIREMENTS[id_].stage}", id_)
         findings = [finding for finding in report.findings if finding.id == id_]
-        lines = "\n\n".join("\n".join(console.finding_lines(f, report)) for f in findings)
+        said = ["\n".join(console.finding_lines(f, report)) for f in findings]
+        said += [console.suppressed_line(f, report) for f in report.suppressed if f.id == id_]
+        lines = "\n\n".join(said)
         if verdict == BROKEN:
             errors = [f for f in findings if f.severity == ERROR and not f.consequence_of]
             _add(case, "failure", lines, message=errors[0].message)

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from mrp_check.report import class_table, console
+from mrp_check.report import class_table, console, html, json_
 
 
 def text(one, spec):
@@ -11,16 +11,26 @@ def text(one, spec):
     report = one.shown(spec)
     said = console.text(report) if report.requirements else console.summary(report)
     mark = f"{one.name}: {class_table.said_of_mark(one, spec)}"
-    return console.plain("\n".join([spec.title, mark, report.reason, said])) + "\n"
+    progress = one.progress(spec, spec.hidden)
+    since = [f"Since the earlier hand-in: {progress}"] if progress else []
+    return console.plain("\n".join([spec.title, mark, *since, report.reason, said])) + "\n"
 
 
 def write(folder, submissions, spec):
-    """Write NAME.txt for each submission; return a sentence on each that cannot be written."""
+    """Write NAME.txt for each submission, and the page NAME.html anew where it has progress.
+
+    Return a sentence on each file that cannot be written.
+    """
     failed = []
     for one in submissions:
-        file = folder / f"{one.name}.txt"
-        try:
-            file.write_text(text(one, spec), encoding="utf-8", errors="replace")
-        except OSError as error:
-            failed.append(f"{console.plain(str(file))} cannot be written: {error.strerror}.")
+        texts = {"txt": text(one, spec)}
+        if one.before and one.report["requirements"]:
+            report = json_.report_of(one.report)
+            texts["html"] = html.text(report, progress=one.progress(spec))
+        for kind, said in texts.items():
+            file = folder / f"{one.name}.{kind}"
+            try:
+                file.write_text(said, encoding="utf-8", errors="replace")
+            except OSError as error:
+                failed.append(f"{console.plain(str(file))} cannot be written: {error.strerror}.")
     return failed

@@ -21,7 +21,7 @@ from mrp_check.report import class_table, console
 from mrp_check.report import html as page
 
 _COLUMNS = "Identifier,Full name,Grade,Maximum Grade,Last modified (grade),Feedback comments"
-_DOWNLOADED = re.compile(r"([^_]+)_(\d+)_assignsubmission_file(_.*)?", re.DOTALL)
+DOWNLOADED = re.compile(r"([^_]+)_(\d+)_assignsubmission_file(_.*)?", re.DOTALL)
 
 
 def text(submissions, spec):
@@ -41,7 +41,8 @@ def write_pages(path, submissions, spec):
     with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
         for one, name, number in _numbered(submissions):
             folder = f"{name}_{number}_assignsubmission_file_"
-            report = page.text(one.shown(spec), has_links=False)
+            progress = one.progress(spec, spec.hidden)
+            report = page.text(one.shown(spec), has_links=False, progress=progress)
             archive.writestr(f"{folder}/feedback.html", report)
 
 
@@ -53,7 +54,7 @@ def left_out(submissions):
 
 def _numbered(submissions):
     """Return (submission, student's name, number) of those whose number is in one name alone."""
-    found = [(one, _DOWNLOADED.fullmatch(one.name)) for one in submissions]
+    found = [(one, DOWNLOADED.fullmatch(one.name)) for one in submissions]
     named = [(one, match[1], match[2]) for one, match in found if match]
     counts = collections.Counter(number for _, _, number in named)
     return [entry for entry in named if counts[entry[2]] == 1]

@@ -2,14 +2,21 @@
 """Whose marks are others than in an earlier call, and why.
 
 A file beside the reports keeps the marks of the last call, and of the last one before it that had
-others: the same command says the same again.
+others: the same command says the same again. With that file of an earlier hand-in, it is said what
+each student has gained and lost since then.
 """
 
 from __future__ import annotations
 
+import collections
+import pathlib
+import unicodedata
+
+from mrp_check.contract.errors import CannotCheck
 from mrp_check.contract.verdict import UNCHECKED, WORDS
-from mrp_check.report import json_
+from mrp_check.report import json_, moodle
 from mrp_check.rules import REQUIREMENTS
+from mrp_check.student import archive
 
 _FILE = ".marks.json"  # hidden, as no submission is
 _MOST_IDS = 5  # in one sentence
@@ -25,6 +32,41 @@ def compare(folder, submissions, spec):
     for one in submissions:
         if before and one.name in before["students"]:
             one.moved = _moved(before, now, one.name)
+
+
+def before(folder):
+    """Return the last marks in the folder of an earlier hand-in's reports. Raises CannotCheck."""
+    kept = json_.kept(pathlib.Path(folder) / _FILE)
+    if not kept:
+        raise CannotCheck(
+            f"{folder} has no marks of a class: expected an earlier hand-in's DIR.checked."
+        )
+    return kept[0]
+
+
+def since(marks, submissions):
+    """Give each submission, as its `before`, what the same student had in an earlier hand-in."""
+    earlier, now = _by_student(marks["students"]), _by_student(one.name for one in submissions)
+    most = sum(marks["points"].values())
+    for one in submissions:
+        name = earlier.get(_student(one.name))
+        if name and _student(one.name) in now:
+            one.before = {**marks["students"][name], "most": most}
+
+
+def _by_student(names):
+    """Return student -> the name of a submission, for those who have one alone."""
+    found = collections.defaultdict(list)
+    for name in names:
+        found[_student(name)].append(name)
+    return {student: names[0] for student, names in found.items() if len(names) == 1}
+
+
+def _student(name):
+    """Return what stays the same of a name: an archive is called by its suffix, too, and Moodle has
+    another number for each hand-in."""
+    match = moodle.DOWNLOADED.fullmatch(name)
+    return unicodedata.normalize("NFC", match[1] if match else archive.without_suffix(name))
 
 
 def _marks(submissions, spec):

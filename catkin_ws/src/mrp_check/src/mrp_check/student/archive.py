@@ -57,6 +57,11 @@ def has_its_name(name: str) -> bool:
     return bool(_NAMES.search(name)) and not is_of_tools(name)
 
 
+def without_suffix(name: str) -> str:
+    """Return the name of an archive without what says its format."""
+    return _NAMES.sub("", name)
+
+
 def unpack(path: pathlib.Path, folder: pathlib.Path, budget: Budget) -> None:
     """Unpack the packages of an archive; if it has none, the archives in it. Raises PackageError.
 
