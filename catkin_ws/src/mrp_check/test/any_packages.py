@@ -98,7 +98,7 @@ def ask(wanted):
 
 if __name__ == "__main__":
     if len(sys.argv) != 2:
-        print("usage: client.py 0|1")
+        print("Tell me 0 or 1")
         sys.exit(1)
     rospy.init_node("client")
     ask(sys.argv[1] == "1")

@@ -7,6 +7,7 @@ import types
 from mrp_check import case
 from mrp_check.contract import spec
 from mrp_check.rules import (
+    REQUIREMENTS,
     callbacks,
     counter,
     early_timer,
@@ -46,6 +47,7 @@ catkin_package(CATKIN_DEPENDS roscpp rospy std_msgs)
 catkin_install_python(PROGRAMS src/odd.py DESTINATION bin)
 """
 PUB_SUB = spec.read(spec.find("pub_sub"))
+ASKED = {id_: one for id_, one in REQUIREMENTS.items() if PUB_SUB.asks(id_)}
 
 
 def make(folder, **files):

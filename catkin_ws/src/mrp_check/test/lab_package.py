@@ -209,7 +209,7 @@ def spec_of(publishers, subscribers):
         name, topics[key] = f"publisher_{key}", spec.Topic(f"of_{key}", "std_msgs/UInt32")
         rule = spec.Values(1, 2, 2**32)
         role = spec.Publishes(topics[key], queue=10, period=0.5, tolerance=0.1, values=rule)
-        nodes[name] = spec.Node(name, "python", publishes=role, prints=prints(name))
+        nodes[name] = spec.Node(name, "python", published=(role,), prints=prints(name))
     for key in subscribers:
         name = f"subscriber_{key}"
         topics["to_" + key] = spec.Topic("to_" + key, "std_msgs/UInt32")

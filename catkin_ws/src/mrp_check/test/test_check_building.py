@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What CMake and the compiler print, in plain words, and the line that is to blame."""
 
+import subprocess
+
 import check_rules
 import pytest
 from check_rules import CMAKE, MANIFEST
@@ -58,6 +60,16 @@ def test_compilers_errors_in_plain_words(error, says, tmp_path):
     assert says in finding.message
 
 
+def test_a_function_that_returns_nothing_is_found_though_it_compiles(tmp_path):
+    text = "bool answer(int &a)\n{\n  a = 1;\n}\nint main() { int a; return answer(a); }\n"
+    package = check_rules.make(tmp_path / "src" / "some_pkg", src__a_DOT_cpp=text)
+    command = ["g++", "-c", package.root / "src" / "a.cpp", "-o", tmp_path / "a.o"]
+    done = subprocess.run(command, stderr=subprocess.PIPE, text=True)
+    (finding,) = compiler.without_return(package, done.stderr, package.root)
+    assert done.returncode == 0
+    assert (finding.severity, finding.file, finding.line) == ("error", "src/a.cpp", 4)
+
+
 def test_error_in_a_header_of_ros_is_where_the_package_uses_it(tmp_path):
     package = check_rules.make(tmp_path / "src" / "some_pkg", src__a_DOT_cpp=CPP)
     output = (
@@ -101,4 +113,5 @@ def test_package_that_this_machine_has_not_is_not_the_students_fault(tmp_path):
     assert configuring.absent(package, said.format("rospyy")) is None
     # Without a contract, CMakeLists.txt may ask for more.
     assert configuring.absent(package, said.format("tf2"), is_contract=False) == "tf2"
+    assert configuring.absent(package, said.format("nav_msgs"), is_contract=False) == "nav_msgs"
     assert configuring.absent(package, said.format("rospyy"), is_contract=False) is None

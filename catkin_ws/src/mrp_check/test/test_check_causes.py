@@ -63,6 +63,15 @@ def findings(*entries):
             ],
             ["targets"],
         ),
+        # Of two possible causes, the one that stands where CMake stops.
+        (
+            [
+                ("dependencies", "package.xml", 9, "files", None),
+                ("cmake", "CMakeLists.txt", 4, "files", None),
+                ("configure", "CMakeLists.txt", 4, "build", None),
+            ],
+            [None, "cmake"],
+        ),
         # Two faults of the same kind in two sources are two.
         (
             [
@@ -91,7 +100,7 @@ def findings(*entries):
             [None],
         ),
     ],
-    ids=range(13),
+    ids=range(14),
 )
 def test_consequences(entries, expected):
     told = causes.told_once(findings(*entries), facts())

@@ -67,11 +67,26 @@ def test_what_a_dead_node_would_do_was_never_seen(tmp_path):
     observed.direct = DirectResult({"publisher_right": Alone(code=1, ended_after=0.1)})
     case = observed_case(tmp_path, folder, observed)
     case.close()
-    of_run = [id_ for id_, one in REQUIREMENTS.items() if one.stage in ("run", "stop")]
+    asked = [one for one in REQUIREMENTS.items() if case.spec.asks(one[0])]
+    of_run = [id_ for id_, one in asked if one.stage in ("run", "stop")]
     unseen = check.unseen(case, of_run)
     # Nobody asks it to hear anything.
     assert {*of_run} - {*unseen} == {"received"}
     assert {*unseen.values()} == {"publisher_right did not run"}
+
+
+@pytest.mark.parametrize("heard", [True, False])
+def test_a_publisher_that_was_never_connected_to_is_not_silent(tmp_path, heard):
+    folder = make_package(tmp_path / "lab_pkg", {"right": ("", "")}, {})
+    path, topic = "/lab/publisher_right", "/lab/of_right"
+    seen = Seen(publications=[Registration(path, topic, "std_msgs/Int16", 0, heard)])
+    launch = LaunchResult(ending="enough", asked=12, lines=[], seen=seen)
+    observed = observing.Observed(launch=launch, executables={"publisher_right": folder})
+    case = observed_case(tmp_path, folder, observed)
+    found = [finding.id for rule in OF_RUN for finding in rule.findings(case)]
+    case.close()
+    assert ("values" in found) == heard
+    assert check.unseen(case, ["values"]) == {"values": "publisher_right published no number"}
 
 
 _WHILE_OTHERS_REGISTER = """
@@ -90,9 +105,43 @@ with Observer() as observer:
 """
 
 
-def test_the_observer_reads_who_has_registered_while_others_register():
+def _said_by(code):
+    """Return what Python code prints that makes an Observer: there can be one in a process."""
     done = subprocess.run(
-        [sys.executable, "-c", _WHILE_OTHERS_REGISTER],
+        [sys.executable, "-c", code],
         stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=60,
     )  # fmt: skip
-    assert (done.returncode, done.stdout) == (0, "registered\n")
+    assert done.returncode == 0, done.stdout
+    return done.stdout
+
+
+def test_the_observer_reads_who_has_registered_while_others_register():
+    assert _said_by(_WHILE_OTHERS_REGISTER) == "registered\n"
+
+
+_TOLD_TWICE = """
+import threading
+from rospy.impl.masterslave import ROSHandler
+inside, both = [], threading.Event()
+def connect(*_):
+    inside.append(1)
+    if len(inside) > 1:
+        both.set()
+    both.wait(0.5)
+    inside.pop()
+ROSHandler._connect_topic = connect
+from mrp_check.confined.observe import Observer
+with Observer():
+    publisher = None, "/topic", "http://publisher:1"
+    told = [threading.Thread(target=ROSHandler._connect_topic, args=publisher) for _ in range(2)]
+    for one in told:
+        one.start()
+    for one in told:
+        one.join()
+    print("both at once" if both.is_set() else "one after the other")
+"""
+
+
+def test_the_observer_never_connects_twice_at_once_to_a_publisher():
+    """rospy would leave one that says nothing, and the publisher would wait for it for good."""
+    assert _said_by(_TOLD_TWICE) == "one after the other\n"

@@ -8,14 +8,13 @@ import zipfile
 
 import jsonschema
 import pytest
-from check_rules import hand_in
+from check_rules import ASKED, hand_in
 from mrp_check.cli import check as check_command
 from mrp_check.contract import spec
 from mrp_check.contract.by_hand import ByHand
 from mrp_check.contract.finding import Finding
 from mrp_check.contract.verdict import BROKEN, FINDINGS, MET, UNCHECKED, Report, public, unchecked
 from mrp_check.report import class_table, console, gradescope, html, json_, mail, moodle
-from mrp_check.rules import REQUIREMENTS
 from mrp_testing.proves import proves
 
 pytestmark = pytest.mark.quick
@@ -74,7 +73,7 @@ SILENT = Finding("received", "Nothing came.", "src/b.py", 2, consequence_of="spi
 
 
 def report(*findings, reason=""):
-    verdicts = dict.fromkeys(REQUIREMENTS, MET)
+    verdicts = dict.fromkeys(ASKED, MET)
     verdicts.update({f.id: UNCHECKED if f.consequence_of else BROKEN for f in findings})
     unseen = {f.id: f"it follows from {f.consequence_of}" for f in findings if f.consequence_of}
     verdict = UNCHECKED if reason else FINDINGS if findings else MET
@@ -114,9 +113,9 @@ def test_results_have_the_fields_that_gradescope_names(one):
 def test_each_requirement_is_a_test_with_its_points():
     tests = results(report(SPIN, VALUES))["tests"]
     by_id = {test["name"].split("(")[-1][:-1]: test for test in tests}
-    assert list(by_id) == list(REQUIREMENTS)
+    assert list(by_id) == list(ASKED)
     most = class_table.most(CONTRACT)
-    assert sum(test["max_score"] for test in tests) == most == len(REQUIREMENTS) + 4 + 1.5
+    assert sum(test["max_score"] for test in tests) == most == len(ASKED) + 4 + 1.5
     assert sum(test["score"] for test in tests) == most - 5 - 2.5
     assert {id_ for id_, test in by_id.items() if test["visibility"] == "hidden"} == {
         "spin",
@@ -129,8 +128,8 @@ def test_each_requirement_is_a_test_with_its_points():
 
 def test_what_could_not_be_checked_says_why_and_earns_nothing():
     one = report(reason="No time was left.")
-    one.requirements.update(dict.fromkeys(REQUIREMENTS, UNCHECKED))
-    one.unseen.update(dict.fromkeys(REQUIREMENTS, "No time was left."))
+    one.requirements.update(dict.fromkeys(ASKED, UNCHECKED))
+    one.unseen.update(dict.fromkeys(ASKED, "No time was left."))
     found = results(one)
     assert sum(test["score"] for test in found["tests"]) == 0
     assert found["output"].endswith("\nNo time was left.")
@@ -164,15 +163,13 @@ def test_a_student_does_not_see_which_hidden_requirement_failed(kind):
     shown = SHOWN[kind]
     assert shown(report(SPIN)) == shown(report(WRAP)) == shown(report())
     if kind != "json":
-        assert f"All public requirements are met: {len(REQUIREMENTS) - 2}" in str(
-            shown(report(SPIN))
-        )
+        assert f"All public requirements are met: {len(ASKED) - 2}" in str(shown(report(SPIN)))
 
 
 @pytest.mark.parametrize("kind", SHOWN)
 def test_a_cause_that_is_hidden_is_not_named(kind):
     text = str(SHOWN[kind](report(SPIN, SILENT)))
-    assert "spin" not in text and REQUIREMENTS["spin"].title not in text
+    assert "spin" not in text and ASKED["spin"].title not in text
 
 
 @pytest.mark.parametrize("kind", SHOWN)

@@ -2,11 +2,13 @@
 """The checker's rules about Python: each on a line that is wrong and on one that looks like it."""
 
 import re
+import types
 
 import check_rules
 import pytest
 from check_rules import told
 from mrp_check.confined.places import Kind, Place
+from mrp_check.sources import facts, uses
 
 pytestmark = pytest.mark.quick
 
@@ -194,7 +196,11 @@ def test_queue_is_as_long_as_the_contract_says(queue, severity, tmp_path):
     assert told(found, severity) == [("queue", 9)]
 
 
-def test_module_that_this_machine_has_not_is_not_the_students_fault(tmp_path):
+def test_module_that_this_machine_has_not_is_not_the_students_fault(tmp_path, monkeypatch):
+    monkeypatch.setattr(uses, "debian_packages", lambda: {"python3-std-msg"})
+    text = replaced("import rospy\n", "import rospy\nimport std_msg\n")
+    (finding,) = check_rules.python_findings(tmp_path, text)
+    assert "std_msg is not on this machine (Debian package python3-std-msg)" in finding.message
     text = replaced("import rospy\n", "import rospy\nimport no_such_camera\n")
     (finding,) = check_rules.python_findings(tmp_path, text)
     assert (finding.severity, finding.line) == ("note", 3)
@@ -204,6 +210,26 @@ def test_module_that_this_machine_has_not_is_not_the_students_fault(tmp_path):
     assert "csv" not in f"{finding.message} {finding.fix}"
     text = replaced("import rospy\n", "import rospy\nfrom std_srvs.srv import Empty\n")
     assert told(check_rules.python_findings(tmp_path, text)) == []
+
+
+def test_a_loop_that_names_is_shutdown_without_brackets(tmp_path):
+    loop = "    while not rospy.is_shutdown{}:\n        rospy.sleep(1)\n"
+    text = replaced("    rospy.spin()\n", loop.format(""))
+    line = text[: text.index("while not")].count("\n") + 1
+    assert told(check_rules.python_findings(tmp_path / "named", text)) == [("spin", line)]
+    text = replaced("    rospy.spin()\n", loop.format("()"))
+    assert told(check_rules.python_findings(tmp_path / "called", text)) == []
+
+
+@pytest.mark.parametrize(
+    ("loop", "found"), [("ros::ok", [("exit", 2)]), ("ros::ok()", []), ("n() /* ros::ok */", [])]
+)
+def test_a_loop_that_names_ok_without_brackets(loop, found, tmp_path):
+    text = f"int main() {{\n  while ({loop}) {{}}\n}}\n"
+    package = check_rules.make(tmp_path, src__a_DOT_cpp=text)
+    known = facts.Facts(sources={"a": ["src/a.cpp"]})
+    one = types.SimpleNamespace(package=package, facts=known)
+    assert told(check_rules.not_called.RULE.findings(one)) == found
 
 
 @pytest.mark.parametrize(

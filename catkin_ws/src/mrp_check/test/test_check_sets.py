@@ -95,10 +95,14 @@ def shown(findings):
     "This is the tutorial's spec, and the tutorial's package meets it:",
     "relay.yaml is for a node that doubles what it receives, with its own type of message.",
     "replay.yaml is for a node that publishes what is in a bag.",
-    "talker_listener_py.yaml and talker_listener_cpp.yaml are for the pair of the ROS wiki: texts, "
-    "a loop, and no launch file.",
-    "A package meets it, and packages in which one thing is wrong do not:",
+    "talker_listener_py.yaml and talker_listener_cpp.yaml are for the pair of the ROS wiki: "
+    "texts, a loop, and no launch file.",
+    "add_two_ints_py.yaml and add_two_ints_cpp.yaml are for a service and its client.",
+    "own_message.yaml, parameter.yaml, turtle.yaml and filter.yaml are for a message of the "
+    "package's own, a parameter, a command subscriber, and two inputs.",
     "Exit code 0 means that all requirements are met.",
+    "A package meets it, and packages in which one thing is wrong do not:",
+    "Each example is a run of its own:",
 )
 @pytest.mark.parametrize("style", parameters(check_sets.STYLES, str))
 def test_correct_package_is_met(style, tmp_path, run_check):
@@ -122,6 +126,7 @@ def test_correct_package_is_met(style, tmp_path, run_check):
     "They check packages with one defect each, and it reports the right file and line, and "
     "nothing else.",
     "A package meets it, and packages in which one thing is wrong do not:",
+    "The checker asks the node that offers it, and answers the node that calls it:",
     "Check: make check PKG=~/catkin_ws/src/my_package checks a package that you wrote.",
 )
 @pytest.mark.parametrize(

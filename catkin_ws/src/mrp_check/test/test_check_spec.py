@@ -32,11 +32,13 @@ launch:
 def test_our_specs_can_be_read():
     names = {path.stem for path in spec.find("pub_sub").parent.iterdir()}
     wiki = {"talker_listener_cpp", "talker_listener_py"}
-    assert names == {"pub_sub", "relay", "replay"} | wiki
+    others = {"add_two_ints_cpp", "add_two_ints_py", "filter", "own_message", "turtle"}
+    assert names == {"pub_sub", "relay", "replay", "parameter"} | others | wiki
     for name in names:
         contract = spec.read(spec.find(name))
-        assert contract.nodes and contract.topics
-        assert bool(contract.launch.file) == contract.asks("launch-file") == (name not in wiki)
+        assert contract.nodes and bool(contract.topics) != bool(contract.services)
+        has_launch = name not in others | wiki
+        assert bool(contract.launch.file) == contract.asks("launch-file") == has_launch
 
 
 def test_values_wrap_round():
@@ -114,7 +116,11 @@ def test_each_key_says_what_it_is():
             "type: std_msgs/Header\n    field: stamp.secs.x",
             r":5: .*time has no fields",
         ),
-        ("type: std_msgs/UInt32", "type: std_msgs/Header", r":3: .*seq, stamp, frame_id"),
+        (
+            "type: std_msgs/UInt32",
+            "type: std_msgs/Header\n    field: data",
+            r":5: .*seq, stamp, frame_id",
+        ),
         (
             "launch:",
             "messages: {Count: {count: uint23}}\nlaunch:",
@@ -137,6 +143,66 @@ def test_wrong_spec_is_told_in_one_sentence(old, new, says, tmp_path):
     assert "\n" not in str(error.value)
     if "YAML" not in str(error.value):
         assert str(error.value).endswith(str(spec.SCHEMA))
+
+
+SERVICE = """title: An exercise
+topics:
+  a_topic: {type: std_msgs/Float64}
+services:
+  a_service:
+    type: PACKAGE/Add
+    request: {a: int64}
+    response: {sum: int64, text: string}
+    examples:
+    - {request: {a: 2}, response: {sum: 4, text: 'a {any}'}}
+nodes:
+  a_node:
+    offers: a_service
+    publishes: {topic: a_topic}
+    examples:
+    - parameters: {step: 2}
+      receives: {a_topic: {data: 1}}
+      publishes: {a_topic: {data: 2}}
+"""
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "says"),
+    [
+        ("{a: 2}", "{b: 2}", r":10: services\.a_service\.examples\.0\.request\.b: .* has: a\."),
+        ("sum: 4", "sum: four", r":10: .*response\.sum: expected a number.*int64; found 'four'"),
+        ("'a {any}'", "4", r":10: .*expected a text.*found 4\."),
+        ("PACKAGE/Add", "std_srvs/SetBol", r":6: .*no service .*|:7: .*only a type of PACKAGE"),
+        ("a: int64", "a: int46", r":7: services\.a_service\.request\.a: .*no message 'int46'"),
+        (
+            "offers: a_service",
+            "offers: a_servise",
+            r":13: nodes\.a_node\.offers: .*mean 'a_service'",
+        ),
+        ("receives: {a_topic", "receives: {b_topic", r":17: .*no topic 'b_topic'"),
+        (
+            "publishes: {a_topic: {data: 2}}",
+            "publishes: {a_topic: {dat: 2}}",
+            r":18: .*mean 'data'",
+        ),
+        ("step: 2", "step: [2]", r":16: .*parameters\.step: expected a number, a text, true or"),
+        (
+            "      publishes: {a_topic: {data: 2}}\n",
+            "",
+            r":16: .*the key 'publishes'; it is missing",
+        ),
+    ],
+    ids=range(10),
+)
+def test_wrong_example_is_told_in_one_sentence(old, new, says, tmp_path):
+    path = tmp_path / "wrong.yaml"
+    path.write_text(SERVICE)
+    (example,) = spec.read(path).nodes["a_node"].examples
+    assert example.publishes == {"a_topic": ({"data": 2},)}
+    assert SERVICE.count(old) == 1
+    path.write_text(SERVICE.replace(old, new))
+    with pytest.raises(SpecError, match=says):
+        spec.read(path, REQUIREMENTS)
 
 
 @pytest.mark.parametrize("key", ["values: {start: 1, step: 1}", "rises: true"])

@@ -28,12 +28,13 @@ def _section(path, entry, definitions):
     below = []
     for key, value in entry["properties"].items():
         value = {**_referred(value, definitions), **value}
-        each = _referred(value.get("additionalProperties") or {}, definitions)
+        each = _referred(value.get("additionalProperties") or value.get("items") or {}, definitions)
         yield f"``{key}`` : {_marked_up(_taken(entry, key, value))}"
         yield from (f"   {_marked_up(value['description'])}", "")
         name = f"{path}.{key}".lstrip(".")
         below += [(name, value)] if "properties" in value else []
-        below += [(f"{name}.NAME", each)] if "properties" in each else []
+        named = name if "items" in value else f"{name}.NAME"
+        below += [(named, each)] if "properties" in each else []
     for name, value in below:
         yield from _section(name, value, definitions)
 

@@ -16,7 +16,7 @@ _PACKAGE_WIDE = {"manifest", "package-name", "cmake", "configure"}
 _OF_BUILDING = _PACKAGE_WIDE | {"launch-file", "dependencies", "messages", "targets", "scripts"}
 
 # What a node does not do if it does not work.
-_WORK = {"values", "rate", "wrap", "received", "console", "topic"}
+_WORK = {"values", "rate", "wrap", "received", "console", "topic", "services", "examples"}
 
 # cause -> what follows from it in the same node
 _FOLLOWS = {
@@ -36,17 +36,20 @@ _FOLLOWS = {
     "spin": _WORK | {"starts", "exit"},
     "callbacks": _WORK | {"starts", "latch", "exit"},
     "lifetime": _WORK | {"starts", "exit"},
-    "topic": {"values", "rate", "wrap", "received", "console", "namespace", "type", "warnings"},
+    "topic": _WORK | {"namespace", "type", "warnings"},
     "type": _WORK | {"warnings", "starts", "exit"},
     "queue": {"received", "starts", "console", "topic", "exit", "warnings"},
     "wrap": {"values"},
     # A name that is misspelt is not found where it is looked for.
     "python-names": {"node-start", "spin", "topic", "callbacks", "type"},
     "node-name": {"starts", "topic", "console"},
+    "parameters": {"values", "received"},
+    "examples": {"values", "received", "console"},
+    "services": {"console", "starts", "exit"},
     "values": {"wrap", "rate"},
     "rate": {"wrap"},
     "received": {"console"},
-    "namespace": {"received", "console", "warnings", "topic"},
+    "namespace": {"received", "console", "warnings", "topic", "services", "examples"},
     # What was raised, or ended the node, as it ran: the rest is not what it would have been.
     "starts": _WORK | {"type", "exit", "leftovers"},
 }
@@ -77,11 +80,18 @@ def told_once(findings, facts=None, nodes=None):
     for index, finding in enumerate(kept):
         if finding.consequence_of or finding.severity == NOTE:
             continue
-        for number, cause in enumerate(kept):
+        # Of several causes, the one that stands where it fails is not there by chance.
+        ordered = sorted(enumerate(kept), key=lambda one: not _is_beside(one[1], finding))
+        for number, cause in ordered:
             if cause is not finding and _causes(cause, finding, number < index, facts, nodes or {}):
                 finding.consequence_of = cause.consequence_of or cause.id
                 break
     return kept
+
+
+def _is_beside(cause, finding):
+    lines = cause.line, finding.line
+    return cause.file == finding.file and None not in lines and abs(lines[0] - lines[1]) <= 1
 
 
 def _causes(cause, finding, earlier, facts, nodes):

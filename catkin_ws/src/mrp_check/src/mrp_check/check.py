@@ -18,7 +18,7 @@ from mrp_check.case import Case
 from mrp_check.contract.errors import CannotCheck
 from mrp_check.contract.finding import ERROR, Finding
 from mrp_check.contract.requirements import ANY, CONTRACT, closure
-from mrp_check.contract.spec import Spec
+from mrp_check.contract.spec import MORE, Spec
 from mrp_check.contract.verdict import BROKEN, FINDINGS, MET, UNCHECKED, Report
 from mrp_check.report import diff
 from mrp_check.rules import REQUIREMENTS, RULES
@@ -183,7 +183,7 @@ class _Examination:
             },
             reason=" ".join(self.reasons),
             unseen={id_: unseen[id_] for id_ in self.ids if id_ in unseen},
-            left_out=[id_ for id_ in REQUIREMENTS if is_any and id_ not in self.asked],
+            left_out=[id_ for id_ in REQUIREMENTS if is_any and id_ not in {*self.asked, *MORE}],
             console=_console(known.get("observed")),
             suppressed=[finding for finding in suppressed if finding.id in self.ids],
             folder=package.root.resolve(),

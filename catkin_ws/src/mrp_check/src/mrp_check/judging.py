@@ -29,6 +29,9 @@ _WAITS = (
     (r"(?i)can.t open camera|VIDEOIO|/dev/(video|tty)\w*", "a device"),
     (r"KeyError: ", "a parameter"),
 )
+# How a program counts its arguments: beside the line at which it ends, it misses some.
+_COUNTS = re.compile(r"\bargc\s*[!<>=]|[<>=]\s*argc\b|\blen\(sys\.argv\)")
+_FEW = 6  # lines
 # The same of a launch file: an argument, a variable of the environment, or another's launch file.
 _WANTED = (
     r"argument \w+ has no value|requires the '\w+' arg|environment variable \S+ is not set"
@@ -140,6 +143,12 @@ def _of_start(node: Node, finding: Finding) -> None:
                 continue
             finding.severity = WARNING if is_parameter else NOTE
             finding.message = f"{node.name} waits for {what}: {said.strip()[:200]}"
+            return
+    if finding.file and finding.line and not any("Error:" in line for line in lines):
+        begin, end = max(finding.line - _FEW, 0), finding.line + _FEW
+        if any(map(_COUNTS.search, node.package.lines(finding.file)[begin:end])):
+            finding.severity = NOTE
+            finding.message = f"{node.name} waits for arguments on its command line."
             return
     if node.direct and node.direct.code == 0 and not _is_left_alone(node):
         finding.severity = NOTE

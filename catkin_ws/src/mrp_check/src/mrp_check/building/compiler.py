@@ -16,6 +16,9 @@ from mrp_check.student.package import Package
 _ERROR = re.compile(
     r"^(?P<file>[^\s:][^:]*):(?P<line>\d+):(?:\d+:)? (?:fatal )?error: (?P<text>.*)$"
 )
+_NO_RETURN = re.compile(
+    r"^(?P<file>[^\s:][^:]*):(?P<line>\d+):(?:\d+:)? warning: no return statement in function"
+)
 _FROM = re.compile(r"^(?P<file>[^\s:][^:]*):(?P<line>\d+):\d+:\s+required from")
 _INCLUDED = re.compile(r"^(?:In file included from| +from) (?P<file>[^:]+):(?P<line>\d+)")
 
@@ -58,6 +61,27 @@ def problems(output: str, copy: pathlib.Path) -> list[Problem]:
     for problem in found:
         first.setdefault(problem.file, problem)
     return list(first.values())
+
+
+def without_return(package: Package, output: str, copy: pathlib.Path) -> list[Finding]:
+    """Return a Finding for each function that says it returns a value, and never does: g++ warns of
+    it, and takes it. Such a function may return anything, or nowhere (C++17, 9.6.3)."""
+    matches = map(_NO_RETURN.match, output.splitlines())
+    places = dict.fromkeys(_place(match, copy) for match in matches if match)
+    return [_no_return(package, *place) for place in places if place]
+
+
+def _no_return(package: Package, file: str, line: int) -> Finding:
+    return Finding(
+        "compile",
+        f"The function that ends in line {line} of {file} says that it returns a value, and has no"
+        " return: what its caller gets is left to chance, and the node may crash.",
+        file,
+        line,
+        expected="return, with a value",
+        seen=f"{package.lines(file)[line - 1].strip()}  (g++: no return statement in function)",
+        fix="Return a value there: true, in the callback of a service that did its work.",
+    )
 
 
 def _place(match: re.Match[str], copy: pathlib.Path) -> Line | None:

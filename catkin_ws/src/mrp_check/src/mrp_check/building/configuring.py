@@ -108,6 +108,7 @@ _COMMANDS = (
 
 
 _PACKAGES = ["roscpp", "rospy", "std_msgs", "catkin", "message_generation", "roslib"]
+_ALIKE = 0.8  # of a misspelt name; nav_msgs and std_msgs, two packages, are 0.63
 
 
 # Their group is the name of a package that CMake did not find.
@@ -124,7 +125,7 @@ def absent(package: Package, output: str, is_contract: bool = True) -> str | Non
     found = (re.search(shape, output) for shape in _NOT_FOUND)
     name = next((match.group(1) for match in found if match), None)
     asked = not is_contract or name and package.find_line("package.xml", f">{name}<")
-    return name if name and asked and not nearest(name, _PACKAGES) else None
+    return name if name and asked and not nearest(name, _PACKAGES, _ALIKE) else None
 
 
 _BRINGS_MESSAGES = ("add_message_files", "generate_messages", "add_service_files")
@@ -150,7 +151,7 @@ def _unknown_command(package: Package, model: Model, match: re.Match[str], text:
 
 def _no_package(package: Package, model: Model, match: re.Match[str], text: str) -> _Said:
     name = match.group(1)
-    near = nearest(name, _PACKAGES)
+    near = nearest(name, _PACKAGES, _ALIKE)
     return (
         f"there is no package {name} on this machine.{perhaps(near)}",
         f"Write {near} for {name}." if near else f"Install {name}, or take it out.",

@@ -55,6 +55,7 @@ class Activity:
         """Return when something last came from a node, or None if nothing has."""
         seen = self.observer.seen
         records: List[Union[Message, Log, Registration]] = [*seen.publications, *seen.subscriptions]
+        records += seen.services
         records += [*seen.messages[-_RECENT:], *seen.logs[-_RECENT:]]
         return max((one.time for one in records if one.node == node), default=None)
 

@@ -4,13 +4,13 @@
 import re
 import signal
 import time
-import typing
 from typing import List, Optional
 
 import rospy
 
 from mrp_check.confined import apart, crossing, messages, variables, written
 from mrp_check.confined.activity import BUSY, TICK, Activity, processor_seconds, wait
+from mrp_check.confined.exchange import Exchange
 from mrp_check.confined.observe import Observer
 from mrp_check.confined.plans import Common, DirectNode, DirectPlan
 from mrp_check.confined.program import Program, left_behind
@@ -36,11 +36,12 @@ def run(plan: DirectPlan, observer: Observer, starter: apart.Starter) -> DirectR
         for node in nodes:
             node.send()
             node.send_paced()
+            node.exchange.step(node.name())
 
     wait(plan.common, nodes, _Node.is_up, _Node.is_settled, send)
     running = [node for node in nodes if node.program.poll() is None]
     for node in running:
-        node.end(signal.SIGKILL if node.plan.is_wrap else plan.signal)
+        node.end(signal.SIGKILL if node.plan.is_wrap or node.plan.example else plan.signal)
     while any([node.is_ending(plan.common.stop_seconds) for node in running]):
         time.sleep(TICK)
     stuck = [node for node in running if node.program.poll() is None]
@@ -80,6 +81,7 @@ class _Node:
         self.publisher: Optional[rospy.Publisher] = None
         for name, value in plan.params.items():
             rospy.set_param(name, value)
+        self.exchange = Exchange(plan, observer, session.messages, session.silence)
         env = {**session.environment, **plan.env, variables.NAMESPACE: plan.namespace}
         env[variables.MASTER] = observer.uri
         if plan.hook:
@@ -90,7 +92,8 @@ class _Node:
     def name(self) -> Optional[str]:
         """Return the node's own name, or None as long as it has not registered."""
         inside, seen = self.plan.namespace + "/", self.observer.seen
-        names = [one.node for one in seen.publications + seen.subscriptions]
+        records = seen.publications + seen.subscriptions + seen.services
+        names = [one.node for one in records]
         return next((name for name in names if name.startswith(inside)), None)
 
     # --- What it is sent
@@ -102,7 +105,8 @@ class _Node:
             return
         own = [one for one in self.observer.seen.subscriptions if one.node == name]
         topics = [one for one in own if one.topic not in _OF_ROS]
-        # Of several, the one of the contract's type first.
+        # Of several, the one of the contract's type first, and of these that of its name.
+        topics.sort(key=lambda one: not one.topic.endswith(f"/{self.plan.topic}"))
         topics.sort(key=lambda one: one.type != self.plan.type)
         if not topics:
             return
@@ -125,7 +129,7 @@ class _Node:
             message = self.message_class()
             text = self.plan.text
             said = text.replace("{value}", str(value)) if text else value
-            _set_field(message, self.plan.field, said)
+            messages.set_field(message, self.plan.field or "", said)
             publisher.publish(message)
         except Exception:  # another type than the contract's
             pass
@@ -161,6 +165,8 @@ class _Node:
         now, name = time.monotonic(), self.name()
         if name is None:
             return self.is_up()
+        if self.plan.example or not self.exchange.is_done(name):
+            return self.exchange.is_done(name)
         silent = now - (self.activity.last(name) or now) > self.silence
         if silent and self.activity.is_idle(self.program.pid):
             return True
@@ -215,6 +221,7 @@ class _Node:
             result.killed = ended is None
         result.still_registered = self.was_registered and self._is_registered()
         result.events = self.events()
+        self.exchange.result(result)
         return result
 
     def _is_registered(self) -> bool:
@@ -236,10 +243,3 @@ class _Node:
             except crossing.CrossingError:
                 continue  # not yet whole
         return events
-
-
-def _set_field(message: typing.Any, path: Optional[str], value: typing.Union[int, str]) -> None:
-    *above, name = (path or "").split(".")
-    for part in above:
-        message = getattr(message, part)
-    setattr(message, name, type(getattr(message, name))(value))

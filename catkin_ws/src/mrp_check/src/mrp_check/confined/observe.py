@@ -11,6 +11,7 @@ missed, however busy the machine is.
         observer.seen.messages, observer.seen.logs, observer.seen.publications, ...
 """
 
+import collections
 import dataclasses
 import io
 import logging
@@ -19,7 +20,7 @@ import socket
 import threading
 import time
 import xmlrpc.client
-from typing import Any, Dict, Iterable, List, Optional, Set, Tuple, TypeVar, Union
+from typing import Any, DefaultDict, Dict, Iterable, List, Optional, Set, Tuple, TypeVar
 
 import genpy
 import rosgraph
@@ -38,8 +39,7 @@ NAME = "/mrp_check_observer"
 _HOLD = 20.0  # seconds at most, for which the master lets a publisher wait
 _ANSWER = 5.0  # seconds within which a node must answer
 _KEEP = 3000  # messages of one publisher on one topic: of more, only the number is kept
-_FIELDS = 30  # of a message
-_TEXT = 500  # characters of a text in it
+_TEXT = 2000  # characters of a line
 _LAG_TICK = 0.05  # seconds
 _HEADER = 2048  # bytes that are read at once of what a publisher says of itself
 
@@ -54,7 +54,6 @@ _LEVELS = {
 
 
 Record = TypeVar("Record", Registration, Message, Log)
-Field = Union[bool, int, float, str]
 Answer = Tuple[int, str, Any]  # of ROS's master: a code, a sentence, a value
 
 
@@ -71,7 +70,7 @@ class Observer:
     def __init__(self) -> None:
         self.seen = Seen()
         self.counts: Dict[Tuple[str, str], int] = {}
-        self._subscribers: Dict[str, Optional[rospy.Subscriber]] = {}
+        self._subscribers: Dict[str, rospy.Subscriber] = {}
         self._types: Dict[Tuple[str, str], Any] = {}
         self._lock = threading.Lock()
         self._lag: List[float] = []
@@ -85,7 +84,8 @@ class Observer:
             time.sleep(0.01)
         self.uri = self._server.uri
         os.environ[variables.MASTER] = self.uri
-        rospy.impl.masterslave.ROSHandler.shutdown = _refuse
+        _ROSHandler.shutdown = _refuse
+        _ROSHandler._connect_topic = _connect_once
         rospy.init_node(NAME[1:], anonymous=False, disable_signals=True, disable_rosout=True)
         self.subscribe("/rosout")
         threading.Thread(target=self._measure_lag, daemon=True).start()
@@ -100,20 +100,20 @@ class Observer:
 
     # --- What the master hears
 
-    def hold(self, node: str, topic: str) -> None:
-        """Wait until this observer is connected to a publisher, or for _HOLD seconds."""
+    def hold(self, node: str, topic: str) -> bool:
+        """Wait until this observer is connected to a publisher, or for _HOLD seconds; return
+        whether it is."""
         end = time.monotonic() + _HOLD
         while not self._is_connected(node, topic) and time.monotonic() < end:
             time.sleep(0.002)
         # A publisher answers a subscriber before it begins to send to it. It lets in one after the
         # other: where the next one is answered, it sends to the one before.
         self._shake_hands(node, topic)
+        return self._is_connected(node, topic)
 
     def _is_connected(self, node: str, topic: str) -> bool:
-        subscriber = self._subscribers.get(topic)
-        if subscriber is None:
-            return True
-        connections = subscriber.impl.connections if subscriber.impl else []
+        impl = self._subscribers[topic].impl
+        connections = impl.connections if impl else []
         return any(getattr(c, "callerid_pub", None) == node for c in list(connections))
 
     def is_registered(self, node: str) -> bool:
@@ -125,6 +125,10 @@ class Observer:
     def nodes(self) -> Set[str]:
         """Return the names of all nodes that have registered anything so far."""
         return {r.node for r in self.seen.publications + self.seen.subscriptions}
+
+    def offers(self, node: str, service: str) -> bool:
+        """Return whether a node has announced a service."""
+        return any((s.node, s.topic) == (node, service) for s in list(self.seen.services))
 
     def most_of(self, node: str) -> int:
         """Return how many messages a node has published on the topic where it published most."""
@@ -144,19 +148,19 @@ class Observer:
             records(found.messages),
             records(found.logs),
             self.lag(),
+            records(found.services),
+            records(found.lookups),
         )
 
     # --- What is published
 
     def subscribe(self, topic: str) -> None:
-        with self._lock:
-            if topic in self._subscribers:
-                return
-            self._subscribers[topic] = None
         callback = self._log if topic == "/rosout" else self._message
-        self._subscribers[topic] = rospy.Subscriber(
-            topic, rospy.AnyMsg, callback, callback_args=topic, queue_size=None
-        )
+        with self._lock:
+            if topic not in self._subscribers:
+                self._subscribers[topic] = rospy.Subscriber(
+                    topic, rospy.AnyMsg, callback, callback_args=topic, queue_size=None
+                )
 
     def _message(self, message: Any, topic: str) -> None:
         now, header = time.monotonic(), message._connection_header
@@ -168,14 +172,12 @@ class Observer:
             fields = self._fields(message, header)
             self.seen.messages.append(Message(node, topic, fields, now))
 
-    def _fields(self, message: Any, header: Dict[str, str]) -> Optional[Dict[str, Field]]:
+    def _fields(self, message: Any, header: Dict[str, str]) -> Optional[Dict[str, messages.Plain]]:
         key = header.get("type", ""), header.get("md5sum", "")
         try:
             if key not in self._types:
                 self._types[key] = messages.of_definition(key[0], header["message_definition"])
-            result: Dict[str, Field] = {}
-            _flatten(self._types[key]().deserialize(message._buff), "", result)
-            return result
+            return messages.flatten(self._types[key]().deserialize(message._buff))
         except Exception:  # whatever a package sends: it is no reason to stop
             return None
 
@@ -185,7 +187,7 @@ class Observer:
         except genpy.DeserializationError:
             return
         if len(self.seen.logs) < 10 * _KEEP:
-            level, text = _LEVELS.get(log.level, str(log.level)), log.msg[: 4 * _TEXT]
+            level, text = _LEVELS.get(log.level, str(log.level)), log.msg[:_TEXT]
             now = time.monotonic()
             self.seen.logs.append(Log(log.name, level, text, log.file, log.line, now))
 
@@ -235,6 +237,21 @@ def _refuse(self: object, caller_id: str, reason: str = "") -> Answer:
     return -1, "the observation is not over", 0
 
 
+_ROSHandler = rospy.impl.masterslave.ROSHandler
+_connect = _ROSHandler._connect_topic
+_turns: DefaultDict[Tuple[str, str], threading.Lock] = collections.defaultdict(threading.Lock)
+
+
+def _connect_once(self: object, topic: str, publisher: str) -> Any:
+    """Connect to a publisher as rospy does, but never twice at the same time.
+
+    The master often tells of one publisher twice in a row. rospy then drops one of two connections,
+    and may leave it open, but say nothing: the publisher waits for that, and lets in nobody else.
+    """
+    with _turns[topic, publisher]:
+        return _connect(self, topic, publisher)
+
+
 class _Master(rosmaster.master_api.ROSMasterHandler):  # type: ignore[misc]  # it has no types
     """A master that tells the observer what it hears, and lets publishers wait for it."""
 
@@ -259,9 +276,10 @@ class _Master(rosmaster.master_api.ROSMasterHandler):  # type: ignore[misc]  # i
             self._observer.subscribe(topic)
         answer: Answer = super().registerPublisher(caller_id, topic, topic_type, caller_api)
         if answer[0] == 1 and is_other:
-            registration = Registration(caller_id, topic, topic_type, time.monotonic())
+            now = time.monotonic()
+            registration = Registration(caller_id, topic, topic_type, now, heard=False)
             self._observer.seen.publications.append(registration)
-            self._observer.hold(caller_id, topic)
+            registration.heard = self._observer.hold(caller_id, topic)
         return answer
 
     def registerSubscriber(  # noqa: N802
@@ -273,16 +291,19 @@ class _Master(rosmaster.master_api.ROSMasterHandler):  # type: ignore[misc]  # i
             self._observer.seen.subscriptions.append(registration)
         return answer
 
+    def registerService(  # noqa: N802
+        self, caller_id: str, service: str, service_api: str, caller_api: str
+    ) -> Answer:
+        answer: Answer = super().registerService(caller_id, service, service_api, caller_api)
+        if answer[0] == 1 and caller_id != NAME:
+            registration = Registration(caller_id, service, "", time.monotonic())
+            self._observer.seen.services.append(registration)
+        return answer
 
-def _flatten(message: Any, prefix: str, result: Dict[str, Field]) -> None:
-    """Put the plain fields of a message into `result`, by their paths."""
-    for name in message.__slots__:
-        value = getattr(message, name)
-        if len(result) >= _FIELDS:
-            return
-        if isinstance(value, (bool, int, float)):
-            result[prefix + name] = value
-        elif isinstance(value, str):
-            result[prefix + name] = value[:_TEXT]
-        elif hasattr(value, "__slots__"):
-            _flatten(value, prefix + name + ".", result)
+    def lookupService(self, caller_id: str, service: str) -> Answer:  # noqa: N802
+        lookups = self._observer.seen.lookups
+        known = any((one.node, one.topic) == (caller_id, service) for one in list(lookups))
+        if caller_id != NAME and not known and len(lookups) < _KEEP:
+            lookups.append(Registration(caller_id, service, "", time.monotonic()))
+        answer: Answer = super().lookupService(caller_id, service)
+        return answer

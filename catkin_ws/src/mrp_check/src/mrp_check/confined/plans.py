@@ -2,7 +2,10 @@
 """What session.py is asked to observe: a LaunchPlan or a DirectPlan. Times are in seconds."""
 
 import dataclasses
-from typing import Dict, List, Optional
+from typing import Dict, List, Optional, Union
+
+Plain = Union[bool, int, float, str]
+Fields = Dict[str, Plain]  # of a message, each by its path, such as "linear.x"
 
 
 @dataclasses.dataclass
@@ -88,6 +91,45 @@ class Hook:
 
 
 @dataclasses.dataclass
+class Call:
+    """What a service is asked, and what it should answer."""
+
+    request: Fields
+    response: Fields
+
+
+@dataclasses.dataclass
+class Service:
+    """A service of the contract; name: its full one."""
+
+    name: str
+    type: str
+    calls: List[Call]
+
+
+@dataclasses.dataclass
+class Given:
+    """A message that a node is sent; topic: its full name."""
+
+    topic: str
+    type: str
+    fields: Fields
+
+
+@dataclasses.dataclass
+class Example:
+    """What a node is sent, and what it should publish then: full name of a topic -> messages.
+
+    is_among: whether they may come after others; tolerance: how much numbers may differ
+    """
+
+    gives: List[Given]
+    expects: Dict[str, List[Fields]]
+    is_among: bool
+    tolerance: float
+
+
+@dataclasses.dataclass
 class DirectNode:
     """A node that is started by itself, as rosrun would.
 
@@ -96,9 +138,12 @@ class DirectNode:
     publishes: how many messages of it are enough; 0 if it publishes nothing by itself
     values: what it is sent at once; paced: what it is sent then, one by one
     field, type: of the messages in which it is sent these; None if it is sent nothing
+    topic: the last part of its name
     text: what the field says, with {value} in the value's place; None: the value itself
     received: as of a LaunchNode
     hook: of a Python node
+    offers: the services that it is asked; calls: those that it is answered
+    example: what it is run for, and nothing else; None for the run that shows all the rest
     """
 
     command: List[str]
@@ -113,6 +158,10 @@ class DirectNode:
     type: Optional[str]
     received: Optional[str]
     hook: Optional[Hook]
+    topic: Optional[str] = None
+    offers: List[Service] = dataclasses.field(default_factory=list)
+    calls: List[Service] = dataclasses.field(default_factory=list)
+    example: Optional[Example] = None
 
     @property
     def is_wrap(self) -> bool:

@@ -9,18 +9,24 @@ import typing
 from typing import Dict, List, Optional, Tuple
 
 Number = typing.Union[int, float]
+Plain = typing.Union[bool, int, float, str]
 Line = Tuple[float, str, str]  # its time, its stream ("out" or "err"), its text
 _AFTER = 0.5  # seconds in which roslaunch may still show what was printed before it was to end
 
 
-@dataclasses.dataclass(frozen=True)
+@dataclasses.dataclass
 class Registration:
-    """A node has announced to the master that it publishes or subscribes."""
+    """A node has announced to the master that it publishes or subscribes.
+
+    heard: whether the observer was connected to a publisher; if not, nothing is known of what it
+        publishes
+    """
 
     node: str
     topic: str
     type: str
     time: float
+    heard: bool = True
 
 
 @dataclasses.dataclass(frozen=True)
@@ -32,7 +38,7 @@ class Message:
 
     node: str
     topic: str
-    fields: Optional[Dict[str, typing.Union[bool, int, float, str]]]
+    fields: Optional[Dict[str, Plain]]
     time: float
 
 
@@ -50,13 +56,18 @@ class Log:
 
 @dataclasses.dataclass
 class Seen:
-    """What came to the observer, in order. lag: how late it was itself, as Observer.lag() says."""
+    """What came to the observer, in order. lag: how late it was itself, as Observer.lag() says.
+
+    services: what nodes offer; lookups: what they look for, each without its type
+    """
 
     publications: List[Registration] = dataclasses.field(default_factory=list)
     subscriptions: List[Registration] = dataclasses.field(default_factory=list)
     messages: List[Message] = dataclasses.field(default_factory=list)
     logs: List[Log] = dataclasses.field(default_factory=list)
     lag: float = 0.0
+    services: List[Registration] = dataclasses.field(default_factory=list)
+    lookups: List[Registration] = dataclasses.field(default_factory=list)
 
 
 @dataclasses.dataclass
@@ -110,6 +121,14 @@ class LaunchResult:
 
 
 @dataclasses.dataclass
+class Answer:
+    """What a service answered; None, and the reason, if it did not."""
+
+    fields: Optional[Dict[str, Plain]]
+    error: str = ""
+
+
+@dataclasses.dataclass
 class Alone:
     """What came of a DirectNode.
 
@@ -121,6 +140,9 @@ class Alone:
     killed: whether it had to be
     still_registered: whether the master still knew it after its end
     lines: what it printed, as far as it is kept; line_count: of all that it printed
+    answers: full name of a service -> what it answered to each call that was made
+    requests: the same of a service that it calls -> what it asked
+    replies: topic -> what it published in its example; None if it was not sent its messages
     """
 
     name: Optional[str] = None
@@ -134,6 +156,9 @@ class Alone:
     events: List[Event] = dataclasses.field(default_factory=list)
     lines: List[Line] = dataclasses.field(default_factory=list)
     line_count: int = 0
+    answers: Dict[str, List[Answer]] = dataclasses.field(default_factory=dict)
+    requests: Dict[str, List[Dict[str, Plain]]] = dataclasses.field(default_factory=dict)
+    replies: Optional[Dict[str, List[Dict[str, Plain]]]] = None
 
 
 @dataclasses.dataclass

@@ -54,6 +54,19 @@ class Loader(yaml.SafeLoader):
         return super().construct_mapping(node, deep)
 
 
+def listed(data: Any, entry: Mapping[str, Any], definitions: Mapping[str, Any]) -> Any:
+    """Return what YAML says, with a list around what stands alone where the schema allows both."""
+    entry = definitions[entry["$ref"].split("/")[-1]] if "$ref" in entry else entry
+    if entry.get("alone") and data is not None and not isinstance(data, list):
+        data = [data]
+    if isinstance(data, list):
+        return [listed(one, entry.get("items", {}), definitions) for one in data]
+    if not isinstance(data, dict):
+        return data
+    known, other = entry.get("properties", {}), entry.get("additionalProperties") or {}
+    return {key: listed(one, known.get(key, other), definitions) for key, one in data.items()}
+
+
 def no_such(kind: str, name: str, names: Iterable[str]) -> str:
     return f"there is no {kind} '{name}'; there are: {', '.join(names)}." + near(name, names)
 
@@ -74,7 +87,9 @@ def sentence(error: jsonschema.ValidationError) -> str:
         missing = [key for key in error.validator_value if key not in error.instance]
         return f"expected the key '{missing[0]}'; it is missing."
     if error.validator == "type":
-        return f"expected {KINDS[error.validator_value]}; found {_shown(error.instance)}."
+        one_of = isinstance(error.validator_value, list)
+        kind = words(error.schema) if one_of else KINDS[error.validator_value]
+        return f"expected {kind}; found {_shown(error.instance)}."
     if error.validator in ("enum", "pattern"):
         return f"expected {words(error.schema)}; found {_shown(error.instance)}."
     if error.validator in LIMITS:

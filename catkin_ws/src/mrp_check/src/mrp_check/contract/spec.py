@@ -4,163 +4,36 @@
 from __future__ import annotations
 
 import dataclasses
-import json
 import pathlib
-import re
-from typing import Any, Collection, Dict, Iterable, Mapping, NoReturn, Sequence
+from typing import Any, Collection, Dict, Iterable, Mapping, NoReturn, Sequence, TypeVar, Union
 
-import genmsg
 import jsonschema
 import yaml
 
-from mrp_check.contract import lines, resources
+from mrp_check.contract import kinds, lines, resources
 from mrp_check.contract.errors import SpecError
-from mrp_check.contract.resources import SHARES
-from mrp_check.contract.schema import Loader, near, no_such, sentence
+from mrp_check.contract.kinds import PACKAGE as PACKAGE
+from mrp_check.contract.kinds import REQUEST, RESPONSE
+from mrp_check.contract.parts import SCHEMA as SCHEMA
+from mrp_check.contract.parts import SCHEMA_DATA, default
+from mrp_check.contract.parts import Call as Call
+from mrp_check.contract.parts import Example as Example
+from mrp_check.contract.parts import Late as Late
+from mrp_check.contract.parts import Launch as Launch
+from mrp_check.contract.parts import Message as Message
+from mrp_check.contract.parts import Node as Node
+from mrp_check.contract.parts import Publishes as Publishes
+from mrp_check.contract.parts import Relays as Relays
+from mrp_check.contract.parts import Service as Service
+from mrp_check.contract.parts import Shutdown as Shutdown
+from mrp_check.contract.parts import Subscribes as Subscribes
+from mrp_check.contract.parts import Topic as Topic
+from mrp_check.contract.parts import Values as Values
+from mrp_check.contract.schema import Loader, listed, no_such, sentence
 
-SCHEMA = resources.folder("schema") / "spec.json"
-_SCHEMA = json.loads(SCHEMA.read_text())
+MORE = ("services", "parameters", "examples")  # what counts only where a contract names some
+
 _PAGE = "What can be said: pages/contract.html, which is made of"
-_NUMBER = re.compile(r"u?int\d+|float\d+|byte|char|bool")  # types of a message's fields
-PACKAGE = "PACKAGE"  # in a type: the package's own name
-
-
-def _default(key: str, *kind: str) -> Any:
-    """Return what a key has if it is left out: the schema says it, and the page made of that."""
-    entry = _SCHEMA["definitions"][kind[0]] if kind else _SCHEMA
-    return entry["properties"][key]["default"]
-
-
-@dataclasses.dataclass(frozen=True)
-class Topic:
-    name: str
-    type: str
-    field: str = _default("field", "topic")
-    namespace: str = _default("namespace", "topic")
-    text: str | None = None  # all that the field says, with {value} in the value's place
-
-    def type_in(self, package_name: str) -> str:
-        """Return the type with the package's name in it."""
-        package, name = self.type.split("/")
-        return f"{package_name if package == PACKAGE else package}/{name}"
-
-    def value_in(self, said: object) -> int | float | None:
-        """Return the number that the field's content says, or None: it may be of any type."""
-        if self.text and isinstance(said, str):
-            shape = re.escape(self.text).replace(r"\{value\}", f"({lines.WHOLE}({lines.DECIMALS}))")
-            found = re.fullmatch(shape, said)
-            if not found:
-                return None
-            return float(found.group(1)) if found.group(2) else int(found.group(1))
-        return said if isinstance(said, (int, float)) else None
-
-
-@dataclasses.dataclass(frozen=True)
-class Values:
-    """The values are start, start + step, start + 2 * step, ..., modulo modulus (if not None)."""
-
-    start: int
-    step: int
-    modulus: int | None = None
-
-    def after(self, value: float) -> float:
-        """Return the value that comes after `value`."""
-        return value + self.step if self.modulus is None else (value + self.step) % self.modulus
-
-
-@dataclasses.dataclass(frozen=True)
-class Publishes:
-    topic: Topic
-    queue: int | None = None
-    period: float | None = None  # seconds
-    tolerance: float = _default("tolerance", "publishes")  # as a part of the period
-    latched: bool = _default("latched", "publishes")
-    values: Values | None = None
-    rises: bool = _default("rises", "publishes")
-
-
-@dataclasses.dataclass(frozen=True)
-class Subscribes:
-    topic: Topic
-    queue: int | None = None
-
-
-@dataclasses.dataclass(frozen=True)
-class Relays:
-    """Each value received on `source` is published, times `times`, on `target`."""
-
-    source: Topic
-    target: Topic
-    queue: int | None = None
-    times: int = _default("times", "relays")
-    modulus: int | None = None
-
-    def of(self, value: int) -> int:
-        """Return what is published when `value` is received."""
-        product = value * self.times
-        return product if self.modulus is None else product % self.modulus
-
-
-@dataclasses.dataclass(frozen=True)
-class Node:
-    name: str
-    language: str = _default("language", "node")  # cpp, python or any
-    anonymous: bool = _default("anonymous", "node")
-    file: str | None = None
-    executable: str | None = None
-    publishes: Publishes | None = None
-    subscribes: Subscribes | None = None
-    relays: Relays | None = None
-    prints: tuple[str, ...] = ()
-
-    @property
-    def publishing(self) -> Topic | None:
-        """The topic that the node publishes on, or None."""
-        if self.publishes:
-            return self.publishes.topic
-        return self.relays.target if self.relays else None
-
-    @property
-    def subscribing(self) -> Topic | None:
-        """The topic that the node subscribes to, or None."""
-        if self.subscribes:
-            return self.subscribes.topic
-        return self.relays.source if self.relays else None
-
-    @property
-    def received_line(self) -> str | None:
-        """The line for a value that the node receives, one of `prints`, or None."""
-        return next((line for line in self.prints if "{value}" in line), None)
-
-    def pattern(self, line: str, name: str | None = None) -> re.Pattern[str]:
-        """Return the compiled regular expression of one of `prints`."""
-        topic = self.subscribing or self.publishing
-        return lines.pattern(line, name, bool(topic and topic.text))
-
-
-@dataclasses.dataclass(frozen=True)
-class Launch:
-    file: str = ""  # without one, the checker starts the nodes by one of its own
-    group: str | None = None
-
-
-@dataclasses.dataclass(frozen=True)
-class Shutdown:
-    signal: str = _default("signal", "shutdown")
-    exit_code: int = _default("exit_code", "shutdown")
-    seconds: float = _default("seconds", "shutdown")
-
-
-@dataclasses.dataclass(frozen=True)
-class Late:
-    """What each day takes off a mark: points, or percent of the contract's points."""
-
-    points: float = 0
-    percent: float = 0
-
-    def off(self, days: float, most: float) -> float:
-        """Return what so many days take off; most: the contract's points."""
-        return days * (self.points + most * self.percent / 100)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -171,11 +44,12 @@ class Spec:
     launch: Launch = Launch()
     shutdown: Shutdown = Shutdown()
     messages: dict[str, dict[str, str]] = dataclasses.field(default_factory=dict)
-    install: bool = _default("install")
+    install: bool = default("install")
     points: dict[str, float] = dataclasses.field(default_factory=dict)
     not_asked: tuple[str, ...] = ()  # requirements that do not count
     hidden: tuple[str, ...] = ()  # requirements that count, and that no student sees
     late: Late | None = None
+    services: dict[str, Service] = dataclasses.field(default_factory=dict)
     is_contract: bool = True  # if not, it only lists the nodes of a package
 
     def node_path(self, node_name: str, group: str | None = None) -> str:
@@ -185,8 +59,11 @@ class Spec:
 
     def asks(self, id_: str) -> bool:
         """Return whether a requirement counts."""
+        nodes = self.nodes.values()
+        parameters = self.launch.file and any(node.parameters for node in nodes)
+        said = dict(zip(MORE, (self.services, parameters, any(node.examples for node in nodes))))
         of_launch = id_.startswith("launch-") and not self.launch.file
-        return not of_launch and id_ not in self.not_asked
+        return not of_launch and id_ not in self.not_asked and bool(said.get(id_, True))
 
     def points_of(self, id_: str) -> float:
         """Return the points of a requirement: 1 where the spec does not say."""
@@ -226,7 +103,9 @@ def read(path: str | pathlib.Path, requirements: Collection[str] | None = None) 
 
 
 Entry = Dict[str, Any]  # of the YAML file
-Messages = Mapping[str, Dict[str, str]]  # name -> field -> type
+Messages = Dict[str, Dict[str, str]]  # name -> field -> type
+Place = Sequence[Union[str, int]]  # keys and indices
+T = TypeVar("T")
 
 
 class _Reader:
@@ -238,42 +117,50 @@ class _Reader:
         self.path, self.requirements = path, requirements
         self.tree = yaml.compose(text, Loader=yaml.SafeLoader)
 
-    def fail(self, place: Sequence[str | int], sentence: str) -> NoReturn:
+    def fail(self, place: Place, sentence: str) -> NoReturn:
         """Raise SpecError about the entry at `place`, a list of keys and indices."""
-        line = self.line(place)
-        name = ".".join(map(str, place)) or "the spec"
+        line, known = self.found(place)
+        name = ".".join(known) or "the spec"
         raise SpecError(f"{self.path}:{line}: {name}: {sentence} {_PAGE} {SCHEMA}")
 
-    def line(self, place: Iterable[str | int]) -> int:
-        """Return the line of the entry at `place`, or of the nearest one above it."""
-        node, line = self.tree, 1
+    def found(self, place: Iterable[str | int]) -> tuple[int, list[str]]:
+        """Return the line of the entry at `place`, or of the nearest one above it; and `place`
+        without the index of what stands alone, where a list could."""
+        node, line, name = self.tree, 1, []
         for part in place:
+            if isinstance(part, int) and node and not isinstance(node, yaml.SequenceNode):
+                continue
+            name.append(str(part))
             if isinstance(node, yaml.MappingNode):
                 found = [(key, value) for key, value in node.value if key.value == str(part)]
-                if not found:
-                    break
-                line, node = found[0][0].start_mark.line + 1, found[0][1]
+                line = found[0][0].start_mark.line + 1 if found else line
+                node = found[0][1] if found else None
             elif isinstance(node, yaml.SequenceNode) and isinstance(part, int):
                 node = node.value[part]
                 line = node.start_mark.line + 1
-            else:
-                break
-        return line
+        return line, name
 
     def spec(self, data: Entry) -> Spec:
-        errors = list(jsonschema.Draft7Validator(_SCHEMA).iter_errors(data))
+        data = listed(data, SCHEMA_DATA, SCHEMA_DATA["definitions"])
+        errors = list(jsonschema.Draft7Validator(SCHEMA_DATA).iter_errors(data))
         if errors:
             error = min(
-                errors, key=lambda error: (self.line(error.path), list(map(str, error.path)))
+                errors, key=lambda error: (self.found(error.path)[0], list(map(str, error.path)))
             )
             self.fail(list(error.path), sentence(error))
-        topics = {name: Topic(name, **entry) for name, entry in data["topics"].items()}
+        self.own = self.own_messages(data)
+        topics = {name: self.topic(name, entry) for name, entry in data.get("topics", {}).items()}
+        services = {
+            name: self.service(name, entry) for name, entry in data.get("services", {}).items()
+        }
         spec = Spec(
             title=data["title"],
             topics=topics,
             nodes={
-                name: self.node(name, entry or {}, topics) for name, entry in data["nodes"].items()
+                name: self.node(name, entry or {}, topics, services)
+                for name, entry in data["nodes"].items()
             },
+            services=services,
             launch=Launch(**data.get("launch", {})),
             shutdown=Shutdown(**data.get("shutdown", {})),
             messages=data.get("messages", {}),
@@ -283,10 +170,8 @@ class _Reader:
             hidden=tuple(data.get("hidden", ())),
             late=Late(**data["late"]) if "late" in data else None,
         )
-        self.own_messages(spec.messages)
-        kinds = {name: self.field(topic, spec.messages) for name, topic in topics.items()}
         for node in spec.nodes.values():
-            self.numbers(node, kinds)
+            self.numbers(node)
         for id_ in spec.points:
             self.requirement(["points", id_], id_)
         for key in ("not_asked", "hidden"):
@@ -294,100 +179,164 @@ class _Reader:
                 self.requirement([key, index], id_)
         return spec
 
-    def numbers(self, node: Node, kinds: Mapping[str, str]) -> None:
-        """See that a node can publish numbers, if it is to. kinds: topic -> its field's type"""
-        role = node.publishes
-        if role and not role.topic.text and not _NUMBER.fullmatch(kinds[role.topic.name]):
-            key = "values" if role.values else "rises"
+    def numbers(self, node: Node) -> None:
+        """See that a node can publish numbers, if it is to."""
+        place = ["nodes", node.name]
+        for index, role in enumerate(node.published):
             if role.values or role.rises:
-                self.fail(
-                    ["nodes", node.name, "publishes", key],
-                    f"{role.topic.field} of {role.topic.type} is a {kinds[role.topic.name]}, and no"
-                    " number. A string has one if the topic has a 'text'.",
-                )
+                key = "values" if role.values else "rises"
+                self.number(role.topic, [*place, "publishes", index, key])
+        for key, topic in (("from", "source"), ("to", "target")) if node.relays else ():
+            self.number(getattr(node.relays, topic), [*place, "relays", key])
 
-    def requirement(self, place: Sequence[str | int], id_: str) -> None:
+    def number(self, topic: Topic, place: list[str | int]) -> None:
+        if not topic.kind:
+            self.kind(topic.type, topic.field, ["topics", topic.name])
+        if not topic.text and not kinds.NUMBER.fullmatch(topic.kind):
+            self.fail(
+                place,
+                f"{topic.field} of {topic.type} is a {topic.kind}, and no"
+                " number. A string has one if the topic has a 'text'.",
+            )
+
+    def requirement(self, place: Place, id_: str) -> None:
         """See that it exists."""
         if self.requirements is not None and id_ not in self.requirements:
             self.fail(place, no_such("requirement", id_, self.requirements))
 
-    def own_messages(self, messages: Messages) -> None:
-        """See that each field's type is one that there is."""
-        for name, fields in messages.items():
+    def kind(self, type_: str, path: str, place: Place) -> str:
+        """Return the type of a type's field; place: of what has the keys type and field."""
+        try:
+            return kinds.of_field(type_, path, self.own)
+        except kinds.KindError as error:
+            self.fail([*place, "type" if error.is_type else "field"], str(error))
+
+    def own_messages(self, data: Entry) -> Messages:
+        """See that each field's type is one that there is; return the contract's own types."""
+        messages, own = data.get("messages", {}), dict(data.get("messages", {}))
+        said = [(["messages", name], fields) for name, fields in messages.items()]
+        for name, entry in data.get("services", {}).items():
+            for half, key in ((REQUEST, "request"), (RESPONSE, "response")):
+                if entry["type"].startswith(f"{PACKAGE}/"):
+                    own[entry["type"].split("/")[1] + half] = entry.get(key, {})
+                    said.append((["services", name, key], entry.get(key, {})))
+        for place, fields in said:
             for field, kind in fields.items():
                 plain = kind.split("[")[0]
-                own = plain in messages or plain.partition("/")[::2][1] in messages
-                if not (own or plain == "Header" or genmsg.msgs.is_builtin(plain)):
-                    self.fields_of(plain, ["messages", name, field])
+                if kinds.is_builtin(plain) or {plain, plain.partition("/")[2]} & {*own}:
+                    continue
+                try:
+                    kinds.of_machine(plain)
+                except kinds.KindError as error:
+                    self.fail([*place, field], str(error))
+        return own
 
-    def fields_of(self, kind: str, place: Sequence[str | int]) -> dict[str, str]:
-        """Return field -> type of a message of this machine, such as std_msgs/UInt32."""
-        folders = {kind.split("/")[0]: [f"{share}/{kind.split('/')[0]}/msg" for share in SHARES]}
+    def topic(self, name: str, entry: Entry) -> Topic:
+        place = ["topics", name]
+        asked = {"field", "text"} & {*entry}
         try:
-            found = genmsg.msg_loader.load_msg_by_type(
-                genmsg.MsgContext.create_default(), kind, folders
-            )
-        except (genmsg.MsgNotFound, genmsg.InvalidMsgSpec, ValueError):
-            names = [
-                f"{path.parents[1].name}/{path.stem}"
-                for share in SHARES
-                for path in pathlib.Path(share).glob("*/msg/*.msg")
-            ]
-            self.fail(place, f"there is no message '{kind}' on this machine." + near(kind, names))
-        return dict(zip(found.names, found.types))
+            kind = kinds.of_field(entry["type"], entry.get("field", Topic.field), self.own)
+        except kinds.KindError as error:
+            if asked or error.is_type:
+                self.fail([*place, "type" if error.is_type else "field"], str(error))
+            kind = ""
+        if "text" in entry and kind != "string":
+            said = f"only a string has a text; {entry.get('field', Topic.field)} of"
+            self.fail([*place, "text"], f"{said} {entry['type']} is a {kind}.")
+        return Topic(name, kind=kind, **entry)
 
-    def field(self, topic: Topic, messages: Messages) -> str:
-        """See that a topic's type is one that there is, and return the type of its field."""
-        kind, place = topic.type, ["topics", topic.name, "type"]
-        for part in topic.field.split("."):
-            package, _, message = kind.partition("/")
-            if package == PACKAGE or not message and package in messages:
-                message = message or package
-                if message not in messages:
-                    self.fail(place, f"'messages' has no message '{message}'.")
-                fields = messages[message]
-            else:
-                fields = self.fields_of(kind, place) if message or kind == "Header" else {}
-            if part not in fields:
-                there = f"{kind} has: {', '.join(fields)}" if fields else f"{kind} has no fields"
-                self.fail(
-                    place[:-1] + ["field"],
-                    f"expected a field of {topic.type}; found '{topic.field}'; {there}."
-                    + near(part, fields),
-                )
-            kind = fields[part]
-        if topic.text and kind != "string":
-            said = f"only a string has a text; {topic.field} of {topic.type} is a {kind}."
-            self.fail(place[:-1] + ["text"], said)
-        return kind
+    def service(self, name: str, entry: Entry) -> Service:
+        place: list[str | int] = ["services", name]
+        type_ = entry["type"]
+        is_own = type_.startswith(f"{PACKAGE}/")
+        for key in ("request", "response"):
+            if key in entry and not is_own:
+                self.fail([*place, key], f"only a type of {PACKAGE} is defined here; {type_} is.")
+        try:
+            if not is_own:
+                kinds.service(type_)
+        except kinds.KindError as error:
+            self.fail([*place, "type"], str(error))
+        for index, call in enumerate(entry.get("examples", ())):
+            for key, half in (("request", REQUEST), ("response", RESPONSE)):
+                self.message(type_ + half, call[key], [*place, "examples", index, key])
+        calls = tuple(Call(**call) for call in entry.get("examples", ()))
+        return Service(name, **{**entry, "examples": calls})
 
-    def node(self, name: str, entry: Entry, topics: dict[str, Topic]) -> Node:
-        def topic(role: str, key: str = "topic") -> Topic:
-            topic_name = entry[role][key]
-            if topic_name not in topics:
-                self.fail(["nodes", name, role, key], no_such("topic", topic_name, topics))
-            return topics[topic_name]
+    def message(self, type_: str, fields: Message, place: Place) -> None:
+        """See that a type has these fields, and that they can have these values."""
+        for path, value in fields.items():
+            try:
+                fault = kinds.fault(kinds.of_field(type_, path, self.own), value)
+            except kinds.KindError as error:
+                fault = str(error)
+            if fault:
+                self.fail([*place, path], fault)
 
-        roles: Entry = {}
-        if "publishes" in entry:
-            values = entry["publishes"].get("values")
-            more = {"topic": topic("publishes"), "values": Values(**values) if values else None}
-            roles["publishes"] = Publishes(**{**entry["publishes"], **more})
-        if "subscribes" in entry:
-            roles["subscribes"] = Subscribes(
-                **{**entry["subscribes"], "topic": topic("subscribes")}
-            )
+    def one_of(self, things: Mapping[str, T], name: str, place: Place, kind: str) -> T:
+        if name not in things:
+            self.fail(place, no_such(kind, name, things))
+        return things[name]
+
+    def node(
+        self, name: str, entry: Entry, topics: dict[str, Topic], services: dict[str, Service]
+    ) -> Node:
+        place: list[str | int] = ["nodes", name]
+
+        def topic(entry: Entry, *keys: str | int) -> Topic:
+            return self.one_of(topics, entry[str(keys[-1])], [*place, *keys], "topic")
+
+        roles: Entry = {"published": (), "subscribed": ()}
+        for index, role in enumerate(entry.get("publishes", ())):
+            values = Values(**role["values"]) if "values" in role else None
+            more = {"topic": topic(role, "publishes", index, "topic"), "values": values}
+            roles["published"] += (Publishes(**{**role, **more}),)
+        for index, role in enumerate(entry.get("subscribes", ())):
+            on = topic(role, "subscribes", index, "topic")
+            roles["subscribed"] += (Subscribes(**{**role, "topic": on}),)
         if "relays" in entry:
-            rest = {k: v for k, v in entry["relays"].items() if k not in ("from", "to")}
-            roles["relays"] = Relays(topic("relays", "from"), topic("relays", "to"), **rest)
-            if len(roles) > 1:
+            relays = entry["relays"]
+            rest = {k: v for k, v in relays.items() if k not in ("from", "to")}
+            ends = topic(relays, "relays", "from"), topic(relays, "relays", "to")
+            if roles["published"] or roles["subscribed"]:
                 self.fail(
-                    ["nodes", name, "relays"],
+                    [*place, "relays"],
                     "a node that relays has no 'publishes' or 'subscribes' besides: 'from' and"
                     " 'to' say both.",
                 )
-        rest = {key: entry[key] for key in ("language", "anonymous", "executable") if key in entry}
+            roles["relays"] = Relays(*ends, **rest)
+        for key in ("offers", "calls"):
+            roles[key] = tuple(
+                self.one_of(services, one, [*place, key, index], "service")
+                for index, one in enumerate(entry.get(key, ()))
+            )
+        roles["examples"] = tuple(
+            self.example(one, topics, [*place, "examples", index])
+            for index, one in enumerate(entry.get("examples", ()))
+        )
+        plain = ("language", "anonymous", "executable", "ends", "parameters")
+        rest = {key: entry[key] for key in plain if key in entry}
         return Node(name, prints=self.prints(name, entry.get("prints", ())), **roles, **rest)
+
+    def example(self, entry: Entry, topics: dict[str, Topic], place: Place) -> Example:
+        def topic(name: str, *above: str | int) -> Topic:
+            return self.one_of(topics, name, [*place, *above, name], "topic")
+
+        receives = []
+        for index, one in enumerate(entry.get("receives", ())):
+            for name, message in one.items():
+                receives.append((topic(name, "receives", index), message))
+                self.message(receives[-1][0].type, message, [*place, "receives", index, name])
+        for name, messages in entry["publishes"].items():
+            type_ = topic(name, "publishes").type
+            for index, message in enumerate(messages):
+                self.message(type_, message, [*place, "publishes", name, index])
+        return Example(
+            entry.get("parameters", {}),
+            tuple(receives),
+            {name: tuple(messages) for name, messages in entry["publishes"].items()},
+            entry.get("tolerance", Example.tolerance),
+        )
 
     def prints(self, node: str, prints: Sequence[str]) -> tuple[str, ...]:
         """Return a node's lines, each of which is a regular expression."""

@@ -13,9 +13,12 @@ from mrp_check.contract.requirements import Requirement, Rule
 
 
 def findings(case: Case) -> Iterator[Finding]:
-    if not case.built or case.built.ok:
+    if not case.built:
         return
     output, package = case.built.output, case.package
+    yield from compiler.without_return(package, output, case.package_folder)
+    if case.built.ok:
+        return
     problems = compiler.problems(output, case.package_folder)
     found = [compiler.finding(package, problem) for problem in problems]
     found += linker.findings(package, output, case.model)

@@ -89,7 +89,7 @@ def _kind(package: Package, name: str, use: Use, manifest: Manifest) -> Iterator
 def _misspelt(name: str, names: Iterable[str], used: Collection[str]) -> str | None:
     """Return the name in `names` that is no package and looks like this one, or None."""
     others = [one for one in names if one not in used and not uses.is_ros_package(one)]
-    return nearest(name, others, 0.75)
+    return nearest(name, others, 0.8)
 
 
 def _not_in_manifest(

@@ -21,7 +21,7 @@ from mrp_check.running.words import code_text, last_words
 
 _BEFORE = 0.1  # seconds: what is printed so shortly before it is asked belongs to its end, too
 # What rospy itself may say when a message is published at the very moment of the end.
-_AT_THE_END = ("closed topic", "ROSInterruptException: rospy shutdown")
+_AT_THE_END = ("closed topic", "closed during publish", "ROSInterruptException: rospy shutdown")
 
 
 def findings(case: Case) -> Iterator[Finding]:

@@ -34,12 +34,16 @@ RULE = Rule(
     stage="run",
     order=45,
     needs=("nodes",),
-    findings=each_node(_of),
+    findings=each_node(_of, each_topic=True),
     requirements={
         "latch": Requirement(
             "Nothing is latched that should not be",
             "latch",
-            evidence.of_publisher(lambda role: True, Node.published, "published no message"),
+            evidence.when(
+                Node.published,
+                "published no message",
+                lambda wanted: wanted.publishes and wanted.of_itself,
+            ),
         )
     },
     only=CONTRACT,

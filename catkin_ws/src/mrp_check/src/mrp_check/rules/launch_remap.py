@@ -20,12 +20,8 @@ def findings(case: Case) -> Iterator[Finding]:
 
 
 def _of(package: Package, spec: Spec, node: Started) -> Iterator[Finding]:
-    topics = {
-        topic
-        for topic in (spec.nodes[node.name].publishing, spec.nodes[node.name].subscribing)
-        if topic
-    }
-    for topic in topics:
+    wanted = spec.nodes[node.name]
+    for topic in dict.fromkeys([*wanted.publishing, *wanted.subscribing]):
         base = node.namespace.rstrip("/") + "/"
         own = {topic.name, base + topic.name}
         for old, new in node.remaps:

@@ -20,7 +20,8 @@ def _of(node: Node) -> Iterator[Finding]:
         if call in kinds and node.spec.is_contract:
             same = [
                 p
-                for p in node.on_topic(kinds[call], topics[call])
+                for topic in topics[call]
+                for p in node.on_topic(kinds[call], topic)
                 if p.file == place.file and p.line == place.line
             ]
             if not same:

@@ -25,7 +25,11 @@ _KINDS = ("message", "service", "action")
 def _findings(case: Case) -> Iterator[Finding]:
     package, model, (manifest, _) = case.package, case.model, case.manifest
     for name, fields in case.spec.messages.items():
-        yield from _definition(package, name, fields)
+        yield from _definition(package, f"msg/{name}.msg", fields)
+    for service in case.spec.services.values():
+        path = f"srv/{service.type.split('/')[1]}.srv"
+        for half, said in enumerate((service.request, service.response)):
+            yield from _definition(package, path, said, half) if said else ()
     files = [path for path in package.of_kind(*_KINDS) if path.count("/") <= 1]
     if not files and not model.message_files or not model.complete and model.catkin is None:
         return
@@ -37,7 +41,8 @@ def _findings(case: Case) -> Iterator[Finding]:
 
 def _in_cmake(case: Case, files: list[str]) -> Iterator[Finding]:
     """Yield a finding for each call of CMakeLists.txt that lacks, or lacks something."""
-    model, own = case.model, case.spec.messages
+    model = case.model
+    own = {*case.spec.messages, *(s.type.split("/")[1] for s in case.spec.services.values())}
     catkin_line, call = model.catkin.line if model.catkin else 1, model.add_message_files
     brings = {"message_generation", "genmsg"}  # the first is all of it; the second builds, too
     if not brings & {*model.components} and files and model.catkin:
@@ -95,14 +100,18 @@ def _message_finding(message: str, line: int, expected: str, fix: str) -> Findin
     )
 
 
-def _definition(package: Package, name: str, fields: Mapping[str, str]) -> Iterator[Finding]:
-    path = f"msg/{name}.msg"
+def _definition(
+    package: Package, path: str, fields: Mapping[str, str], half: int = 0
+) -> Iterator[Finding]:
+    """Yield a finding for each field that a message lacks, or that half of a service."""
+    kind = "service" if path.endswith(".srv") else "message"
+    name = last_part(path)[:-4]
     expected = "; ".join(f"{kind} {field}" for field, kind in fields.items())
     if path not in package.files:
-        near = nearest(path, package.of_kind("message"))
+        near = nearest(path, package.of_kind(kind))
         yield Finding(
             "messages",
-            f"There is no message {PACKAGE.lower()}/{name}: the file {path} is missing."
+            f"There is no {kind} {PACKAGE.lower()}/{name}: the file {path} is missing."
             + (f" There is {near}." if near else ""),
             near if near else None,
             1 if near else None,
@@ -111,10 +120,11 @@ def _definition(package: Package, name: str, fields: Mapping[str, str]) -> Itera
             fix=f"Name the file {path}." if near else f"Write {path}.",
         )
         return
-    seen = {}
+    seen, part = {}, 0
     for number, text in enumerate(package.lines(path), 1):
+        part += text.startswith("---")
         words = text.split("#")[0].split()
-        if len(words) == 2 and "=" not in text:
+        if part == half and len(words) == 2 and "=" not in text:
             seen[words[1]] = (words[0], number)
     for field, kind in fields.items():
         if field not in seen or seen[field][0] != kind:
@@ -122,7 +132,7 @@ def _definition(package: Package, name: str, fields: Mapping[str, str]) -> Itera
             number = seen[field][1] if field in seen else seen[near][1] if near else 1
             yield Finding(
                 "messages",
-                f"The message {name} has no field '{kind} {field}'.",
+                f"The {kind} {name} has no field '{kind} {field}'.",
                 path,
                 number,
                 expected=f"{kind} {field}",

@@ -1,19 +1,44 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""No Python statement names a function without calling it."""
+"""No statement, and no condition of a loop, names a function without calling it."""
 
 from __future__ import annotations
 
 import ast
+import re
 from typing import Iterator
 
+from mrp_check.case import Case
 from mrp_check.contract.finding import Finding
 from mrp_check.contract.requirements import Rule
 from mrp_check.sources.python_modules import is_ros, resolve
 from mrp_check.sources.python_rule import PythonRule, ast_text, of_sources
+from mrp_check.sources.uses import without_comments
+
+# A function that is named and not called is always true: the loop neither ends nor asks.
+_OK = re.compile(r"\bros::ok\b(?!\s*\()")
+_ENDLESS = "{0} is named here and not called: without brackets it is always true{1}."
 
 
 class NotCalled(PythonRule):
     def findings(self) -> Iterator[Finding]:
+        for loop in self.source.nodes(ast.While):
+            parts = [node for node in ast.walk(loop.test) if isinstance(node, ast.Attribute)]
+            called = [node.func for node in ast.walk(loop.test) if isinstance(node, ast.Call)]
+            if any(self._is_shutdown(part) and part not in called for part in parts):
+                yield self.finding(
+                    "spin",
+                    _ENDLESS.format("rospy.is_shutdown", ", and the loop does nothing"),
+                    loop.test,
+                    expected="while not rospy.is_shutdown():",
+                    fix="Write rospy.is_shutdown() with brackets.",
+                    change=("is_shutdown", "is_shutdown()"),
+                )
+        yield from self._statements()
+
+    def _is_shutdown(self, node: ast.Attribute) -> bool:
+        return self.source.dotted(node) == "rospy.is_shutdown"
+
+    def _statements(self) -> Iterator[Finding]:
         for node in self.source.nodes(ast.Expr):
             if not isinstance(node.value, (ast.Attribute, ast.Name)):
                 continue
@@ -40,10 +65,35 @@ class NotCalled(PythonRule):
                 )
 
 
+_of_python = of_sources(NotCalled)
+
+
+def _findings(case: Case) -> Iterator[Finding]:
+    yield from _of_python(case)
+    for file in sorted({file for files in case.facts.sources.values() for file in files}):
+        if case.package.kind(file) == "cpp":
+            yield from _of_cpp(file, case.package.text(file))
+
+
+def _of_cpp(file: str, text: str) -> Iterator[Finding]:
+    for number, line in enumerate(without_comments(text).splitlines(), 1):
+        if _OK.search(line):
+            yield Finding(
+                "exit",
+                _ENDLESS.format("ros::ok", ", also after Ctrl-C"),
+                file,
+                number,
+                expected="ros::ok()",
+                seen=line.strip(),
+                fix="Write ros::ok() with brackets.",
+                change=("ros::ok", "ros::ok()"),
+            )
+
+
 RULE = Rule(
     stage="static",
     order=24,
     needs=("facts",),
-    findings=of_sources(NotCalled),
-    also=("python-names", "node-start", "spin"),
+    findings=_findings,
+    also=("python-names", "node-start", "spin", "exit"),
 )

@@ -73,7 +73,7 @@ class Names(PythonRule):
             known = set(sys.modules) | ros_modules()
             # Of short names many are alike: cv2 is no misspelt csv.
             near = nearest(missing, {n for n in known if "." not in n}, 0.75)
-            if not near or uses.is_called_so(missing):
+            if not near or uses.is_called_so(missing) or uses.is_of_debian(missing):
                 yield self._absent(node, missing)
                 return
         else:

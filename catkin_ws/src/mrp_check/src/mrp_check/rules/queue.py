@@ -14,11 +14,13 @@ from mrp_check.sources.node import Node, each_node
 
 def _of(node: Node) -> Iterator[Finding]:
     wanted = node.wanted
-    for kind, topic, role in (
-        (Kind.SUBSCRIBER, wanted.subscribing, wanted.subscribes or wanted.relays),
-        (Kind.PUBLISHER, wanted.publishing, wanted.publishes or wanted.relays),
+    relays = [wanted.relays] if wanted.relays else []
+    for kind, topic, asked in (
+        *((Kind.SUBSCRIBER, one.topic, one.queue) for one in wanted.subscribed),
+        *((Kind.PUBLISHER, one.topic, one.queue) for one in wanted.published),
+        *((Kind.SUBSCRIBER, one.source, one.queue) for one in relays),
+        *((Kind.PUBLISHER, one.target, one.queue) for one in relays),
     ):
-        asked = role.queue if role else None
         if not asked:
             continue
         for place in node.on_topic(kind, topic):

@@ -79,7 +79,7 @@ RULE = Rule(
     stage="run",
     order=40,
     needs=("nodes",),
-    findings=each_node(_of),
+    findings=each_node(_of, each_topic=True),
     requirements={
         "rate": Requirement(
             "The rate is right",

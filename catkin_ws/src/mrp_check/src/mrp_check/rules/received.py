@@ -140,7 +140,7 @@ RULE = Rule(
             evidence.when(
                 lambda node: node.sent() and node.wanted.received_line,
                 "logged no value",
-                lambda wanted: wanted.subscribes,
+                lambda wanted: wanted.subscribes and not wanted.examples,
             ),
         )
     },

@@ -22,14 +22,17 @@ def _of(node: Node) -> Iterator[Finding]:
         ("publishes on", Kind.PUBLISHER, node.wanted.publishing),
         ("subscribes to", Kind.SUBSCRIBER, node.wanted.subscribing),
     )
-    for verb, kind, topic in roles:
+    for verb, kind, topics in roles:
         seen = node.topics(kind)
-        if topic is None:
+        if not topics:
             yield from _unexpected_topic(node, seen, verb, kind)
-        elif node.in_launch:
-            yield from _topic_finding(node, seen, topic, verb, kind)
-        else:
-            yield from _direct_topic_finding(node, topic, verb, kind)
+        for topic in topics:
+            others = [resolved(one, node.path) for one in topics if one != topic]
+            rest = {name: type_ for name, type_ in seen.items() if name not in others}
+            if node.in_launch:
+                yield from _topic_finding(node, rest, topic, verb, kind)
+            else:
+                yield from _direct_topic_finding(node, topic, verb, kind)
 
 
 def _unexpected_topic(

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import re
 from typing import Iterator, Sequence
 
 from mrp_check import evidence
@@ -23,11 +22,11 @@ def _of(node: Node) -> Iterator[Finding]:
     if role is None:
         return
     messages = node.published()
-    announced = resolved(role.topic, node.path) in node.topics(Kind.PUBLISHER)
-    if announced and not messages:
+    topic = resolved(role.topic, node.path)
+    if topic in node.topics(Kind.PUBLISHER) and not messages and node.wanted.of_itself:
         silent = _silent_seconds(node)
         waits = _long_period(node, role)
-        if silent < 6 * (role.period or 0.5):
+        if node.is_unheard(topic) or silent < 6 * (role.period or 0.5):
             return  # the machine was too busy to tell
         yield node.finding(
             "values",
@@ -50,14 +49,10 @@ def _of(node: Node) -> Iterator[Finding]:
 
 def _other_text(node: Node, said: str, topic: Topic) -> Finding:
     """Return the Finding about a message that says something else than the contract's text."""
-    begin = re.split(r"\d", said)[0].strip()
-    sources = [file for file in node.places.sources(node.name) if begin]
-    lines = [(file, node.package.find_line(file, begin)) for file in sources]
-    publish = node.places.of(node.name, Kind.PUBLISH)
     return node.finding(
         "values",
         f"{node.name} publishes “{said}”, where the contract says “{topic.text}”.",
-        next(((file, line) for file, line in lines if line), publish),
+        node.places.of_text(node.name, said) or node.places.of(node.name, Kind.PUBLISH),
         expected=f"{topic.text}, with a number for {{value}}",
         seen=said,
     )
@@ -142,8 +137,8 @@ def _relayed(node: Node) -> Iterator[Finding]:
         return
     place = node.places.of(node.name, Kind.PUBLISH, Kind.PUBLISHER)
     if not values:
-        if target not in node.topics(Kind.PUBLISHER, alone=True):
-            return  # another topic: said elsewhere
+        if target not in node.topics(Kind.PUBLISHER, alone=True) or node.is_unheard(target):
+            return  # another topic: said elsewhere; or nobody knows
         said = f"{node.name} was sent {len(sent)} messages, and published none."
     else:
         said = f"{node.name} was sent {few(sent)}, and published {few(values)}."
@@ -172,7 +167,7 @@ RULE = Rule(
     stage="run",
     order=30,
     needs=("nodes",),
-    findings=each_node(_of),
+    findings=each_node(_of, each_topic=True),
     requirements={
         "values": Requirement(
             "Publishers publish the right values",

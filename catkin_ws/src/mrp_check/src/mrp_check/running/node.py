@@ -3,13 +3,16 @@
 
 from __future__ import annotations
 
+import copy
+import dataclasses
 import functools
 from typing import Callable, Iterable, Iterator, Mapping, Protocol
 
 from mrp_check.confined.places import Kind
-from mrp_check.confined.seen import Message, Number
+from mrp_check.confined.seen import Alone, Message, Number
 from mrp_check.contract.finding import Finding
-from mrp_check.running.planning import resolved
+from mrp_check.contract.spec import Topic
+from mrp_check.running.planning import EXAMPLE, resolved
 from mrp_check.running.starting import start_findings
 from mrp_check.running.traces import Traces
 
@@ -39,9 +42,23 @@ class Node(Traces):
             resolved(topic, self.path) in self.topics(kind)
             or self.own_name is not None
             and resolved(topic, self.own_name) in self.topics(kind, alone=True)
-            for kind, topic in roles
-            if topic
+            for kind, topics in roles
+            for topic in topics
         )
+
+    def of_topics(self) -> Iterator[Node]:
+        """Yield this node for each topic that it publishes on, as if that were the only one."""
+        if len(self.wanted.published) < 2:
+            yield self
+            return
+        for role in self.wanted.published:
+            one = copy.copy(self)
+            one.wanted = dataclasses.replace(self.wanted, published=(role,))
+            yield one
+
+    def ran_for(self, number: int) -> Alone | None:
+        """Return what was seen of the run for one of its examples, or None."""
+        return self.places.observed.alone(f"{EXAMPLE}{self.name}:{number}")
 
     def sent(self) -> list[int]:
         """Return the values that it was sent when it ran by itself."""
@@ -50,22 +67,25 @@ class Node(Traces):
 
     def published(self) -> list[Message]:
         """Return its messages, under the launch file, on the topic that the spec says."""
-        topic = self.wanted.publishing
-        name = topic and resolved(topic, self.path)
+        name = self._topic and resolved(self._topic, self.path)
         return [message for message in self.seen.messages if message.topic == name]
+
+    @property
+    def _topic(self) -> Topic | None:
+        return next(iter(self.wanted.publishing), None)
 
     def has_rate(self) -> bool:
         """Return whether it has published enough to tell its rate."""
         return len(self.published()) >= FEW
 
     def published_numbers(self) -> list[Number]:
-        topic = self.wanted.publishing
+        topic = self._topic
         values = [self.value(message, topic) for message in self.published() if topic]
         return [value for value in values if value is not None]
 
     def wrong_texts(self) -> list[str]:
         """Return the texts that it published, and that are not what the spec says of its topic."""
-        topic = self.wanted.publishing
+        topic = self._topic
         if topic is None or not topic.text:
             return []
         said = [(message.fields or {}).get(topic.field) for message in self.published()]
@@ -91,16 +111,17 @@ class HasNodes(Protocol):
 
 
 def each_node(
-    findings: Callable[[Node], Iterable[Finding]], also_dead: bool = False
+    findings: Callable[[Node], Iterable[Finding]], also_dead: bool = False, each_topic: bool = False
 ) -> Callable[[HasNodes], Iterator[Finding]]:
     """Return the function of a case.Case that asks this of each Node that came up.
 
-    also_dead: of those that did not, too
+    also_dead: of those that did not, too; each_topic: for each topic that it publishes on
     """
 
     def of_all(case: HasNodes) -> Iterator[Finding]:
         for node in case.nodes.values():
             if node.is_up or also_dead:
-                yield from findings(node)
+                for one in node.of_topics() if each_topic else (node,):
+                    yield from findings(one)
 
     return of_all

@@ -96,7 +96,6 @@ def observe(workspace: Workspace, spec: Spec, launch: Launch | None, facts: Fact
         result.started = {one.name: one for one in launch.nodes if one.name in spec.nodes}
     if launch and result.started:
         file = workspace.package_folder / launch.file
-        result.moved = _moved(workspace, file)
     planner = planner_of(workspace, spec, launch.params if launch else {}, facts, result)
     if not planner:
         result.problems.append("none of the nodes has an executable to be run")
@@ -104,6 +103,7 @@ def observe(workspace: Workspace, spec: Spec, launch: Launch | None, facts: Fact
     under, problems = planner.launch(file), result.problems
     launched = workspace.submit(session, workspace, under, LaunchResult, problems)
     direct = workspace.submit(session, workspace, planner.direct(), DirectResult, problems)
+    result.moved = _moved(workspace, file) if file else None
     result.launch, result.direct = launched.result(), direct.result()
     if result.launch and result.launch.ending == "most":
         # Not the package's fault: one that never comes up is idle, or uses up its time.
@@ -127,7 +127,9 @@ def planner_of(
         return None
     workspace.progress("running the nodes")
     package = workspace.package
-    folders = sorted({(package.root / file).parent for file in package.of_kind("message")})
+    folders = sorted(
+        {(package.root / file).parent for file in package.of_kind("message", "service")}
+    )
     own = messages.definitions(package.name, folders, SHARES)
     known = result.executables, result.started, params
     return Planner(workspace, spec, *known, _environment(workspace), own)
@@ -167,7 +169,7 @@ def _executable(
 def _environment(workspace: Workspace) -> dict[str, str]:
     """Return the environment that the workspace's setup.bash makes, as far as there is one."""
     setups = [str(NOETIC), str(workspace.folder / "devel" / "setup.bash")]
-    done = workspace.run("bash", "-c", _SOURCED, "bash", *setups)
+    done = workspace.run_once("bash", "-c", _SOURCED, "bash", *setups, of=())
     pairs = dict(entry.split("=", 1) for entry in done.output.split("\0") if "=" in entry)
     own = {variables.PACKAGES: workspace.ros_packages, variables.PYTHONPATH: ""}
     return {**own, **pairs, **variables.AT_ONCE}

@@ -13,6 +13,7 @@ from mrp_check.contract.finding import Line, Where
 from mrp_check.contract.words import last_part
 from mrp_check.running.observing import Observed
 from mrp_check.running.planning import WRAP
+from mrp_check.sources import asked
 from mrp_check.sources.facts import Facts
 from mrp_check.student.workspace import Workspace
 
@@ -85,6 +86,28 @@ class Places:
             if place.text and last_part(place.text) == base:
                 return place.file, place.line
         return self.of(node, kind)
+
+    def asked(self, node: str, what: str, name: str) -> Where:
+        """Return the place at which a node names a service or a parameter, as asked.py says it;
+        without that name the first one of its kind, and without any where the node begins."""
+        said = [one for one in asked.of(self.package, self.sources(node)) if one.what == what]
+        said.sort(key=lambda one: one.base != name)
+        return (said[0].file, said[0].line) if said else self.of(node, Kind.INIT)
+
+    def of_text(self, node: str, said: str) -> Line | None:
+        """Return the place at which a text that a node says begins as this one does, or None."""
+        begin = re.split(r"\d", said)[0].strip()
+        for file in self.sources(node) if begin else ():
+            line = self.package.find_line(file, begin)
+            if line:
+                return file, line
+        return None
+
+    def of_setting(self, node: str, fields: Iterable[str]) -> Where | None:
+        """Return the place at which a node sets one of these fields of a message, or None."""
+        names = "|".join(re.escape(path.split(".")[-1]) for path in fields)
+        sets = rf"(\.|->)({names})\s*[-+*/]?=[^=]"
+        return self.package.first_match(self.sources(node), sets) if names else None
 
     def in_launch_file(self, node: str) -> Where:
         started = self.observed.started.get(node)

@@ -4,7 +4,9 @@
 from __future__ import annotations
 
 import dataclasses
+import json
 import pathlib
+import re
 import shlex
 import signal
 import tempfile
@@ -22,6 +24,8 @@ ENOUGH_ALONE = 3  # messages of a publisher that runs by itself
 BURST = tuple(range(21, 29))  # what each subscriber is sent at once: fewer than its queue holds
 PACED = (2, 3, 33, 34)  # and then one by one, small ones too
 WRAP = "wrap:"  # before the name of a Python publisher that runs near the end of its numbers
+
+EXAMPLE = "example:"  # before a node's name, another colon and the number of its example
 
 _PERIOD = 0.5  # seconds, where the contract names none
 # In seconds, at the least: in which all must be seen; without a message; and for all of it.
@@ -53,7 +57,7 @@ class Planner:
     @property
     def period(self) -> float:
         """The longest period of the spec, in seconds."""
-        periods = [n.publishes.period for n in self.spec.nodes.values() if n.publishes]
+        periods = [role.period for n in self.spec.nodes.values() for role in n.published]
         return max([period for period in periods if period] or [_PERIOD])
 
     def _common(self, stop_seconds: float) -> plans.Common:
@@ -73,7 +77,7 @@ class Planner:
     def launch(self, file: pathlib.Path | None) -> plans.LaunchPlan:
         """Return the plan for a launch file; without one, for one that is made from the spec."""
         roles = (self.spec.nodes[name].publishing for name in self.executables)
-        senders = [topic.name for topic in roles if topic]
+        senders = [topic.name for topics in roles for topic in topics]
         nodes = [
             self._launch_node(node, senders)
             for name, node in self.spec.nodes.items()
@@ -99,12 +103,12 @@ class Planner:
         )
 
     def _launch_node(self, node: specs.Node, senders: list[str]) -> plans.LaunchNode:
-        started, topic = self.started.get(node.name), node.subscribing
+        started, topic = self.started.get(node.name), next(iter(node.subscribing), None)
         path = started.path if started else self.spec.node_path(node.name)
         return plans.LaunchNode(
             path=path,
             type=f"{started.package}/{started.type}" if started else None,
-            publishes=node.publishing is not None,
+            publishes=node.of_itself,
             received=_received(node),
             hears=resolved(topic, path) if topic else None,
             senders=senders.count(topic.name) if topic else 0,
@@ -119,7 +123,10 @@ class Planner:
         for name, executable in nodes.items():
             attributes = {"pkg": self.workspace.package.name, "type": executable.name, "name": name}
             text = " ".join(f"{k}={xml.sax.saxutils.quoteattr(v)}" for k, v in attributes.items())
-            lines.append(f'    <node {text} output="screen"/>')
+            params = self.spec.nodes[name].parameters if name in self.spec.nodes else {}
+            lines.append(f'    <node {text} output="screen">')
+            lines += [f"      {_param(*param)}" for param in params.items()]
+            lines.append("    </node>")
         group = self.spec.launch.group
         if group:
             lines = [f'  <group ns="{group}">', *lines, "  </group>"]
@@ -145,14 +152,20 @@ class Planner:
                 hook = dataclasses.replace(hook, events=f"{hook.events}_wrap", wrap=wrap)
                 one = self._direct_node(node, path, f"/check_wrap_{index}", hook)
                 nodes[WRAP + name] = dataclasses.replace(one, publishes=0, values=[], paced=[])
+            for number, example in enumerate(node.examples):
+                space = f"/check_example_{index}_{number}"
+                one = self._direct_node(node, path, space, None)
+                nodes[f"{EXAMPLE}{name}:{number}"] = self._example(one, node, example, space)
         number = getattr(signal, self.spec.shutdown.signal)
         return plans.DirectPlan(common, nodes, number)
 
     def _direct_node(
         self, node: specs.Node, path: pathlib.Path, namespace: str, hook: plans.Hook | None
     ) -> plans.DirectNode:
-        started, topic = self.started.get(node.name), node.subscribing
-        arguments, params = [], {}
+        started, topic = self.started.get(node.name), next(iter(node.subscribing), None)
+        # Examples say what a node is sent, where it logs no value.
+        is_sent = topic and topic.kind and (node.received_line or not node.examples)
+        arguments, params = [] if started else _arguments(node.parameters), {}
         if started:
             # The node's own namespace and that of its group move; what is elsewhere stays.
             params = {
@@ -167,15 +180,60 @@ class Planner:
             namespace=namespace,
             env=dict(started.env) if started else {},
             params=params,
-            publishes=ENOUGH_ALONE if node.publishes else relayed,
-            values=list(BURST) if topic else [],
-            paced=list(PACED) if topic else [],
+            publishes=relayed or (ENOUGH_ALONE if node.of_itself else 0),
+            values=list(BURST) if is_sent else [],
+            paced=list(PACED) if is_sent else [],
             field=topic.field if topic else None,
+            topic=topic.name if topic else None,
             text=topic.text if topic else None,
             type=topic.type_in(self.workspace.package.name) if topic else None,
             received=_received(node),
             hook=hook,
+            offers=[self._service(service, namespace) for service in node.offers],
+            calls=[self._service(service, namespace) for service in node.calls],
         )
+
+    def _service(self, service: specs.Service, namespace: str) -> plans.Service:
+        calls = [plans.Call(dict(c.request), dict(c.response)) for c in service.examples]
+        kind = service.type_in(self.workspace.package.name)
+        return plans.Service(resolved(service, f"{namespace}/~"), kind, calls)
+
+    def _example(
+        self, one: plans.DirectNode, node: specs.Node, example: specs.Example, namespace: str
+    ) -> plans.DirectNode:
+        """Return the node as it is run for one of its examples: with no other parameters."""
+        package, path = self.workspace.package.name, f"{namespace}/~"
+        gives = [
+            plans.Given(resolved(topic, path), topic.type_in(package), dict(fields))
+            for topic, fields in example.receives
+        ]
+        expects = {
+            resolved(self.spec.topics[name], path): [dict(message) for message in messages]
+            for name, messages in example.publishes.items()
+        }
+        periods = [r.period for r in node.published if r.topic.name in example.publishes]
+        is_among = bool(gives and any(periods))
+        given = [word for word in one.command if not re.match(r"_[A-Za-z]\w*:=", word)]
+        own = f"{namespace}/{node.name}/"
+        return dataclasses.replace(
+            one,
+            command=[*given, *_arguments(example.parameters)],
+            params={name: value for name, value in one.params.items() if own not in name},
+            values=[],
+            paced=[],
+            offers=[],
+            example=plans.Example(gives, expects, is_among, example.tolerance),
+        )
+
+
+def _arguments(parameters: Mapping[str, object]) -> list[str]:
+    """Return what gives a node its private parameters, whatever its name is."""
+    return [f"_{name}:={json.dumps(value)}" for name, value in parameters.items()]
+
+
+def _param(name: str, value: object) -> str:
+    said = xml.sax.saxutils.quoteattr(value if isinstance(value, str) else json.dumps(value))
+    return f'<param name="{name}" value={said}/>'
 
 
 def _moved(name: str, old: str, new: str) -> str:
@@ -190,7 +248,7 @@ def is_python(path: pathlib.Path) -> bool:
     return first.startswith(b"#!") and b"python" in first
 
 
-def resolved(topic: specs.Topic, path: str) -> str:
+def resolved(topic: specs.Topic | specs.Service, path: str) -> str:
     """Return the full name of a spec's topic, for a node of that full name."""
     group = path.rsplit("/", 1)[0]
     start = {"global": "/", "private": path + "/", "group": group + "/"}[topic.namespace]

@@ -30,6 +30,8 @@ def start_findings(node: Traces) -> Iterator[Finding]:
         if node.in_launch and not registered and not node.own_name:
             yield _not_registered(node)
         return
+    if node.wanted.ends and code == 0:
+        return
     found = _traceback(node)
     if found and code != 0:
         yield _raised(node, *found)

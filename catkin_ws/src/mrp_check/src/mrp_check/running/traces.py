@@ -55,6 +55,11 @@ class Traces:
         records = seen.publications if kind is Kind.PUBLISHER else seen.subscriptions
         return {one.topic: one.type for one in records if one.topic not in ROS_TOPICS}
 
+    def is_unheard(self, topic: str) -> bool:
+        """Return whether nothing is known of what it publishes on a topic that it announces."""
+        announced = [*self.seen.publications, *self.seen_alone.publications]
+        return any(one.topic == topic and not one.heard for one in announced)
+
     def died(self) -> int | None:
         """Return the exit code if roslaunch says that the node ended by itself, or None."""
         for text in self.console:
@@ -109,4 +114,6 @@ def _of_node(seen: Seen, name: str | None) -> Seen:
         [one for one in seen.messages if one.node == name],
         [one for one in seen.logs if one.node == name],
         seen.lag,
+        [one for one in seen.services if one.node == name],
+        [one for one in seen.lookups if one.node == name],
     )

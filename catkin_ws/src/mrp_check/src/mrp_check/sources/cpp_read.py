@@ -37,7 +37,9 @@ class CppReader:
         task = Task(str(workspace.package_folder), str(self.headers.result()), [unit])
         reader = str(sandbox.code() / "cpp_facts.py")
         try:
-            done = workspace.run("/usr/bin/python3", reader, crossing.to_json(task))
+            done = workspace.run_once(
+                "/usr/bin/python3", reader, crossing.to_json(task), of=("cpp", "header")
+            )
         except confine.ConfineError:
             return None
         try:

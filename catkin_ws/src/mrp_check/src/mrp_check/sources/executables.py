@@ -14,7 +14,9 @@ from mrp_check.student.cmake import Model
 from mrp_check.student.package import Package
 
 # What a program does that is a node, or was meant to be one.
-_ROSPY = re.compile(r"^[^#\n]*\b(?:init_node|rospy\.(?:Publisher|Subscriber|Service))\s*\(", re.M)
+_ROSPY = re.compile(
+    r"^[^#\n]*\b(?:init_node|rospy\.(?:Publisher|Subscriber|Service|ServiceProxy))\s*\(", re.M
+)
 _ROSCPP = re.compile(r"\bros::(?:init\b|NodeHandle\b)")
 _SECONDS = 5  # in which a node has to end on Ctrl-C
 _INIT = re.compile(r"^[^#\n]*\binit_node\s*\(", re.M)

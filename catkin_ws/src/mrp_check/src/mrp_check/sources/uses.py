@@ -75,6 +75,11 @@ def absent(name: str, language: str) -> str:
     )
 
 
+def is_of_debian(module: str) -> bool:
+    """Return whether Debian has a Python module of that name, on this machine or not."""
+    return f"python3-{module.lower().replace('_', '-')}" in debian_packages()
+
+
 @functools.lru_cache(maxsize=None)
 def debian_packages() -> set[str]:
     """Return the names of all packages that apt knows of; none where it knows only a part."""
