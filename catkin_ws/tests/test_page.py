@@ -243,3 +243,11 @@ def test_a_recording_may_have_fewer_lines_of_a_kind():
     assert record_pages.differences(["a 1"], ["a 3", "b"], ["a 3", "b"]) == {"b"}
     assert record_pages.differences(["a 1"], ["a 3", "b 1"], ["a 3", "b 1", "c"]) == set()
     assert record_pages.differences(["a 1", "c"], ["a 3"], ["a 3", "b"]) == {"c"}
+
+
+@pytest.mark.quick
+def test_the_number_of_a_process_may_be_small():
+    """A machine that has just begun has small ones, and a name of a robot has its number."""
+    recorded, shown = "I am /talker_48123_1795518217512", "I am /talker_812_1795518217990"
+    assert record_pages.differences([recorded], [shown], [shown]) == set()
+    assert record_pages.masked(["/robot_1"]) == {"/robot_1"}
