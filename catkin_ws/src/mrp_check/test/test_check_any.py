@@ -63,7 +63,7 @@ def test_first_trial_on_packages_by_strangers():
 
 
 @proves(
-    "A later trial was on 38 more public packages, of which somebody had listed 24 errors by "
+    "A later trial was on 38 more public packages, in which somebody had listed 24 errors by "
     "reading alone.",
     "It reported 15 of these in full and 1 in part, and 3 errors where nothing is wrong.",
 )
