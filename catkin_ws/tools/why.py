@@ -50,6 +50,39 @@ _MASKS = (
     (re.compile(r"\b(?:0x[0-9a-f]+|[0-9a-f]{32,})\b"), "#"),
     (re.compile(r"(?<!exit code )(?<!exit code -)(?<!\d)(?:(?<=\s)-)?\d+(?:\.\d+)*"), "#"),
 )
+# What the system, the shell and g++ say in other languages: Chinese, Japanese, German, Spanish,
+# French and Portuguese. What is longer stands first.
+_ENGLISH = {
+    ": ": "：",
+    ", ": "，",
+    "No such file or directory": "没有那个文件或目录|そのようなファイルやディレクトリはありません"
+    "|Datei oder Verzeichnis nicht gefunden|No existe el (?:archivo|fichero) o el directorio"
+    "|Aucun fichier ou dossier de ce (?:type|nom)|(?:Arquivo|Ficheiro) ou \\w+ inexistente",
+    "Permission denied": "权限不够|許可がありません|Keine Berechtigung|Permiso denegado"
+    "|Permission non accordée|Permissão (?:negada|recusada)",
+    "command not found": "未找到命令|コマンドが見つかりません|(?:Kommando|Befehl) nicht gefunden"
+    "|(?:orden|comando) no encontrad[oa]|commande introuvable|comando não encontrado",
+    "Unable to locate package": "无法定位软件包|No se ha podido localizar el paquete"
+    "|Impossible de trouver le paquet|(?:Não foi possível|Impossível) encontrar o pacote",
+    "Segmentation fault": "段错误|セグメンテーション違反|Speicherzugriffsfehler"
+    "|Violación de segmento|Erreur de segmentation|Falha de segmentação",
+    "core dumped": "核心已转储|コアダンプ|Speicherabzug geschrieben|.core. generado"
+    "|imagem do núcleo gravada",
+    "Aborted": "已放弃|Abgebrochen|Abortado",
+    "Killed": "已杀死|Getötet",
+    "Connection refused": "拒绝连接|接続を拒否されました|Verbindungsaufbau abgelehnt"
+    "|Conexión rehusada|Connexion refusée|Conexão recusada",
+    "No space left on device": "设备上没有空间|Auf dem Gerät ist kein Speicherplatz mehr verfügbar",
+    "was not declared in this scope": "在此作用域中(?:尚未|未)声明"
+    "|はこのスコープで宣言されていません|wurde in diesem Gültigkeitsbereich nicht definiert"
+    "|no se declaró en este ámbito|n.a pas été déclaré dans cette portée",
+    "undefined reference to": "未定义的引用|に対する定義されていない参照"
+    "|Nicht definierter Verweis auf|référence indéfinie vers",
+    "Waiting for unfinished jobs": "正在等待未完成的任务",
+    "fatal error": "致命错误|致命的エラー|schwerwiegender Fehler|erreur fatale|error fatal",
+    "error": "错误|エラー|\\bFehler\\b|\\berreur\\b|\\berro\\b",
+    "warning": "警告|\\bWarnung\\b|\\bavertissement\\b",
+}
 # Of a path, only the last part counts, and whether it is that of ROS's own packages.
 _FOLDERS = re.compile(r"(?<![\w.])~?(/opt/ros/\w+)?/(?:[^\s/:;,'\"()\[\]<>]+/)*")
 _WORD = re.compile(r"[^\W\d_]+|\d+")
@@ -181,6 +214,8 @@ class Index:
 
     def nearest(self, text, count=ANSWERS):
         """Return the entries that are near to a text, the nearest one first."""
+        for words, others in _ENGLISH.items():
+            text = re.sub(others, f" {words} ", text)
         best = self._scores(_CODE.sub("", text)) or self._scores(text)
         ranked = [self._entries[number] for number in sorted(best, key=lambda one: -best[one])]
         ends = [one for one in ranked if one.above][1:]
