@@ -217,17 +217,19 @@ class Index:
         for words, others in _ENGLISH.items():
             text = re.sub(others, f" {words} ", text)
         best = self._scores(_CODE.sub("", text)) or self._scores(text)
-        ranked = [self._entries[number] for number in sorted(best, key=lambda one: -best[one])]
+        ranked = [self._entries[one] for one in sorted(best, key=best.get, reverse=True)]
         ends = [one for one in ranked if one.above][1:]
         return [one for one in ranked if one not in ends][:count]
 
     def _scores(self, text):
-        """Return the scores of the entries that are near to a text, by their numbers."""
+        """Return, by the numbers of the entries that are near to a text, their best score, and how
+        many of their texts have it: the most general entry does if only names differ."""
         best = {}
         for words in _passages(text):
             for row, number, score in self._search(words):
-                if score > best.get(number, 0) and _is_near(set(words), self._sure[row - 1], score):
-                    best[number] = score
+                highest, count = best.get(number, (0, 0))
+                if score >= highest and _is_near(set(words), self._sure[row - 1], score):
+                    best[number] = (score, count + 1 if score == highest else 1)
         return best
 
     def _search(self, words):
@@ -237,7 +239,7 @@ class Index:
         terms |= {f'"{word}"' for word in words if word}
         if terms:
             query = (
-                "SELECT rowid, entry, -rank FROM texts WHERE texts MATCH ? ORDER BY rank LIMIT 20"
+                "SELECT rowid, entry, -rank FROM texts WHERE texts MATCH ? ORDER BY rank LIMIT 40"
             )
             yield from self._table.execute(query, (" OR ".join(sorted(terms)),))
 
