@@ -34,7 +34,7 @@ class Room(classroom.Classroom):
         options = {"progress": self.said.append, **options}
         super().__init__(folder, SPEC_FILE, **options)
 
-    def report_of(self, package_folder, name):
+    def report_of(self, one, name):
         self.checked.append(name)
         finding = {
             "id": "values",
@@ -92,12 +92,12 @@ def test_jobs_says_how_many_are_checked_at_a_time(tmp_path, jobs):
     together, present = threading.Barrier(jobs, timeout=DEADLINE), []
 
     class Together(Room):
-        def report_of(self, package_folder, name):
+        def report_of(self, one, name):
             present.append(name)
             assert len(present) <= jobs
             together.wait()
             present.remove(name)
-            return super().report_of(package_folder, name)
+            return super().report_of(one, name)
 
     options = check_command.parser().parse_args(["--class", "class", "--jobs", str(jobs)])
     assert set(Together(tmp_path / "class", jobs=options.jobs).verdicts().values()) == {
@@ -119,11 +119,11 @@ def test_progress_says_what_runs_and_how_long_it_takes(tmp_path):
         ended.set()
 
     class OneByOne(Room):
-        def report_of(self, package_folder, name):
+        def report_of(self, one, name):
             if name == "berta":
                 begun.set()
             assert (begun if name == "anna" else ended).wait(DEADLINE)
-            return super().report_of(package_folder, name)
+            return super().report_of(one, name)
 
     OneByOne(tmp_path / "class", progress=progress).check()
     assert re.fullmatch(r"1 of 2: anna: findings; about \d+ min left; now: berta", said[0])

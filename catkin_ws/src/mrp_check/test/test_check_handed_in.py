@@ -33,10 +33,9 @@ class Reader(Room):
         super().__init__(folder, **options)
         self.seen = {}
 
-    def report_of(self, package_folder, name):
-        one = Package(package_folder)
+    def report_of(self, one, name):
         self.seen[name] = {path: (one.text(path), one.is_executable(path)) for path in one.files}
-        return super().report_of(package_folder, name)
+        return super().report_of(one, name)
 
 
 @pytest.fixture

@@ -10,9 +10,9 @@ import sys
 import time
 
 from mrp_check import check, sandbox
-from mrp_check.cli import classroom
+from mrp_check.cli import classroom, cluster
 from mrp_check.contract import by_hand, spec
-from mrp_check.contract.errors import CannotCheck, PackageError, SpecError
+from mrp_check.contract.errors import CannotCheck, ClusterError, PackageError, SpecError
 from mrp_check.contract.verdict import FINDINGS, MET, UNCHECKED, public, unchecked
 from mrp_check.report import (
     alike,
@@ -104,9 +104,13 @@ def parser():
     parser.add_argument("--before", metavar="FOLDER", help=since)
     for flag, text in FLAGS.items():
         parser.add_argument(f"--{flag}", action="store_true", help=text)
-    number = "with --class: check N at the same time, 1 to 64 (default: %(default)s)"
-    most, jobs = range(1, 65), classroom.JOBS
-    parser.add_argument("--jobs", type=int, choices=most, default=jobs, metavar="N", help=number)
+    number = (
+        f"with --class: check N at the same time, 1 to 64 (default: {classroom.JOBS}; with"
+        " --scheduler, as many as its workers have threads)"
+    )
+    parser.add_argument("--jobs", type=int, choices=range(1, 65), metavar="N", help=number)
+    where = "with --class: check on the workers of the Dask scheduler at ADDRESS"
+    parser.add_argument("--scheduler", metavar="ADDRESS", help=where)
     seconds = "stop the check of a package after S seconds (default: %(default)s)"
     parser.add_argument("--timeout", type=_seconds, default=600, metavar="S", help=seconds)
     parser.add_argument(
@@ -133,7 +137,7 @@ def _seconds(text):
 def run(options):
     """Check what the options say, write the reports, and return the exit code."""
     of_package = {*OF_PACKAGE, *FLAGS, "only"} - {*OF_CLASS}
-    of_class = {*OF_CLASS, "by_hand", "template", "before"} - {*OF_PACKAGE}
+    of_class = {*OF_CLASS, "by_hand", "template", "before", "scheduler"} - {*OF_PACKAGE}
     try:
         for name in sorted(of_package if options.class_ else of_class):
             if getattr(options, name):
@@ -141,23 +145,26 @@ def run(options):
                 name = name.replace("_", "-")
                 raise CannotCheck(f"--{name} goes {needed} --class.")
         result = run_class(options) if options.class_ else run_package(options)
-    except (PackageError, SpecError, CannotCheck, OSError) as error:
+    except (PackageError, SpecError, CannotCheck, ClusterError, OSError) as error:
         print(f"check: {error}", file=sys.stderr)
         result = UNCHECKED
     return EXIT_CODES[result]
 
 
-def say_how_apart():
-    """Say what the package's programs can reach, if that is more than the scratch folder."""
-    not_apart = sandbox.isolation().value
-    if not_apart:
+def say_how_apart(machines=None):
+    """Say what the package's programs can reach, if that is more than the scratch folder.
+
+    machines: the Cluster, if it is not this machine
+    """
+    said = machines.not_apart if machines else {sandbox.isolation().value}
+    for not_apart in sorted(filter(None, said)):
         print(f"check: {not_apart}.", file=sys.stderr)
 
 
 def run_class(options):
     """Check a class, write its table, and return MET or FINDINGS.
 
-    Raises PackageError, SpecError, CannotCheck, or OSError if it cannot be checked.
+    Raises PackageError, SpecError, CannotCheck, ClusterError, or OSError if it cannot be checked.
     """
     spec_file = spec.find(options.spec)
     contract = spec.read(spec_file, REQUIREMENTS)
@@ -173,9 +180,10 @@ def run_class(options):
     pairs = []
     if options.alike:
         pairs = alike.pairs_in(room.entries, options.package, options.template)
-    say_how_apart()
     try:
-        checked = room.check()
+        with cluster.reached(options.scheduler) as machines:
+            say_how_apart(machines)
+            checked = room.check(machines)
     finally:
         progress.clear()
     for one in checked:

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """A whole class at once: `check --class DIR`, where each folder or archive in DIR is one student's.
 
-A process of its own checks each package, and several run at the same time. If one fails, the others
-go on. The folder DIR.checked, beside DIR, keeps their reports: after Ctrl-C the same command goes
+A process of its own checks each package, and several run at the same time, here or on the workers of
+a cluster. If one fails, the others go on. The folder DIR.checked, beside DIR, keeps their reports: after Ctrl-C the same command goes
 on from there. A package is checked again only if it, the checker, or what the contract asks of it
 has changed.
 """
@@ -12,20 +12,15 @@ from __future__ import annotations
 import concurrent.futures
 import hashlib
 import math
-import os
 import pathlib
-import signal
-import subprocess
-import sys
-import tempfile
-import threading
 import time
+import uuid
 
 from mrp_check import confine
 from mrp_check.check import scratch_folder
-from mrp_check.confined import cpp_headers, variables
-from mrp_check.contract import resources, spec
-from mrp_check.contract.errors import CannotCheck, PackageError
+from mrp_check.cli import marking
+from mrp_check.contract import spec
+from mrp_check.contract.errors import CannotCheck, ClusterError, PackageError
 from mrp_check.contract.verdict import UNCHECKED, unchecked
 from mrp_check.report import json_
 from mrp_check.report.class_table import Submission
@@ -33,10 +28,8 @@ from mrp_check.student import submissions
 from mrp_check.student.package import Package
 
 JOBS = 2
-_HERE = pathlib.Path(__file__).resolve().parents[1]
 _CHUNK = 2**20  # bytes that are read at once
 _MOST_NAMED = 4  # in the sentence on the progress
-_GRACE = 60  # seconds that a check may take beyond its own limit
 
 
 class Classroom:
@@ -44,7 +37,7 @@ class Classroom:
 
     folder: each folder and each file in it is a submission
     spec_file: the contract
-    jobs: how many are checked at the same time
+    jobs: how many are checked at the same time; if not given, as many as the machines can
     timeout: seconds that the check of one may take
     progress: called with a sentence
     package: which is checked of a submission that has several
@@ -53,33 +46,38 @@ class Classroom:
     Raises PackageError if there is no submission.
     """
 
-    def __init__(self, folder, spec_file, jobs=JOBS, timeout=120, progress=print, package=""):
+    def __init__(self, folder, spec_file, jobs=None, timeout=120, progress=print, package=""):
         self.entries = submissions.entries(folder)
         self.package = package
         self.spec_file = pathlib.Path(spec_file).resolve()
         self.jobs, self.timeout, self.progress = jobs, timeout, progress
+        self._machines, self._id = marking, uuid.uuid4().hex
         path = pathlib.Path(folder).resolve()
         self.results = path.with_name(path.name + ".checked")
-        self._running, self._stopped, self._lock = set(), False, threading.Lock()
         self._common, self._begun, self._now, self._ended = {}, 0.0, [], 0
-        self._headers, self._reading = pathlib.Path(), threading.Lock()
 
-    def check(self):
-        """Check all that must be; return a Submission of each, in the order of their names."""
+    def check(self, cluster=None):
+        """Check all that must be; return a Submission of each, in the order of their names.
+
+        cluster: the machines that check, as a cluster.Cluster; this one if there is none
+
+        Raises ClusterError.
+        """
+        self._machines = cluster or marking
+        jobs = self.jobs or (cluster.threads if cluster else JOBS)
         self.results.mkdir(parents=True, exist_ok=True)
         self._common, self._begun = self._depended_on(), time.monotonic()
-        with tempfile.TemporaryDirectory(prefix="mrp_check_class_") as folder:
-            self._headers = pathlib.Path(folder) / "ros.pch"
-            with concurrent.futures.ThreadPoolExecutor(self.jobs) as pool:
-                futures = [pool.submit(self._checked, entry) for entry in self.entries]
-                try:
-                    for number, future in enumerate(concurrent.futures.as_completed(futures), 1):
-                        self._say(number, future.result())
-                except BaseException:  # such as Ctrl-C
-                    for future in futures:
-                        future.cancel()
-                    self._stop()
-                    raise
+        with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
+            futures = [pool.submit(self._checked, entry) for entry in self.entries]
+            try:
+                for number, future in enumerate(concurrent.futures.as_completed(futures), 1):
+                    self._say(number, future.result())
+            except BaseException:  # such as Ctrl-C, or a cluster that is gone
+                for future in futures:
+                    future.cancel()
+                confine.stop()
+                self._machines.stop(self._id)
+                raise
         return [future.result() for future in futures]
 
     def _say(self, number, one):
@@ -97,6 +95,8 @@ class Classroom:
         """Return a Submission, whatever happens: what is wrong with one stops no other."""
         try:
             return self._submission(entry)
+        except ClusterError:
+            raise
         except (PackageError, CannotCheck) as error:
             reason = str(error)
         except Exception as error:
@@ -115,7 +115,7 @@ class Classroom:
             package = package or self._package(entry, scratch)
             self._now.append(entry.name)
             try:
-                report = self.report_of(package.root, entry.name)
+                report = self.report_of(package, entry.name)
             finally:
                 self._now.remove(entry.name)
                 self._ended += 1
@@ -129,12 +129,9 @@ class Classroom:
     def _depended_on(self):
         """Return what all reports depend on: a text that changes with it."""
         contract = repr(spec.read(self.spec_file).without_marks())
-        checker = hashlib.sha256()
-        for path in sorted([*_HERE.rglob("*.py"), *resources.folder("templates").iterdir()]):
-            checker.update(path.read_bytes())
         return {
             "contract": hashlib.sha256(contract.encode()).hexdigest(),
-            "checker": checker.hexdigest(),
+            "checker": marking.checker(),
         }
 
     def _fingerprint(self, packed, package):
@@ -154,79 +151,26 @@ class Classroom:
         return digest.hexdigest()
 
     def report_of(self, package, name):
-        """Check one package in a process of its own; return its report. Raises CannotCheck.
+        """Have one package checked, keep its page, and return its report.
 
-        package: its folder
         name: the submission's
+
+        Raises CannotCheck; or ClusterError if nothing can be checked any more.
         """
-        with scratch_folder() as scratch:
-            command = self._command(package, name, scratch / "report.json")
-            code, said = self._run(command, self._environment(scratch))
-            report = json_.kept(scratch / "report.json")
-        if not report:
-            raise CannotCheck(said[-1] if said else f"The check ended with {code}.")
+        job = marking.Job(
+            class_=self._id,
+            checker=marking.checker(),
+            contract=self.spec_file.read_bytes(),
+            folder=package.root.resolve().name,
+            files=marking.packed(package),
+            too_large=package.left_out,
+            timeout=self.timeout,
+        )
+        report, page = self._machines.mark(job)
+        json_.keep_text(self.results / f"{name}.html", page)
         return report
-
-    def _command(self, package, name, report_file):
-        program = "from mrp_check.cli.check import main; main()"
-        command = [sys.executable, "-c", program, str(package)]
-        command += [f"--spec={self.spec_file}", f"--timeout={self.timeout:g}"]
-        return [*command, f"--json={report_file}", f"--html={self.results / name}.html"]
-
-    def _environment(self, scratch):
-        with self._reading:  # the first reads them for all
-            if not self._headers.exists():
-                cpp_headers.make(self._headers)
-        env = {**os.environ, "TMPDIR": str(scratch)}
-        if self._headers.exists():
-            env[variables.HEADERS] = str(self._headers)
-        env["PYTHONPATH"] = os.pathsep.join([str(_HERE.parent), env.get("PYTHONPATH", "")])
-        return env
-
-    def _run(self, command, env):
-        """Run a command; return its exit code and the lines of its stderr. Raises CannotCheck."""
-        with self._lock:
-            if self._stopped:
-                raise CannotCheck("The check was stopped.")
-            popen = subprocess.Popen(
-                command,
-                env=env,
-                stdin=subprocess.DEVNULL,
-                stdout=subprocess.DEVNULL,
-                stderr=subprocess.PIPE,
-                encoding="utf-8",
-                errors="replace",
-                start_new_session=True,
-            )
-            self._running.add(popen)
-        limit = self.timeout + _GRACE
-        try:
-            said = popen.communicate(timeout=limit)[1]
-        except subprocess.TimeoutExpired:
-            _kill(popen)
-            popen.communicate()
-            raise CannotCheck(f"The check did not end within {limit:.0f} s.") from None
-        finally:
-            with self._lock:
-                self._running.remove(popen)
-        return popen.returncode, said.strip().splitlines()
-
-    def _stop(self):
-        with self._lock:
-            self._stopped = True
-            confine.stop()
-            for popen in self._running:
-                _kill(popen)
 
 
 def minutes_left(seconds, ended, left):
     """Return how long the rest takes, at most, if so many checks ended in so many seconds."""
     return math.ceil(seconds / ended * left / 60)
-
-
-def _kill(popen):
-    # What it runs confined ends with it: see confine.py.
-    try:
-        os.killpg(popen.pid, signal.SIGKILL)
-    except OSError:
-        pass

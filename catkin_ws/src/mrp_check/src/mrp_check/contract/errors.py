@@ -12,3 +12,7 @@ class PackageError(Exception):
 
 class SpecError(Exception):
     """The spec cannot be used; the sentence names the file and the place."""
+
+
+class ClusterError(Exception):
+    """The machines that should check cannot be used, for any submission."""

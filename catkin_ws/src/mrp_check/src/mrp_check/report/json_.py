@@ -50,8 +50,13 @@ def text(report):
 
 def keep(file, value):
     """Write a value into a file, whole or not at all."""
+    keep_text(file, json.dumps(value))
+
+
+def keep_text(file, text):
+    """Write a text into a file, whole or not at all."""
     new = file.with_suffix(".new")
-    new.write_text(json.dumps(value))
+    new.write_text(text, encoding="utf-8")
     new.rename(file)
 
 

@@ -1,0 +1,323 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A class on a Dask cluster: a scheduler and workers, real ones, that listen on loopback."""
+
+import contextlib
+import csv
+import json
+import os
+import pathlib
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import uuid
+
+import dask
+import distributed  # noqa: F401 (its defaults)
+import psutil
+import pytest
+from check_rules import hand_in
+from mrp_check.confined import cpp_headers, variables
+from mrp_check.contract import resources
+from mrp_check.contract.packages import lay_out
+from mrp_check.student.package import MAX_BYTES
+from mrp_testing.process import Process, processes_with
+from mrp_testing.proves import proves
+from mrp_testing.waiting import wait_until
+from test_check_stopped import command
+
+pytestmark = pytest.mark.slow
+
+HERE = pathlib.Path(__file__).resolve().parent
+SPEC = ("--spec", "talker_listener_py")
+
+
+@pytest.fixture(scope="module")
+def headers(tmp_path_factory):
+    return cpp_headers.make(tmp_path_factory.mktemp("headers") / "ros.pch")
+
+
+@pytest.fixture(autouse=True)
+def quick(monkeypatch, tmp_path, headers):
+    """ROS's headers are read once, nobody waits for long, and nothing is of the user's own Dask."""
+    monkeypatch.setenv(variables.HEADERS, str(headers))
+    monkeypatch.setenv("DASK_CONFIG", str(tmp_path / "none"))
+    monkeypatch.setenv("DASK_DISTRIBUTED__COMM__TIMEOUTS__CONNECT", "5s")
+    monkeypatch.setenv("PYTHONPATH", ":".join(sys.path))
+
+
+@pytest.fixture
+def second():
+    """Seconds for which a submission sleeps: a number that no other test on this machine has."""
+    return f"5.{uuid.uuid4().int}"
+
+
+def sleeping(seconds):
+    return f"""cmake_minimum_required(VERSION 3.10)
+project(some_pkg)
+execute_process(COMMAND sleep {seconds})
+"""
+
+
+@contextlib.contextmanager
+def cluster(folder, workers=2, options=(), **worker_env):
+    """Yield a scheduler, its address, and its workers; options: the scheduler's."""
+    file = folder / f"scheduler_{uuid.uuid4().hex}.json"
+    common = ("--no-dashboard", "--host", "127.0.0.1")
+    asked = ("/usr/bin/dask", "scheduler", *common, "--port", "0", "--scheduler-file", str(file))
+    with contextlib.ExitStack() as stack:
+        scheduler = stack.enter_context(Process(*asked, *options))
+        scheduler.wait_for(file.is_file, "the scheduler listens")
+        wait_until(lambda: file.read_text().endswith("}"), "it has said where")
+        address = json.loads(file.read_text())["address"]
+        asked = ("/usr/bin/dask", "worker", address, *common, "--nthreads", "1", "--no-nanny")
+        asked += ("--local-directory", str(folder / "space"))
+        started = [Process(*asked, extra_env=worker_env) for _ in range(workers)]
+        for worker in started:
+            stack.enter_context(worker)
+        for worker in started:
+            worker.wait_for(lambda: any("Registered to" in x for x in worker.lines), "it is there")
+        yield scheduler, address, started
+
+
+def checked(folder, *options):
+    """Check a class; return the exit code, what was said, and the rows of the table."""
+    table = folder.with_name("table.csv")
+    with command("--class", folder, "--csv", table, *SPEC, *options) as checker:
+        _, said = checker.communicate()
+    assert "Traceback" not in said
+    rows = list(csv.DictReader(table.read_text().splitlines())) if table.is_file() else []
+    return checker.returncode, said, rows
+
+
+def worker_of(text, workers):
+    """Return the worker that runs a process with this text; None if no worker does."""
+    for pid in processes_with(text):
+        with contextlib.suppress(psutil.Error):
+            above = {process.pid for process in psutil.Process(pid).parents()}
+            for worker in workers:
+                if worker.pid in above:
+                    return worker
+    return None
+
+
+def kept(folder):
+    """Return name -> content of all files that a class leaves, but for what it depends on."""
+    return {path.name: path.read_bytes() for path in folder.iterdir()}
+
+
+@proves("The marks and the students' pages are the same as on one machine.")
+def test_marks_are_those_of_one_machine(tmp_path):
+    for where in ("here", "there"):
+        anna = hand_in(tmp_path / where / "class", "anna")
+        with open(anna / "video.mp4", "wb") as file:
+            file.truncate(MAX_BYTES + 1)
+        (tmp_path / where / "class" / "mrp").mkdir()
+        lay_out("talker_listener_py", tmp_path / where / "class" / "mrp")
+    (tmp_path / "there" / "class" / "zoe").mkdir()
+    (tmp_path / "here" / "class" / "zoe").mkdir()
+    here = checked(tmp_path / "here" / "class")
+    with cluster(tmp_path) as (_, address, _):
+        there = checked(tmp_path / "there" / "class", "--scheduler", address)
+    assert (there[0], there[2]) == (here[0], here[2])
+    assert {row["submission"]: row["verdict"] for row in there[2]} == {
+        "anna": "findings",
+        "mrp": "met",
+        "zoe": "unchecked",
+    }
+    assert "3 of 3: " in there[1]
+    found = [kept(tmp_path / where / "class.checked") for where in ("here", "there")]
+    assert found[0] == found[1]
+    assert {"anna.json", "anna.html", "mrp.html"} < {*found[0]}
+    assert b"video.mp4" in found[0]["anna.json"]
+
+
+@proves("If a worker dies or hangs, another one checks its submission.")
+def test_a_worker_that_dies_or_hangs_takes_no_marks(tmp_path, monkeypatch, second):
+    """Of three workers, one is killed while it checks, and another stopped."""
+    hand_in(tmp_path / "class", "anna", sleeping(second))
+    hand_in(tmp_path / "class", "berta")
+    quiet = checked(tmp_path / "class")
+    shutil.rmtree(tmp_path / "class.checked")
+    monkeypatch.setenv("DASK_DISTRIBUTED__SCHEDULER__WORKER_TTL", "1s")
+    with cluster(tmp_path, workers=3) as (_, address, workers):
+        options = ("--csv", tmp_path / "table.csv", *SPEC, "--scheduler", address)
+        with command("--class", tmp_path / "class", *options) as checker:
+            killed = wait_until(lambda: worker_of(second, workers), "the first checks it")
+            killed.stop(signal.SIGKILL)
+            workers.remove(killed)
+            stopped = wait_until(lambda: worker_of(second, workers), "the second checks it")
+            os.kill(stopped.pid, signal.SIGSTOP)
+            _, said = checker.communicate()
+        stopped.stop(signal.SIGKILL)
+        rows = list(csv.DictReader((tmp_path / "table.csv").read_text().splitlines()))
+    assert (checker.returncode, rows) == (quiet[0], quiet[2]), said
+    wait_until(lambda: not processes_with(second), "what the killed worker ran has ended")
+
+
+# A worker's check that takes no time: of what Dask does with it, that is enough.
+NO_CHECK = """
+import os
+from mrp_check.cli import marking
+
+def dask_setup(worker):
+    marking.mark = lambda job: os._exit(1) if job.folder == "killer" else (REPORT, "a page")
+
+REPORT = {"verdict": "met", "package": "p", "spec": "s", "requirements": {}, "findings": []}
+"""
+
+
+def without_checks(folder):
+    """Return the environment of workers that check nothing."""
+    (folder / "no_check.py").write_text(NO_CHECK)
+    return {"DASK_DISTRIBUTED__WORKER__PRELOAD": f"[{str(folder / 'no_check.py')!r}]"}
+
+
+@proves(
+    "Dask gives a submission to three more workers; if all die, its line says so, and the others "
+    "have their marks.",
+)
+def test_a_submission_that_kills_its_workers_is_named(tmp_path, monkeypatch):
+    """Two may die here, so that it does not take long; Dask's own default is three more."""
+    assert dask.config.get("distributed.scheduler.allowed-failures") == 3
+    monkeypatch.setenv("DASK_DISTRIBUTED__SCHEDULER__ALLOWED_FAILURES", "1")
+    for name in ("anna", "killer", "zoe"):
+        hand_in(tmp_path / "class", name)
+    with cluster(tmp_path, workers=3, **without_checks(tmp_path)) as (_, address, workers):
+        _, said, rows = checked(tmp_path / "class", "--scheduler", address)
+        assert sum(worker.code is not None for worker in workers) == 2
+    found = {row["submission"]: row["verdict"] for row in rows}
+    assert found == {"anna": "met", "killer": "unchecked", "zoe": "met"}, said
+    assert rows[1]["why"].startswith("Each worker to which it was given died or was lost.")
+
+
+@proves("If the scheduler dies, the same command goes on later with what was checked.")
+def test_a_scheduler_that_dies_loses_nothing(tmp_path, second):
+    hand_in(tmp_path / "class", "anna")
+    hand_in(tmp_path / "class", "berta", sleeping(second))
+    with cluster(tmp_path, workers=1) as (scheduler, address, workers):
+        with command("--class", tmp_path / "class", *SPEC, "--scheduler", address) as checker:
+            wait_until(lambda: worker_of(second, workers), "the worker checks the second one")
+            scheduler.stop(signal.SIGKILL)
+            _, said = checker.communicate()
+        wait_until(lambda: not processes_with(second), "what the worker ran has ended")
+    assert checker.returncode == 2, said
+    assert "Traceback" not in said
+    assert said.splitlines()[-1] == (
+        f"check: The scheduler at {address} has ended, or cannot be reached any more. What is"
+        " checked is kept: start it and its workers, and call the same command again."
+    )
+    with cluster(tmp_path, workers=1) as (_, address, _):
+        code, said, rows = checked(tmp_path / "class", "--scheduler", address)
+    assert "anna: findings, as before" in said
+    assert [row["verdict"] for row in rows] == ["findings", "findings"]
+
+
+@proves("Ctrl-C ends the checks on the workers, too.")
+def test_a_signal_ends_what_runs_on_the_workers(tmp_path, second):
+    hand_in(tmp_path / "class", "anna", sleeping(f"1000{second}"))
+    with cluster(tmp_path, workers=1) as (_, address, workers):
+        with command("--class", tmp_path / "class", *SPEC, "--scheduler", address) as checker:
+            wait_until(lambda: worker_of(second, workers), "the worker checks it")
+            checker.send_signal(signal.SIGINT)
+            _, said = checker.communicate()
+        wait_until(lambda: not processes_with(second), "nothing of it runs")
+        assert workers[0].code is None
+    assert checker.returncode == 1
+    assert "Traceback" not in said
+    assert said.splitlines()[-1] == "check: stopped before its end; what it ran has ended, too."
+
+
+@proves("A worker with another version of the checker refuses.")
+@pytest.mark.parametrize("what", ["another", "none"])
+def test_a_worker_with_another_checker_refuses(tmp_path, what):
+    hand_in(tmp_path / "class", "anna")
+    own = tmp_path / "mrp_check"
+    if what == "another":
+        for name in ("src", "templates", "schema", "specs"):
+            shutil.copytree(resources.folder(name), own / name)
+        with open(own / "src" / "mrp_check" / "check.py", "a") as file:
+            file.write("# another\n")
+    env = {"PYTHONPATH": str(own / "src")}
+    with cluster(tmp_path, workers=1, **env) as (_, address, _):
+        code, said, rows = checked(tmp_path / "class", "--scheduler", address)
+    assert (code, rows) == (2, [])
+    expected = {
+        "another": "The worker at tcp://.* has another version of the checker. Install the one of"
+        " this machine there, and start the worker again.",
+        "none": f"The scheduler at {address} or a worker of it cannot be used: expected machines"
+        " with the checker,.*No module named 'mrp_check'.*",
+    }
+    assert re.fullmatch(f"check: {expected[what]}", said.splitlines()[-1])
+
+
+@pytest.mark.parametrize(
+    ("address", "says"),
+    [
+        ("tcp://127.0.0.1:1", "OSError: Timed out"),
+        ("nowhere", "ValueError: missing port"),
+        ("tls://127.0.0.1:1", "TypeError: TLS expects"),
+    ],
+)
+def test_an_address_without_a_scheduler(tmp_path, monkeypatch, address, says):
+    monkeypatch.setenv("DASK_DISTRIBUTED__COMM__TIMEOUTS__CONNECT", "1s")
+    hand_in(tmp_path / "class", "anna")
+    code, said, _ = checked(tmp_path / "class", "--scheduler", address)
+    expected = f"check: There is no Dask scheduler at {address}: expected one that dask-scheduler"
+    assert (code, said.count("\n")) == (2, 1)
+    assert said.startswith(f"{expected} has started. It says: {says}")
+
+
+def test_a_scheduler_without_a_worker(tmp_path, monkeypatch):
+    monkeypatch.setenv("DASK_DISTRIBUTED__COMM__TIMEOUTS__CONNECT", "1s")
+    hand_in(tmp_path / "class", "anna")
+    with cluster(tmp_path, workers=0) as (_, address, _):
+        code, said, _ = checked(tmp_path / "class", "--scheduler", address)
+    assert (code, said) == (
+        2,
+        f"check: The scheduler at {address} has no worker. Start one: dask-worker {address}"
+        " --nthreads 1.\n",
+    )
+
+
+def test_without_dask_the_package_is_named(tmp_path, monkeypatch):
+    (tmp_path / "dask.py").write_text("raise ImportError\n")
+    monkeypatch.syspath_prepend(tmp_path)
+    hand_in(tmp_path / "class", "anna")
+    code, said, _ = checked(tmp_path / "class", "--scheduler", "tcp://127.0.0.1:1")
+    assert code == 2
+    assert said == (
+        "check: --scheduler needs Dask, which this machine does not have. Install it: sudo apt"
+        " install python3-distributed.\n"
+    )
+
+
+def certificates(folder):
+    """Make a certificate that vouches for itself, and Dask's configuration that has it."""
+    folder.mkdir()
+    names = ("-keyout", folder / "key.pem", "-out", folder / "cert.pem", "-subj", "/CN=class")
+    make = ("openssl", "req", "-x509", "-newkey", "rsa:2048", "-nodes", *names)
+    subprocess.run(make, check=True, capture_output=True)
+    shutil.copy(folder / "cert.pem", folder / "ca.pem")
+    text = (HERE / "tls.yaml").read_text().replace("/etc/dask", str(folder))
+    (folder / "tls.yaml").write_text(text)
+    return str(folder / "tls.yaml")
+
+
+@proves("Only those who have the certificate can send work then.")
+def test_with_tls_only_who_has_the_certificate_sends_work(tmp_path, monkeypatch):
+    hand_in(tmp_path / "class", "anna")
+    own, another = (certificates(tmp_path / who) for who in ("instructor", "stranger"))
+    monkeypatch.setenv("DASK_CONFIG", own)
+    env = without_checks(tmp_path)
+    with cluster(tmp_path, workers=1, options=("--protocol", "tls"), **env) as (_, address, _):
+        assert address.startswith("tls://")
+        plain = address.replace("tls", "tcp")
+        for config, to in ((another, address), ("/none", address), ("/none", plain)):
+            monkeypatch.setenv("DASK_CONFIG", config)
+            assert checked(tmp_path / "class", "--scheduler", to)[0] == 2
+        assert not (tmp_path / "class.checked").exists()
+        monkeypatch.setenv("DASK_CONFIG", own)
+        _, said, rows = checked(tmp_path / "class", "--scheduler", address)
+    assert [row["verdict"] for row in rows] == ["met"], said
