@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """A whole class at once: `check --class DIR`, where each folder or archive in DIR is one student's.
 
-A process of its own checks each package, and several run at the same time, here or on the workers of
-a cluster. If one fails, the others go on. The folder DIR.checked, beside DIR, keeps their reports: after Ctrl-C the same command goes
-on from there. A package is checked again only if it, the checker, or what the contract asks of it
-has changed.
+A process of its own checks each package, and several run at the same time, here or on the workers
+of a cluster. If one fails, the others go on. The folder DIR.checked, beside DIR, keeps their
+reports: after Ctrl-C the same command goes on from there. A package is checked again only if it,
+the checker, or what the contract asks of it has changed.
 """
 
 from __future__ import annotations
