@@ -52,6 +52,6 @@ check "xmllint" xmllint --noout "${xml[@]}"
 # What shows how something is wrong is spelt wrong on purpose.
 mapfile -t texts < <(files '*.rst' '*.md' '*.py' '*.cpp' '*.h' '*.sh' '*.launch' '*.js' Makefile \
   ':!*/test/*' ':!catkin_ws/tests' ':!*/errata.rst')
-check "codespell" codespell --ignore-words-list whats,ot,ist "${texts[@]}"
+check "codespell" codespell --ignore-words-list whats,ot,ist,oder,comando,connexion "${texts[@]}"
 check "English" /usr/bin/python3 catkin_ws/tools/english.py
 exit $status

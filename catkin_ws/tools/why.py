@@ -93,8 +93,8 @@ _OF_ENTRY, _OF_TEXT = 0.5, 0.7
 # It also shares more with the entry than "does not exist" and the like, or has all of its words.
 _SCORE = 15
 _COMMON = set(
-    "a an and are as be been by does error exist for from has in is it no not of on or such that the"
-    " this to was with".split()
+    "a an and are as be been by does error exist for from has in is it no not of on or such that"
+    " the this to was with".split()
 )
 _TOGETHER = 3  # lines: long messages are broken into that many
 # Lines around any error, which say nothing of it.
