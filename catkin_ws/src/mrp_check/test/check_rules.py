@@ -19,6 +19,7 @@ from mrp_check.rules import (
     not_kept,
     python_names,
     queue,
+    responses,
     rospy_calls,
     spin,
     swapped_sources,
@@ -108,7 +109,7 @@ def python_findings(folder, source):
         return [problem]
     known = facts.Facts(python={read.file: read}, relevant=[read.file])
     one = types.SimpleNamespace(package=package, facts=known)
-    rules = python_names, message_fields, rospy_calls, early_timer, not_called, not_kept
+    rules = python_names, message_fields, rospy_calls, early_timer, not_called, not_kept, responses
     return [finding for file in rules for finding in file.RULE.findings(one)]
 
 

@@ -41,6 +41,7 @@ FOUND = [
     (WARNING, "starts", "scripts/near.py: ~limit", "sets limt"),
     (NOTE, "starts", "scripts/client.py: switch", "waits for the service switch"),
     (NOTE, "starts", "scripts/client.py: ", "waits for arguments"),
+    (NOTE, "starts", "scripts/asker.py: ", "waits for arguments"),
 ]
 
 
@@ -119,7 +120,8 @@ def test_each_defect_is_found_at_its_place(tmp_path):
     errors = [f for f in report.findings if f.severity == ERROR and not f.consequence_of]
     others = [f for f in errors if not any(is_told(f, folder, *one) for one in FOUND)]
     assert not others, shown(others)
-    assert not [f for f in report.findings if f.file == "scripts/talker.py"]
+    others = "scripts/talker.py", "scripts/asking.py"
+    assert not [f for f in report.findings if f.file in others], shown(report.findings)
 
 
 @proves(
@@ -162,6 +164,28 @@ def test_another_package_of_the_workspace_is_not_found(tmp_path):
     report = check.check(Package(folder), None, ("configure",), timeout=300)
     assert report.verdict == check.UNCHECKED
     assert "sibling is not on this machine" in report.reason
+
+
+def test_a_header_of_another_computer_is_found_where_nothing_can_be_built(tmp_path):
+    cmake = """\
+cmake_minimum_required(VERSION 3.10)
+project(some_pkg)
+find_package(catkin REQUIRED COMPONENTS roscpp nowhere_msgs)
+catkin_package()
+add_executable(talker src/talker.cpp)
+"""
+    source = '#include <ros/ros.h>\n#include "/home/nobody/ws/devel/include/some_pkg/Num.h"\n'
+    main = "int main(int argc, char** argv) { ros::init(argc, argv, \"talker\"); }\n"
+    manifest = check_rules.MANIFEST.replace("std_msgs", "nowhere_msgs")
+    package = check_rules.make(
+        tmp_path / "some_pkg",
+        package_DOT_xml=manifest,
+        CMakeLists_DOT_txt=cmake,
+        src__talker_DOT_cpp=source + main,
+    )
+    report = check.check(package, None, ("configure", "compile"), timeout=300)
+    found = [(f.severity, f.file, f.line) for f in report.findings if f.id == "compile"]
+    assert found == [(ERROR, "src/talker.cpp", 2)], shown(report.findings)
 
 
 def results_of(workspace):

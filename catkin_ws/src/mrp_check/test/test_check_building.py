@@ -115,3 +115,29 @@ def test_package_that_this_machine_has_not_is_not_the_students_fault(tmp_path):
     assert configuring.absent(package, said.format("tf2"), is_contract=False) == "tf2"
     assert configuring.absent(package, said.format("nav_msgs"), is_contract=False) == "nav_msgs"
     assert configuring.absent(package, said.format("rospyy"), is_contract=False) is None
+
+
+def test_definitions_that_this_machine_has_not_are_not_the_students_fault(tmp_path, monkeypatch):
+    said = "Cannot locate message [{}] in package [{}] with paths [['/usr/share/x/msg']]"
+    for name, files in (("some_msgs", ()), ("own_msgs", ("Num.msg",))):
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "package.xml").touch()
+        for file in files:
+            (tmp_path / name / "msg").mkdir()
+            (tmp_path / name / "msg" / file).touch()
+    monkeypatch.setattr(configuring.resources, "SHARES", (tmp_path,))
+    monkeypatch.setattr(configuring.uses, "SHARES", (tmp_path,))
+    configuring.uses.is_ros_package.cache_clear()
+    without = configuring.without_definitions
+    assert without(said.format("Goal", "some_msgs")) == "some_msgs"
+    assert without(said.format("Nun", "own_msgs")) is None
+    assert without(said.format("Goal", "sone_msgs")) is None
+    configuring.uses.is_ros_package.cache_clear()
+
+
+def test_a_header_that_this_machine_has_not_is_no_misspelt_one(tmp_path, monkeypatch):
+    monkeypatch.setattr(cpp_words.uses, "debian_packages", lambda: {"libfar-msgs-dev"})
+    package = check_rules.make(tmp_path, src__a_DOT_cpp="#include <far_msgs/Empty.h>\n")
+    text = "far_msgs/Empty.h: No such file or directory"
+    words = cpp_words.of(package, cpp_words.Problem("src/a.cpp", 1, text, ""))
+    assert "Debian package libfar-msgs-dev" in words.said and "std_msgs" not in words.said

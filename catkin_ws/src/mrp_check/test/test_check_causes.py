@@ -130,6 +130,26 @@ def test_what_was_seen_all_the_same_is_no_consequence(cause, result):
     assert seen[1].consequence_of is None
 
 
+@pytest.mark.parametrize(
+    ("header", "cause"), [("std_srvs/Empty.h", "dependencies"), ("some_pkg/Num.h", None)]
+)
+def test_a_missing_header_follows_from_its_own_package(header, cause):
+    undeclared, failed = findings(
+        ("dependencies", "package.xml", 9, "files", None),
+        ("compile", "src/a.cpp", 1, "build", None),
+    )
+    undeclared.message = "package.xml does not name std_srvs, which src/a.cpp uses in line 1."
+    failed.message = f"The compiler stops at line 1 of src/a.cpp: there is no header {header}."
+    causes.told_once([undeclared, failed])
+    assert failed.consequence_of == cause
+
+
+def test_what_one_line_lacks_is_told_of_each():
+    first, second = findings(*[("dependencies", "package.xml", 9, "files", None)] * 2)
+    first.expected, second.expected = "<depend>std_msgs</depend>", "<depend>std_srvs</depend>"
+    assert causes.told_once([first, second]) == [first, second]
+
+
 def test_the_same_is_told_once():
     entry = ("spin", "src/a.py", 1, "static", "a")
     assert len(causes.told_once(findings(entry, entry), facts())) == 1

@@ -203,6 +203,12 @@ LOOP = """  ros::Rate rate(10);
   }
 """
 LAMBDA = "[this](const ros::TimerEvent& e) { timerCallback(e); }"
+TEMPLATE = """template <typename T>
+void take(T& to, const T& from)
+{
+  to.data = from.data;
+}
+"""
 CORRECT = {
     "as_it_is": (PUBLISHER, []),
     "subscriber": (SUBSCRIBER, []),
@@ -230,6 +236,17 @@ CORRECT = {
     "modulus": (PUBLISHER, [(COUNT, "counter_ = (counter_ + 2ul) % 4294967296ul;")]),
     # It is wrong, but it does not begin again: what it publishes says so.
     "skips": (PUBLISHER, [(COUNT, "counter_ += counter_ == 8 ? 4 : 2;")]),
+    "template": (PUBLISHER, [("class Pub", TEMPLATE + "\nclass Pub")]),
+    "publish_on_either": (
+        PUBLISHER,
+        [
+            (
+                ADVERTISE,
+                ADVERTISE.replace("publisher_ =", "ros::Publisher own =")
+                + " (own ? own : publisher_).publish(std_msgs::UInt32()); publisher_ = own;",
+            )
+        ],
+    ),
     "long_counter": (PUBLISHER, [("uint32_t counter_", "uint64_t counter_")]),
 }
 

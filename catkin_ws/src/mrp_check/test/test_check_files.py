@@ -265,6 +265,27 @@ def test_what_makes_messages(generator, severities, tmp_path):
 
 
 @pytest.mark.parametrize(
+    ("folder", "says"),
+    [("srv/", []), ("", ["looks for srv/Ask.srv, and the file lies at Ask.srv: CMake stops."])],
+)
+def test_a_definition_lies_where_cmake_looks_for_it(folder, says, tmp_path):
+    makes = "add_service_files(FILES Ask.srv)\ngenerate_messages()\ncatkin_package"
+    package = check_rules.make(
+        tmp_path,
+        package_DOT_xml=MANIFEST.replace(
+            "</package>",
+            "<depend>message_generation</depend><depend>message_runtime</depend></package>",
+        ),
+        CMakeLists_DOT_txt=CMAKE.replace("catkin_package", makes).replace(
+            "roscpp rospy", "message_generation roscpp rospy"
+        ),
+        **{f"{folder}Ask.srv".replace("/", "__").replace(".", "_DOT_"): "int32 a\n---\n"},
+    )
+    found = file_findings(messages, package)
+    assert [finding.message.partition("() ")[2] for finding in found] == says
+
+
+@pytest.mark.parametrize(
     ("without", "file", "says"),
     [
         ("", "", ""),

@@ -222,6 +222,27 @@ def test_a_loop_that_names_is_shutdown_without_brackets(tmp_path):
 
 
 @pytest.mark.parametrize(
+    ("body", "severities"),
+    [
+        ("    pass", ["error"]),
+        ("    if request.data:\n        return None", ["error"]),
+        ("    if request.data:\n        return [True, '']", ["warning"]),
+        ("    while True:\n        if request.data:\n            return [True, '']", []),
+        ("    raise rospy.ServiceException('no')", []),
+        ("    if request.data:\n        return [True, '']\n    return [False, '']", []),
+        ("    try:\n        return [True, '']\n    except ValueError:\n        raise", []),
+    ],
+    ids=range(7),
+)
+def test_what_answers_a_service_returns_a_response(body, severities, tmp_path):
+    head = "import rospy\nfrom std_srvs.srv import SetBool\n\n\n"
+    service = "\n\n\nrospy.init_node('a')\nrospy.Service('switch', SetBool, switch)\nrospy.spin()\n"
+    text = f"{head}def switch(request):\n{body}{service}"
+    found = check_rules.python_findings(tmp_path, text)
+    assert [one.severity for one in found if one.id == "callbacks"] == severities
+
+
+@pytest.mark.parametrize(
     ("loop", "found"), [("ros::ok", [("exit", 2)]), ("ros::ok()", []), ("n() /* ros::ok */", [])]
 )
 def test_a_loop_that_names_ok_without_brackets(loop, found, tmp_path):

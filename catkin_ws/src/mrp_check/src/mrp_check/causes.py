@@ -3,7 +3,10 @@
 
 from __future__ import annotations
 
+import re
+
 from mrp_check.contract.finding import ERROR, NOTE, Finding
+from mrp_check.sources import uses
 
 # What keeps a node from running at all, or from being itself.
 _FATAL = set(
@@ -69,7 +72,9 @@ def told_once(findings, facts=None, nodes=None):
     kept: list[Finding] = []
     seen: dict[tuple[object, ...], set[str | None]] = {}
     for finding in findings:
-        what = (finding.id, finding.file, finding.line, finding.severity)
+        # One line of package.xml or CMakeLists.txt may lack several things.
+        lacks = finding.expected if finding.stage == "files" else ""
+        what = (finding.id, finding.file, finding.line, finding.severity, lacks)
         of_nodes = seen.setdefault(what, set())
         # A rule about a source knows no node; one about the node that it makes says the same again.
         same = finding.node in of_nodes or finding.file and None in of_nodes
@@ -94,11 +99,24 @@ def _is_beside(cause, finding):
     return cause.file == finding.file and None not in lines and abs(lines[0] - lines[1]) <= 1
 
 
+# A header that the compiler, or a rule, does not find.
+_HEADER = re.compile(r"there is no (?:header )?([\w./+-]+\.h\w*)|includes (/\S+),")
+
+
+def _is_of_another(cause, finding):
+    """Return whether a header is missing that is of another package than the undeclared one."""
+    header = _HEADER.search(finding.message) if cause.id == "dependencies" else None
+    package = header and uses.package_of_header(header[1] or header[2])
+    return bool(header) and package not in re.findall(r"\w+", cause.message)
+
+
 def _causes(cause, finding, earlier, facts, nodes):
     """Return whether a finding follows from a cause."""
     # What cannot be built cannot run, whatever keeps it from being built.
     passed_on = _PACKAGE_WIDE | {"compile", "link"}
     if cause.severity != ERROR or cause.consequence_of and cause.id not in passed_on:
+        return False
+    if _is_of_another(cause, finding):
         return False
     of_cause, of_finding = _nodes(cause, facts), _nodes(finding, facts)
     together = bool(of_cause & of_finding)

@@ -11,6 +11,7 @@ from mrp_check.case import Case
 from mrp_check.contract.finding import ERROR, NOTE, WARNING, Finding
 from mrp_check.running.node import Node
 from mrp_check.running.words import last_words
+from mrp_check.rules.responses import NO_RESPONSE
 
 # What neither catkin, nor the compiler, Linux or roslaunch takes: nobody has to see it fail.
 _RULES = set(
@@ -31,6 +32,7 @@ _WAITS = (
 )
 # How a program counts its arguments: beside the line at which it ends, it misses some.
 _COUNTS = re.compile(r"\bargc\s*[!<>=]|[<>=]\s*argc\b|\blen\(sys\.argv\)")
+_ENDS = re.compile(r"\bexit\s*\(|\bquit\s*\(|\breturn\s+(-?[1-9]|EXIT_FAILURE)")
 _FEW = 6  # lines
 # The same of a launch file: an argument, a variable of the environment, or another's launch file.
 _WANTED = (
@@ -96,6 +98,8 @@ def _is_rule(case: Case, finding: Finding) -> bool:
     if finding.id == "scripts" and is_python:
         # catkin_install_python() makes an executable of what lacks a first line, too.
         return not (finding.file in case.model.relayed() and _came_up(case, finding.file))
+    if NO_RESPONSE in finding.message or "CMake stops" in finding.message:
+        return True
     if finding.id in ("spin", "lifetime") and not is_python:
         return "publisher that" not in finding.message
     if finding.id == "launch-file":
@@ -144,15 +148,27 @@ def _of_start(node: Node, finding: Finding) -> None:
             finding.severity = WARNING if is_parameter else NOTE
             finding.message = f"{node.name} waits for {what}: {said.strip()[:200]}"
             return
-    if finding.file and finding.line and not any("Error:" in line for line in lines):
-        begin, end = max(finding.line - _FEW, 0), finding.line + _FEW
-        if any(map(_COUNTS.search, node.package.lines(finding.file)[begin:end])):
-            finding.severity = NOTE
-            finding.message = f"{node.name} waits for arguments on its command line."
-            return
+    if not any("Error:" in line for line in lines) and _misses_arguments(node, finding):
+        finding.severity = NOTE
+        finding.message = f"{node.name} waits for arguments on its command line."
+        return
     if node.direct and node.direct.code == 0 and not _is_left_alone(node):
         finding.severity = NOTE
         finding.message = f"{node.name} does its work, and ends: {last_words(lines) or 'in peace'}"
+
+
+def _misses_arguments(node: Node, finding: Finding) -> bool:
+    """Return whether a program counts its arguments beside where it ended; or, where that place
+    is not known, beside any line that ends it."""
+    if not finding.file or not finding.line:
+        return False
+    lines = node.package.lines(finding.file)
+    begin, end = max(finding.line - _FEW, 0), finding.line + _FEW
+    if any(map(_COUNTS.search, lines[begin:end])):
+        return True
+    code = node.direct.code if node.direct else 0
+    counting = [number for number, text in enumerate(lines) if _COUNTS.search(text)]
+    return bool(code) and any(any(map(_ENDS.search, lines[n : n + _FEW])) for n in counting)
 
 
 def _source(node: Node, finding: Finding) -> str:

@@ -8,8 +8,10 @@ import re
 from typing import Callable, Sequence, Tuple
 
 from mrp_check.building.catkin import Step
+from mrp_check.contract import resources
 from mrp_check.contract.finding import Finding
 from mrp_check.contract.words import nearest, perhaps
+from mrp_check.sources import uses
 from mrp_check.student.cmake import Model, relative
 from mrp_check.student.package import Package
 
@@ -117,6 +119,19 @@ _NOT_FOUND = (
     r"catkin_package\(\).*?on the catkin package '(\w+)'",
     r"Could NOT find (\w+)",
 )
+
+
+_DEFINITION = r"Cannot locate message \[\w+\] in package \[(\w+)\]"
+
+
+def without_definitions(output: str) -> str | None:
+    """Return the package whose headers this machine has, and whose definitions it has not: Debian
+    keeps them apart. None if CMake did not look for such a definition."""
+    found = re.search(_DEFINITION, output)
+    if not found or not uses.is_ros_package(found[1]):
+        return None
+    has_any = any((pathlib.Path(share) / found[1] / "msg").is_dir() for share in resources.SHARES)
+    return None if has_any else found[1]
 
 
 def absent(package: Package, output: str, is_contract: bool = True) -> str | None:

@@ -203,6 +203,9 @@ def _no_match(error: Error) -> Words:
 
 def _missing_header(error: Error) -> Words:
     header, package = error.match.group(1), error.package
+    folder = uses.package_of_header(header)
+    if uses.is_called_so(folder) and not uses.is_ros_package(folder):
+        return Words(f"there is no header {header}. {uses.absent(folder, 'cpp')}", "Install it.")
     if header.split("/")[0] != package.name:
         near = nearest(header, [f"std_msgs/{name}.h" for name in _MESSAGES] + ["ros/ros.h"], 0.7)
         fix = f"Write {near}." if near else "Correct the name, or install and declare its package."

@@ -39,7 +39,7 @@ class Counters(Unit):
         if is_member and MESSAGE.search(owner.type.get_canonical().spelling):
             names = [c.spelling for c in variables]
             self.add(cursor, Kind.DATA, names=names)
-        elif any(c.referenced == target for c in variables):
+        elif any(self.names(c, target) for c in variables):
             self.add_counter(cursor, target)
             for one in inside:
                 sides = list(one.get_children()) if one.kind == kinds.BINARY_OPERATOR else []
@@ -73,7 +73,7 @@ class Counters(Unit):
         if cursor.kind != self.kinds.BINARY_OPERATOR or len(sides) != 2:
             return None
         is_given = self.operator(cursor, sides) == "="
-        return sides[1] if is_given and self.peel(sides[0]).referenced == variable else None
+        return sides[1] if is_given and self.names(self.peel(sides[0]), variable) else None
 
     def add_reset(self, cursor: Cursor, counter: Cursor, limit: Plain, value: Plain) -> None:
         if isinstance(limit, int) and isinstance(value, int):

@@ -224,6 +224,11 @@ class Unit:
             return None
         return next(member.get_children(), None)
 
+    def names(self, expression: Cursor, target: Cursor | None) -> bool:
+        """Return whether an expression names what is declared at a cursor."""
+        named = expression.referenced  # None in a template; clang cannot compare with that
+        return named is not None and target is not None and bool(named == target)
+
     def type_of(self, cursor: Cursor | None) -> str:
         if cursor is None:
             return ""

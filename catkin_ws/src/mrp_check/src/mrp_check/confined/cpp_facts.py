@@ -196,7 +196,7 @@ class _Source(Counters):
         published = sum(
             cursor.kind == kinds.CALL_EXPR
             and cursor.spelling == "publish"
-            and (self.base(cursor) or variable).referenced == variable
+            and self.names(self.base(cursor) or variable, variable)
             for cursor in self.cursors
         )
         return self.uses.get(key, 0) > int(published)

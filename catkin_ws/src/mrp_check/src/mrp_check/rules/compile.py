@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import os
 from typing import Iterator
 
 from mrp_check import evidence
@@ -10,10 +11,12 @@ from mrp_check.building import compiler, configuring, linker
 from mrp_check.case import Case
 from mrp_check.contract.finding import Finding
 from mrp_check.contract.requirements import Requirement, Rule
+from mrp_check.sources import uses
 
 
 def findings(case: Case) -> Iterator[Finding]:
     if not case.built:
+        yield from _of_other_machines(case)
         return
     output, package = case.built.output, case.package
     yield from compiler.without_return(package, output, case.package_folder)
@@ -23,6 +26,25 @@ def findings(case: Case) -> Iterator[Finding]:
     found = [compiler.finding(package, problem) for problem in problems]
     found += linker.findings(package, output, case.model)
     yield from found or [configuring.unknown(package, case.built, "compile")]
+
+
+def _of_other_machines(case: Case) -> Iterator[Finding]:
+    """Yield a finding for each header that a source includes by a whole path, and that is not
+    there. It takes no compiler to say so: nothing is compiled where CMake could not go on."""
+    built = {file for target in case.model.targets.values() for file in target.sources}
+    for file in sorted(built & {*case.package.files}):
+        for header, line in uses.includes(case.package, file):
+            if os.path.isabs(header) and not os.path.exists(header):
+                yield Finding(
+                    "compile",
+                    f"{file} includes {header}, by its whole path on somebody's computer: here"
+                    " there is no such file.",
+                    file,
+                    line,
+                    expected="a path that begins with the name of a package",
+                    seen=case.package.lines(file)[line - 1].strip(),
+                    fix="Write the name of the package and of the header alone.",
+                )
 
 
 RULE = Rule(

@@ -21,6 +21,9 @@ def findings(case: Case) -> Iterator[Finding]:
     missing = configuring.absent(package, step.output, case.spec.is_contract)
     if missing:
         raise CannotCheck(uses.absent(missing, "cpp"))
+    missing = configuring.without_definitions(step.output)
+    if missing:
+        raise CannotCheck(uses.absent(missing, "msg"))
     output = "" if step.why_ended else step.output
     finding = configuring.finding(package, output, case.package_folder, case.catkin.model)
     yield finding or configuring.unknown(package, step, "configure")

@@ -57,6 +57,10 @@ def _in_cmake(case: Case, files: list[str]) -> Iterator[Finding]:
         file = last_part(path)
         if path not in model.message_files and (not own or file[:-4] in own):
             command = f"add_{case.package.kind(path)}_files"
+            elsewhere = _elsewhere(case, path)
+            if elsewhere:
+                yield _misplaced(model.message_files[elsewhere].line, command, path, elsewhere)
+                continue
             yield _message_finding(
                 f"{path} is not named in {command}(): no code is made of it.",
                 call.line if call else catkin_line,
@@ -72,6 +76,25 @@ def _in_cmake(case: Case, files: list[str]) -> Iterator[Finding]:
         )
 
 
+def _elsewhere(case: Case, path: str) -> str | None:
+    """Return the place at which CMakeLists.txt looks for a definition that lies here, or None."""
+    named = case.model.message_files
+    others = (one for one in named if last_part(one) == last_part(path))
+    return next((one for one in others if one not in case.package.files), None)
+
+
+def _misplaced(line: int, command: str, path: str, elsewhere: str) -> Finding:
+    return Finding(
+        "messages",
+        f"{command}() looks for {elsewhere}, and the file lies at {path}: CMake stops.",
+        FILE,
+        line,
+        expected=elsewhere,
+        seen=path,
+        fix=f"Move {path} to {elsewhere}.",
+    )
+
+
 def _in_manifest(package: Package, manifest: Manifest) -> Iterator[Finding]:
     """Yield a finding for each package that makes or runs messages, and is not declared."""
     known = declared(manifest)
@@ -79,7 +102,8 @@ def _in_manifest(package: Package, manifest: Manifest) -> Iterator[Finding]:
         ("message_generation", "build", "build_depend"),
         ("message_runtime", "exec", "exec_depend"),
     ):
-        builds = kind == "build" and "genmsg" in known[kind]
+        # message_runtime is asked for where the package is installed: no build here needs it.
+        builds = kind == "exec" or "genmsg" in known[kind]
         if name not in known[kind]:
             yield Finding(
                 "dependencies",

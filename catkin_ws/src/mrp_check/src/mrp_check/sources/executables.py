@@ -33,8 +33,17 @@ def is_script(package: Package, path: str) -> bool:
     """Return whether a Python file is a node that can be started, not one that others import."""
     if uses.is_test(path) or path == "setup.py" or not _ROSPY.search(package.text(path)):
         return False
+    if not _INIT.search(package.text(path)) and _is_imported(package, path):
+        return False
     is_started = package.shebang(path) or package.is_executable(path)
     return bool(is_started or _INIT.search(package.text(path)))
+
+
+def _is_imported(package: Package, path: str) -> bool:
+    """Return whether another file of the package imports this one as a module."""
+    stem = re.escape(last_part(path).split(".")[0])
+    imports = re.compile(rf"^[ \t]*(?:from|import)\b[^\n]*\b{stem}\b", re.M)
+    return any(imports.search(package.text(o)) for o in package.of_kind("python") if o != path)
 
 
 def _python(package: Package, model: Model) -> Iterator[specs.Node]:

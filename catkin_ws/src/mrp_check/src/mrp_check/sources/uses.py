@@ -64,6 +64,8 @@ def absent(name: str, language: str) -> str:
     """Return the sentence about a package or a module that this machine has not."""
     plain = name.lower().replace("_", "-")
     guesses = [_DEBIAN.get(name, f"python3-{plain}")]
+    if language == "msg":
+        guesses = [f"ros-{plain}"]
     if language == "cpp":
         guesses = [f"lib{plain}-dev", f"ros-{plain}", *guesses, plain]
     debian = debian_packages()

@@ -1,0 +1,62 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The Python packages that setup.py names are there."""
+
+from __future__ import annotations
+
+import ast
+import posixpath
+from typing import Iterator
+
+from mrp_check.case import Case
+from mrp_check.contract.finding import WARNING, Finding
+from mrp_check.contract.requirements import Rule
+
+FILE = "setup.py"
+
+
+def _findings(case: Case) -> Iterator[Finding]:
+    """Yield a finding for each: catkin_make takes it, and `catkin_make install` fails."""
+    package = case.package
+    is_used = any(call.command == "catkin_python_setup" for call in case.model.calls)
+    if not is_used or FILE not in package.files:
+        return
+    given = {
+        keyword.arg: _plain(keyword.value)
+        for call in ast.walk(package.tree(FILE))
+        if isinstance(call, ast.Call)
+        for keyword in call.keywords
+    }
+    names, folders = given.get("packages"), given.get("package_dir") or {}
+    if not isinstance(names, list) or not isinstance(folders, dict):
+        return
+    for name in filter(lambda one: isinstance(one, str), names):
+        folder = folders.get(name) or posixpath.join(folders.get("", ""), name.replace(".", "/"))
+        if not (package.root / folder).is_dir():
+            line = package.find_line(FILE, name, 1)
+            yield Finding(
+                "cmake",
+                f"{FILE} names the Python package {name}, and there is no folder {folder}:"
+                " `catkin_make install` fails.",
+                FILE,
+                line,
+                WARNING,
+                expected=f"a folder {folder} with a file __init__.py",
+                seen=package.lines(FILE)[line - 1].strip(),
+                fix=f"Make the folder; or take {FILE} and catkin_python_setup() away.",
+            )
+
+
+def _plain(node: ast.expr) -> object:
+    try:
+        return ast.literal_eval(node)
+    except ValueError:
+        return None
+
+
+RULE = Rule(
+    stage="files",
+    order=41,
+    needs=("model",),
+    findings=_findings,
+    also=("cmake",),
+)
