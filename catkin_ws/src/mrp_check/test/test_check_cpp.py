@@ -204,9 +204,11 @@ LOOP = """  ros::Rate rate(10);
 """
 LAMBDA = "[this](const ros::TimerEvent& e) { timerCallback(e); }"
 TEMPLATE = """template <typename T>
-void take(T& to, const T& from)
+std::uint32_t take(const T& from)
 {
-  to.data = from.data;
+  std::uint32_t taken = 0;
+  taken = from.data;
+  return taken;
 }
 """
 CORRECT = {

@@ -9,9 +9,9 @@ from typing import Iterable
 
 from mrp_check.case import Case
 from mrp_check.contract.finding import ERROR, NOTE, WARNING, Finding
+from mrp_check.rules.responses import NO_RESPONSE
 from mrp_check.running.node import Node
 from mrp_check.running.words import last_words
-from mrp_check.rules.responses import NO_RESPONSE
 
 # What neither catkin, nor the compiler, Linux or roslaunch takes: nobody has to see it fail.
 _RULES = set(
