@@ -79,7 +79,7 @@ class Case(Workspace):
     def _loading(self) -> Future[Launch] | None:
         _ = self.manifest  # what stands in the copy is read
         file, problems = self.launch_file
-        return self.submit(launching.load, self, file) if file and not problems else None
+        return self.submit(launching.load_twice, self, file) if file and not problems else None
 
     @functools.cached_property
     def launch(self) -> Launch | None:

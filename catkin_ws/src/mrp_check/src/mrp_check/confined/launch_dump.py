@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Prints what roslaunch makes of a launch file: a Dump. Runs confined: a file can call programs.
+"""Prints what roslaunch makes of launch files, a Dump of each. Runs confined: a file can call
+programs.
 
-Usage: launch_dump.py FILE
+Usage: launch_dump.py FILE...
 """
 
 import contextlib
@@ -61,8 +62,8 @@ class Dump:
 def main() -> None:
     # What roslaunch and its imports print is no part of the answer.
     with contextlib.redirect_stdout(io.StringIO()):
-        result = load(sys.argv[1])
-    sys.stdout.write(crossing.to_json(result))
+        results = [load(path) for path in sys.argv[1:]]
+    sys.stdout.write(crossing.to_json(results))
 
 
 def load(path: str) -> Dump:

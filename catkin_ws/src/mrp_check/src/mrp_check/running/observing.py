@@ -11,7 +11,6 @@ from __future__ import annotations
 import dataclasses
 import os
 import pathlib
-import xml.sax.saxutils
 from typing import TypeVar
 
 from mrp_check import confine, sandbox
@@ -25,7 +24,6 @@ from mrp_check.contract.spec import Node, Spec
 from mrp_check.contract.words import last_part
 from mrp_check.running.planning import Planner
 from mrp_check.sources.facts import Facts
-from mrp_check.student import launch as launching
 from mrp_check.student.launch import Launch
 from mrp_check.student.workspace import NOETIC, Workspace, search_path, sourced
 
@@ -95,7 +93,7 @@ def observe(workspace: Workspace, spec: Spec, launch: Launch | None, facts: Fact
     if launch and not launch.error:
         result.started = {one.name: one for one in launch.nodes if one.name in spec.nodes}
     if launch and result.started:
-        file = workspace.package_folder / launch.file
+        file, result.moved = workspace.package_folder / launch.file, launch.moved
     planner = planner_of(workspace, spec, launch.params if launch else {}, facts, result)
     if not planner:
         result.problems.append("none of the nodes has an executable to be run")
@@ -103,7 +101,6 @@ def observe(workspace: Workspace, spec: Spec, launch: Launch | None, facts: Fact
     under, problems = planner.launch(file), result.problems
     launched = workspace.submit(session, workspace, under, LaunchResult, problems)
     direct = workspace.submit(session, workspace, planner.direct(), DirectResult, problems)
-    result.moved = _moved(workspace, file) if file else None
     result.launch, result.direct = launched.result(), direct.result()
     if result.launch and result.launch.ending == "most":
         # Not the package's fault: one that never comes up is idle, or uses up its time.
@@ -133,17 +130,6 @@ def planner_of(
     own = messages.definitions(package.name, folders, SHARES)
     known = result.executables, result.started, params
     return Planner(workspace, spec, *known, _environment(workspace), own)
-
-
-def _moved(workspace: Workspace, file: pathlib.Path) -> Launch | None:
-    """Return what roslaunch makes of the launch file inside another group."""
-    path = workspace.given / "moved.launch"
-    included = xml.sax.saxutils.quoteattr(str(file))
-    path.write_text(
-        f'<launch><group ns="check_moved"><include file={included}/></group></launch>\n'
-    )
-    moved = launching.load(workspace, str(path))
-    return None if moved.error else moved
 
 
 def _executable(

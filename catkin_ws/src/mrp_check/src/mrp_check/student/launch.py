@@ -4,9 +4,11 @@
 from __future__ import annotations
 
 import dataclasses
+import pathlib
 import re
 import xml.parsers.expat
-from typing import Iterable
+import xml.sax.saxutils
+from typing import Iterable, List, Sequence
 
 from mrp_check import confine, sandbox
 from mrp_check.confined import crossing, variables
@@ -30,9 +32,11 @@ class Launch(Dump):
     """What roslaunch makes of a file; files are relative to the package, those of others left out.
 
     file: the one that it was asked about
+    moved: what roslaunch makes of it inside another group, if it was asked about that, and can
     """
 
     file: str = ""
+    moved: Launch | None = None
 
     def of_spec(self, spec: Spec) -> list[Started]:
         """Return the first node of each name of the spec; none if roslaunch cannot read it."""
@@ -92,26 +96,46 @@ def problems(package: Package, path: str) -> list[Finding]:
 
 
 def load(workspace: Workspace, file: str) -> Launch:
-    """Return the Launch of a file of the package, or of an absolute path; runs roslaunch's reader.
+    """Return the Launch of a file of the package; runs roslaunch's reader. Raises CannotCheck."""
+    return _load(workspace, [workspace.package_folder / file], file)
 
-    Raises CannotCheck.
-    """
+
+def load_twice(workspace: Workspace, file: str) -> Launch:
+    """Return the same, with what comes of the file inside another group."""
+    path, target = workspace.given / "moved.launch", workspace.package_folder / file
+    included = xml.sax.saxutils.quoteattr(str(target))
+    path.write_text(
+        f'<launch><group ns="check_moved"><include file={included}/></group></launch>\n'
+    )
+    # One start of the reader is most of its time.
+    return _load(workspace, [target, path], file)
+
+
+def _load(workspace: Workspace, paths: Sequence[pathlib.Path], file: str) -> Launch:
     copy, reader = workspace.package_folder, sandbox.code() / "launch_dump.py"
-    command = ["/usr/bin/python3", str(reader), str(copy / file)]
+    command = ["/usr/bin/python3", str(reader), *map(str, paths)]
     env = {variables.PACKAGES: workspace.ros_packages}
     if _reads_more(workspace.package):
         done = workspace.run(*command, seconds=SECONDS, env=env)
     else:
         done = workspace.run_once(*command, of=("launch",), seconds=SECONDS, env=env)
     try:
-        launch = crossing.from_json(Launch, done.output)
-    except crossing.CrossingError as error:
+        first, *others = crossing.from_json(List[Dump], done.output)
+    except ValueError as error:  # it may have been ended
         if done.ended_by is None:
             said = done.errors.strip()[-_SAID:] or error
             raise CannotCheck(f"roslaunch's reader failed: {said}") from None
         why = done.limit_text(confine.Limits(time=SECONDS))
         return Launch(f"reading it was ended: {why}", file=file)
-    launch.file, launch.error = file, launch.error.replace(f"{copy}/", "")
+    launch = _of_package(workspace, first, file)
+    moved = [_of_package(workspace, other, file) for other in others if not other.error]
+    launch.moved = moved[0] if moved else None
+    return launch
+
+
+def _of_package(workspace: Workspace, dump: Dump, file: str) -> Launch:
+    launch, copy = Launch(**vars(dump), file=file), workspace.package_folder
+    launch.error = launch.error.replace(f"{copy}/", "")
     for node in launch.nodes:
         node.file = relative(node.file or "", copy.resolve())
     _find_lines(workspace.package, launch.nodes)
