@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import pathlib
+import re
 from concurrent.futures import Future
 from typing import Mapping, Sequence
 
@@ -14,6 +15,8 @@ from mrp_check.contract.errors import CannotCheck
 from mrp_check.student.workspace import Workspace
 
 _KEPT = 300  # characters of what the reader says when it fails
+# What may include a source, or what only the preprocessor knows. Most include headers, by name.
+_ODD_INCLUDE = re.compile(rb'include(?!\s*["<][^">\n]*[">])|include\s*["<][^">\n]*\.c')
 
 
 class CppReader:
@@ -37,9 +40,8 @@ class CppReader:
         task = Task(str(workspace.package_folder), str(self.headers.result()), [unit])
         reader = str(sandbox.code() / "cpp_facts.py")
         try:
-            done = workspace.run_once(
-                "/usr/bin/python3", reader, crossing.to_json(task), of=("cpp", "header")
-            )
+            command = "/usr/bin/python3", reader, crossing.to_json(task)
+            done = workspace.run_once(*command, of=self._read_with(file))
         except confine.ConfineError:
             return None
         try:
@@ -47,6 +49,14 @@ class CppReader:
         except (crossing.CrossingError, KeyError):
             self._see_whose_fault(file, done)
             return None
+
+    def _read_with(self, file: str) -> list[str]:
+        """Return the files of the package that are read where a source is read."""
+        package = self.workspace.package
+        files = [file, *package.of_kind("header")]
+        if any(_ODD_INCLUDE.search(package.bytes(path)) for path in files):
+            files += [path for path in package.of_kind("cpp") if path != file]
+        return files
 
     def _see_whose_fault(self, file: str, done: confine.Result) -> None:
         """Raise CannotCheck if it is not the source's fault that there is no answer."""

@@ -118,7 +118,8 @@ def _load(workspace: Workspace, paths: Sequence[pathlib.Path], file: str) -> Lau
     if _reads_more(workspace.package):
         done = workspace.run(*command, seconds=SECONDS, env=env)
     else:
-        done = workspace.run_once(*command, of=("launch",), seconds=SECONDS, env=env)
+        files = workspace.package.of_kind("launch")
+        done = workspace.run_once(*command, of=files, seconds=SECONDS, env=env)
     try:
         first, *others = crossing.from_json(List[Dump], done.output)
     except ValueError as error:  # it may have been ended

@@ -148,10 +148,10 @@ class Workspace:
     ) -> confine.Result:
         """As run(), unless an earlier check has run it on the same: then return what came of it.
 
-        of: the kinds of files that it reads, beside what CMake reads or makes
+        of: the files of the package that it reads, beside what CMake reads or makes
         """
         # Of the copy: a file that is saved just now may be different.
-        read = [written.read(self.package_folder / path) for path in self.package.of_kind(*of)]
+        read = [(path, written.read(self.package_folder / path)) for path in of]
         made = sorted(os.walk(self.folder / "devel" / "include"))
         known = repr((command, env, self._read_by_cmake, read, made)).encode()
         path = self.given / hashlib.sha256(known).hexdigest()
