@@ -3,6 +3,7 @@
 
 import pathlib
 import re
+import shutil
 import subprocess
 
 import check_rules
@@ -264,3 +265,27 @@ def test_headers_that_do_not_fit_are_read_again(tmp_path, headers):
     assert {place.kind for place in said.places} >= {Kind.PUBLISHER, Kind.LOG, Kind.STEP}
     assert said_of(tmp_path, headers, "-std=gnu++20") == said
     assert said_of(tmp_path, tmp_path / "no_such_file") == said
+
+
+def test_headers_are_kept_until_others_are_installed(tmp_path, headers, monkeypatch):
+    cache, made = tmp_path / "cache", []
+
+    def read(command, **_):
+        made.append(command[-1])
+        shutil.copy(headers, command[-1])
+
+    monkeypatch.setenv("XDG_CACHE_HOME", str(cache))
+    monkeypatch.setattr(subprocess, "run", read)
+    first, second, third = (tmp_path / name for name in ("first", "second", "third"))
+    for path in (first, second):
+        assert cpp_headers.make(path).read_bytes() == headers.read_bytes()
+    assert made == [str(first)]
+    installed = tmp_path / "status"
+    installed.touch()
+    monkeypatch.setattr(cpp_headers, "_INSTALLED", (str(installed),))
+    assert cpp_headers.make(third).exists()
+    assert made == [str(first), str(third)]
+    (only,) = (cache / "mrp_check").iterdir()
+    monkeypatch.setenv("XDG_CACHE_HOME", str(installed))  # a file: nothing can be kept there
+    only.unlink()
+    assert cpp_headers.make(tmp_path / "fourth").exists()

@@ -2,14 +2,18 @@
 """Reads ROS's own C++ headers, and keeps what clang made of them: usage cpp_headers.py FILE.
 
 Almost all of the time in which a source is read goes into them. So they are read once, while CMake
-configures, and for a class once for all. Nothing of a package has a part in it.
+configures, and kept in the user's cache until other packages are installed. Nothing of a package
+has a part in it, and what runs of one gets a copy.
 """
 
+import contextlib
+import hashlib
 import os
 import pathlib
 import shutil
 import subprocess
 import sys
+import tempfile
 
 if __name__ == "__main__":
     # In place of this file's own folder, whose modules are none of clang's.
@@ -20,17 +24,43 @@ from mrp_check.confined import variables
 STANDARD = "-std=gnu++17"  # the default of g++ 12 and 14
 FOLDERS = ("/opt/ros/noetic/include", "/usr/include/xmlrpcpp")
 _SOURCE = ("ros.h", "#include <ros/ros.h>\n")
+# What is different after another version of a package was installed. What differs beside that, clang
+# sees for itself: it then reads the headers again.
+_INSTALLED = ("/var/lib/dpkg/status", "/opt/ros/noetic/include/ros/ros.h", "/usr/include/ros/ros.h")
 
 
 def make(path: pathlib.Path) -> pathlib.Path:
     """Put the headers into the file `path`, and return it. Without clang or ROS there is none."""
     if path.exists():
         return path  # an earlier check has made it
-    if os.environ.get(variables.HEADERS):
-        shutil.copy(os.environ[variables.HEADERS], path)
-    else:
-        subprocess.run(["/usr/bin/python3", __file__, str(path)], stderr=subprocess.DEVNULL)
+    kept = pathlib.Path(os.environ.get(variables.HEADERS) or _in_cache())
+    if kept.exists():
+        shutil.copyfile(kept, path)
+        return path
+    subprocess.run(["/usr/bin/python3", __file__, str(path)], stderr=subprocess.DEVNULL)
+    if path.exists():
+        with contextlib.suppress(OSError):  # such as a home that is read-only: nothing is kept
+            _keep(path, kept)
     return path
+
+
+def _in_cache() -> pathlib.Path:
+    """Return the path at which the headers of what is installed now are kept."""
+    stats = [os.stat(path) for path in _INSTALLED if os.path.exists(path)]
+    installed = repr([(one.st_mtime_ns, one.st_size) for one in stats])
+    name = f"ros_{hashlib.sha256(installed.encode()).hexdigest()[:16]}.pch"
+    cache = os.environ.get("XDG_CACHE_HOME") or os.path.expanduser("~/.cache")
+    return pathlib.Path(cache, "mrp_check", name)
+
+
+def _keep(path: pathlib.Path, kept: pathlib.Path) -> None:
+    """Put a copy of the headers into the cache, in place of earlier ones, whole at every moment."""
+    kept.parent.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory(dir=kept.parent) as folder:
+        shutil.copyfile(path, os.path.join(folder, kept.name))
+        for earlier in kept.parent.glob("ros_*.pch"):
+            earlier.unlink()
+        os.replace(os.path.join(folder, kept.name), kept)
 
 
 def main() -> None:
