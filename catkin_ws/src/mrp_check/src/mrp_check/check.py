@@ -22,6 +22,7 @@ from mrp_check.contract.spec import MORE, Spec
 from mrp_check.contract.verdict import BROKEN, FINDINGS, MET, UNCHECKED, Report
 from mrp_check.report import diff
 from mrp_check.rules import REQUIREMENTS, RULES
+from mrp_check.sources import python_modules
 from mrp_check.student.package import Package
 
 _FOLD = 3  # findings about files outside the exercise: more are folded into one
@@ -88,7 +89,9 @@ class _Examination:
         self.lost: dict[str, Exception] = {}
         needs = needs_of(ids, rules)
         if "facts" in needs:
-            _ = case.headers  # they are read while CMake configures
+            # This is done while CMake configures.
+            _ = case.headers
+            case.submit(python_modules.of_rospy)
         # Others that need no more are asked, too: they may know the cause.
         chosen = [rule for rule in rules if needs.issuperset(rule.needs)]
         for stage, rules in itertools.groupby(chosen, lambda rule: rule.stage):

@@ -5,10 +5,8 @@ from __future__ import annotations
 
 import ast
 import codecs
-import functools
 import os
 import shutil
-import subprocess
 from typing import Iterator
 
 from mrp_check import evidence
@@ -17,6 +15,7 @@ from mrp_check.case import Case
 from mrp_check.contract.finding import ERROR, NOTE, Finding
 from mrp_check.contract.requirements import Requirement, Rule
 from mrp_check.contract.words import nearest, perhaps
+from mrp_check.sources import python_modules
 from mrp_check.sources.uses import is_test
 from mrp_check.student.cmake import Model
 from mrp_check.student.package import Package
@@ -53,19 +52,11 @@ def _findings(case: Case) -> Iterator[Finding]:
             yield from _shadowing(path)
 
 
-@functools.lru_cache(maxsize=None)
-def _modules_of_rospy() -> set[str]:
-    """Return the names of the modules that Python loads when a node imports rospy."""
-    code = "import sys, rospy, std_msgs.msg; print(*(n for n in sys.modules if '.' not in n))"
-    done = subprocess.run(["/usr/bin/python3", "-c", code], stdout=subprocess.PIPE, text=True)
-    return set(done.stdout.split()) - {"__main__"}
-
-
 def _shadowing(path: str) -> Iterator[Finding]:
     """Yield a finding if a script is found where a module that rospy imports is looked for."""
     folder, name = os.path.split(path)
     stem, ending = os.path.splitext(name)
-    if ending == ".py" and stem in _modules_of_rospy():
+    if ending == ".py" and stem in python_modules.of_rospy():
         yield Finding(
             "scripts",
             f"The script is called {name}, and rospy imports a module {stem}: Python looks first in"

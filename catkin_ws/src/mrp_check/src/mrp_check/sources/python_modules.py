@@ -4,10 +4,12 @@
 from __future__ import annotations
 
 import ast
+import functools
 import importlib
 import importlib.util
 import inspect
 import pathlib
+import subprocess
 import sys
 import types
 from typing import Any, Callable
@@ -24,6 +26,14 @@ def ros_modules() -> set[str]:
     return {
         path.parent.name for share in SHARES for path in pathlib.Path(share).glob("*/package.xml")
     }
+
+
+@functools.lru_cache(maxsize=None)
+def of_rospy() -> set[str]:
+    """Return the names of the modules that Python loads when a node imports rospy."""
+    code = "import sys, rospy, std_msgs.msg; print(*(n for n in sys.modules if '.' not in n))"
+    done = subprocess.run(["/usr/bin/python3", "-c", code], stdout=subprocess.PIPE, text=True)
+    return set(done.stdout.split()) - {"__main__"}
 
 
 def is_module(name: str) -> bool:
