@@ -171,7 +171,7 @@ def test_what_has_not_changed_is_not_built_again(tmp_path, monkeypatch):
     )
     checked = checks_of(tmp_path, monkeypatch, "compile", "lifetime")
     ids, ran, first = checked()
-    assert (ids, ran.count("catkin_make"), len(first)) == ([], 2, 2)
+    assert (ids, builds(ran), len(first)) == ([], ["catkin_make", "make"], 2)
     assert checked() == ([], [], first)
     append(script, "# Another line.\n")
     assert checked() == ([], [], first)
@@ -180,20 +180,25 @@ def test_what_has_not_changed_is_not_built_again(tmp_path, monkeypatch):
     correct, times = source.read_bytes(), source.stat()
     source.write_bytes(correct.replace(b";", b"", 1))
     ids, ran, built = checked()
-    assert (ids, ran.count("catkin_make")) == (["compile"], 1)
+    assert (ids, builds(ran)) == (["compile"], ["make"])
     assert "publisher_cpp_node" not in built
     source.write_bytes(correct)
     os.utime(source, ns=(times.st_atime_ns, times.st_mtime_ns))
     ids, ran, again = checked()
-    assert (ids, ran.count("catkin_make"), {*again}) == ([], 1, {*first})
+    assert (ids, builds(ran), {*again}) == ([], ["make"], {*first})
     append(cmake, "add_custom_target(own ALL COMMAND true)\n")
     said = '<launch><param name="said" command="echo"/>'
     launch.write_text(launch.read_text().replace("<launch>", said))
     ids, ran, _ = checked()
-    assert (ids, ran.count("catkin_make")) == ([], 2)
+    assert (ids, builds(ran)) == ([], ["catkin_make", "make"])
     append(script, "# Another line.\n")
     ids, ran, _ = checked()
-    assert (ids, sorted(ran)) == ([], ["catkin_make", "launch_dump.py"])
+    assert (ids, sorted(ran)) == ([], ["launch_dump.py", "make"])
+
+
+def builds(ran):
+    """Return the steps of catkin_make among the programs that ran."""
+    return [name for name in ran if name in ("catkin_make", "make")]
 
 
 def append(path, text):

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""catkin_make on the package's copy: configuring first, then building, while other stages go on."""
+"""catkin_make on the package's copy, in its two steps: configuring first, and then building, while
+other stages go on."""
 
 from __future__ import annotations
 
@@ -26,6 +27,7 @@ TOOLS = {
     "make": "make",
     "roslaunch": "python3-roslaunch",
 }
+_KEEP_GOING = ("--no-print-directory", "-k", "-j2")
 
 
 class Step(typing.NamedTuple):
@@ -52,18 +54,13 @@ class Catkin:
         self.folder = workspace.folder
         self._building: concurrent.futures.Future[Step] | None = None
 
-    def _catkin_make(self, *arguments: str) -> confine.Result:
+    def _configure(self) -> confine.Result:
+        """Run catkin_make up to its last step, which is `make`."""
         trace = self.folder / "trace.json"
         package = self.workspace.package_folder
         files = [*package.rglob("CMakeLists.txt"), *package.rglob("*.cmake")]
         sources = [f"--trace-source={path.relative_to(package.parent)}" for path in files]
-        environment = self._compiler()
-        cache = environment.get("CCACHE_DIR")
-        if cache:
-            os.makedirs(cache, exist_ok=True)  # within the confinement it could not be made
-            if os.getuid() == 0:
-                os.chmod(cache, 0o777)  # each check is another user's then
-        return self.workspace.run(
+        return self._run(
             "catkin_make",
             *("-C", str(self.folder)),
             "--cmake-args",
@@ -72,14 +69,22 @@ class Catkin:
             "-DCMAKE_EXPORT_COMPILE_COMMANDS=ON",
             "-Wno-dev",
             *("--trace-expand", "--trace-format=json-v1", f"--trace-redirect={trace}", *sources),
-            "--make-args",
-            *arguments,
-            writable=[cache] if cache else [],
-            env=environment,
+            *("--make-args", "help"),
         )
 
+    def _run(self, *command: str) -> confine.Result:
+        """Run a command that may call the compiler."""
+        environment = self._compiler()
+        cache = environment.get("CCACHE_DIR")
+        if cache:
+            os.makedirs(cache, exist_ok=True)  # within the confinement it could not be made
+            if os.getuid() == 0:
+                os.chmod(cache, 0o777)  # each check is another user's then
+        writable = [cache] if cache else []
+        return self.workspace.run(*command, writable=writable, env=environment)
+
     def _step(self, result: confine.Result) -> Step:
-        """Return the Step of a catkin_make. Raises CannotCheck if it took too long.
+        """Return the Step that came of a command. Raises CannotCheck if it took too long.
 
         What computes without end is ended by the limit of its processor time, and is the package's
         fault; what only lasts may be the machine's.
@@ -113,7 +118,7 @@ class Catkin:
         if self.workspace.configured:
             return Step(*self.workspace.configured)
         self.workspace.progress("configuring with CMake")
-        return self._step(self._catkin_make("help"))
+        return self._step(self._configure())
 
     @functools.cached_property
     def model(self) -> cmake.Model:
@@ -137,7 +142,8 @@ class Catkin:
             # An executable of an earlier build must not stand in for one that cannot be built now.
             made = ["find", "devel/lib", "-type", "f", "-newer", "build/Makefile", "-delete"]
             workspace.run("env", f"--chdir={self.folder}", *made)
-        result = self._catkin_make("-k", "-j2")
+        # As catkin_make would, which took its time to find out that CMake need not run again.
+        result = self._run("make", f"--directory={self.folder / 'build'}", *_KEEP_GOING)
         step = self._step(result)
         if result.ended_by is None:
             workspace.keep(self.configured, step)
