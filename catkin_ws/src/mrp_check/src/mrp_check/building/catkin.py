@@ -109,6 +109,7 @@ class Catkin:
                 CCACHE_NOHASHDIR="1",
                 CCACHE_UMASK="000",
                 CCACHE_BASEDIR="/",
+                CCACHE_DEPEND="1",  # what is new is compiled at once, and not preprocessed before
             )
         return found
 
