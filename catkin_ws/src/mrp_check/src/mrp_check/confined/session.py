@@ -9,6 +9,7 @@ it hears of the nodes through ROS, their output and /proc. It prints a result of
 
 import ctypes
 import os
+import shutil
 import sys
 import tempfile
 
@@ -39,8 +40,11 @@ def main() -> None:
             else:
                 result = alone.run(crossing.from_json(DirectPlan, plan), observer, starter)
             answer.write(crossing.to_json(result))
-    # rospy's threads, and connections to what was killed, are no reason to wait.
-    os._exit(0)
+            answer.close()
+            shutil.rmtree(folder, ignore_errors=True)
+            # The observer's end takes half a second, and nobody is left who would hear of it: rospy's
+            # threads, and connections to what was killed, are no reason to wait.
+            os._exit(0)
 
 
 if __name__ == "__main__":
