@@ -24,8 +24,8 @@ from mrp_check.confined import variables
 STANDARD = "-std=gnu++17"  # the default of g++ 12 and 14
 FOLDERS = ("/opt/ros/noetic/include", "/usr/include/xmlrpcpp")
 _SOURCE = ("ros.h", "#include <ros/ros.h>\n")
-# What is different after another version of a package was installed. What differs beside that, clang
-# sees for itself: it then reads the headers again.
+# What is different after another version of a package was installed. What differs beside that,
+# clang sees for itself: it then reads the headers again.
 _INSTALLED = ("/var/lib/dpkg/status", "/opt/ros/noetic/include/ros/ros.h", "/usr/include/ros/ros.h")
 
 

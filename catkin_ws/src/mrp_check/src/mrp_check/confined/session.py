@@ -42,8 +42,8 @@ def main() -> None:
             answer.write(crossing.to_json(result))
             answer.close()
             shutil.rmtree(folder, ignore_errors=True)
-            # The observer's end takes half a second, and nobody is left who would hear of it: rospy's
-            # threads, and connections to what was killed, are no reason to wait.
+            # The observer's end takes half a second, and nobody is left who would hear of it:
+            # rospy's threads, and connections to what was killed, are no reason to wait.
             os._exit(0)
 
 

@@ -112,7 +112,7 @@ def load_twice(workspace: Workspace, file: str) -> Launch:
 
 
 def _load(workspace: Workspace, paths: Sequence[pathlib.Path], file: str) -> Launch:
-    copy, reader = workspace.package_folder, sandbox.code() / "launch_dump.py"
+    reader = sandbox.code() / "launch_dump.py"
     command = ["/usr/bin/python3", str(reader), *map(str, paths)]
     env = {variables.PACKAGES: workspace.ros_packages}
     if _reads_more(workspace.package):
