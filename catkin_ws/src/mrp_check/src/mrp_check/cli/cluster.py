@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """A class on several machines: each check is a task of a Dask cluster, `check --scheduler ADDRESS`.
 
-Dask gives a task to a worker that is free, and to another if that one dies or is silent for long. It
-gives up after distributed.scheduler.allowed-failures. So a worker is to have one thread: Dask cannot
-know which of its tasks killed it.
+Dask gives a task to a worker that is free, and to another one if that dies or is silent for long.
+It gives up after distributed.scheduler.allowed-failures. Dask cannot know which of its tasks killed
+a worker: so each is to have one thread, and no more tasks are sent than there are threads.
 """
 
 from __future__ import annotations

@@ -33,7 +33,8 @@ _PROGRAM = "from mrp_check.cli.check import main; main()"
 _LOCK = threading.Lock()
 _RUNNING: dict[subprocess.Popen, str] = {}  # the checks, and their classes
 _STOPPED: set[str] = set()  # classes
-_READING, _HEADERS = threading.Lock(), []  # the folder in which ROS's headers are
+_READING = threading.Lock()
+_HEADERS: list[tempfile.TemporaryDirectory] = []  # in which ROS's headers are, once they are read
 
 
 @dataclasses.dataclass(frozen=True)
@@ -61,9 +62,9 @@ class Job:
 def packed(package: Package) -> bytes:
     """Return a package's files and folders as a tar."""
 
-    def plain(info):
-        info.uid = info.gid = 0
-        info.uname = info.gname = ""
+    def without_owner(info):
+        for name, nobody in (("uid", 0), ("gid", 0), ("uname", ""), ("gname", "")):
+            setattr(info, name, nobody)
         return info
 
     file = io.BytesIO()
@@ -71,9 +72,9 @@ def packed(package: Package) -> bytes:
         for folder, folders, _ in os.walk(package.root):
             folders[:] = [name for name in folders if not is_of_tools(name)]
             name = os.path.relpath(folder, package.root)
-            tar.add(folder, name, recursive=False, filter=plain)
+            tar.add(folder, name, recursive=False, filter=without_owner)
         for name in package.files:
-            tar.add(package.root / name, name, recursive=False, filter=plain)
+            tar.add(package.root / name, name, recursive=False, filter=without_owner)
     return file.getvalue()
 
 
