@@ -13,6 +13,7 @@ import check_rules
 import jsonschema
 import pytest
 from mrp_check import check
+from mrp_check.cli import check as command
 from mrp_check.contract.finding import ERROR, NOTE, WARNING
 from mrp_check.report import console, json_
 from mrp_check.sources import executables
@@ -118,6 +119,30 @@ def test_each_defect_is_found_at_its_place(tmp_path):
     assert not others, shown(others)
     assert not [f for f in report.findings if f.file == "scripts/talker.py"]
     assert "asking.py" not in {f.node for f in report.findings}, shown(report.findings)
+
+
+@pytest.mark.parametrize(
+    ("has_cmake", "says"),
+    [
+        (False, "some_pkg is not correct: The package has no CMakeLists.txt"),
+        (True, "no node of some_pkg ran."),
+    ],
+    ids=["not_built", "not_run"],
+)
+def test_no_contract_is_written_from_a_package_that_does_not_work(
+    has_cmake, says, tmp_path, monkeypatch, capsys
+):
+    nothing = check_rules.CMAKE.partition("catkin_install")[0]
+    folder = check_rules.make(tmp_path / "some_pkg", CMakeLists_DOT_txt=nothing).root
+    if not has_cmake:
+        (folder / "CMakeLists.txt").unlink()
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(SystemExit) as ended:
+        command.main(["--write-contract", "some_pkg"])
+    said = capsys.readouterr().err.splitlines()[-1]
+    assert ended.value.code == 2
+    assert said.startswith(f"check: no contract is written, as {says}"), said
+    assert [path.name for path in tmp_path.iterdir()] == ["some_pkg"]
 
 
 @proves(

@@ -16,11 +16,12 @@ pytestmark = pytest.mark.quick
 CHECK = WORKSPACE / "src" / "mrp_check" / "scripts" / "check"
 
 
-def run(*arguments, **variables):
+def run(*arguments, cwd=None, **variables):
     env = {**scratch.environment(), "PYTHONPATH": str(CHECK.parents[1] / "src"), **variables}
     return subprocess.run(
         ["/usr/bin/python3", str(CHECK), *map(str, arguments)],
         env={**env, "PYTHONDONTWRITEBYTECODE": "1"},
+        cwd=cwd,
         capture_output=True,
         text=True,
     )
@@ -71,6 +72,16 @@ def test_timing_shows_when_each_part_began():
     seconds = [float(passed) for passed, _ in shown]
     assert [what for _, what in shown] == ["stage files", "the end"], done.stderr
     assert seconds == sorted(seconds)
+
+
+def test_a_contract_replaces_no_file(tmp_path):
+    contract = tmp_path / "mrp.yaml"
+    contract.write_text("mine")
+    done = run("--write-contract", WORKSPACE / "src" / "mrp", cwd=tmp_path)
+    assert (done.returncode, done.stdout, contract.read_text()) == (2, "", "mine")
+    assert done.stderr == (
+        "check: mrp.yaml is there already: rename it, or call check in another folder.\n"
+    )
 
 
 def test_wrong_option_is_exit_code_2():

@@ -18,7 +18,7 @@ from mrp_check.confined.seen import (
 )
 from mrp_check.contract.errors import CannotCheck
 from mrp_check.rules import REQUIREMENTS
-from mrp_check.running import observing, planning
+from mrp_check.running import behaviour, observing, planning
 from mrp_check.sources.facts import Facts
 from mrp_check.student.package import Package
 
@@ -87,6 +87,34 @@ def test_a_publisher_that_was_never_connected_to_is_not_silent(tmp_path, heard):
     case.close()
     assert ("values" in found) == heard
     assert check.unseen(case, ["values"]) == {"values": "publisher_right published no number"}
+
+
+EVERY_SECOND = range(8)
+SAYS = [
+    ([1, 3, 5, 7], EVERY_SECOND, {"values": {"start": 1, "step": 2}, "period": 1.0}),
+    ([1, 3, 5, 8], EVERY_SECOND, {"rises": True, "period": 1.0}),
+    ([1, 3, 5, 3], EVERY_SECOND, {"period": 1.0}),
+    ([1, 3, 5, 7], (0, 1, 4, 9), {"values": {"start": 1, "step": 2}}),
+    ([1, 3, 5], EVERY_SECOND, {}),
+    (["a 1 of 4", "a 2 of 4", "a 3 of 4", "a 4 of 4"], EVERY_SECOND, "a {value} of 4"),
+    (["a 1 of 4", "a 2 of 3", "a 3 of 2", "a 4 of 1"], EVERY_SECOND, None),
+    (["a 1", "a 2", "a 3", "b 4"], EVERY_SECOND, None),
+]
+
+
+@pytest.mark.parametrize(("values", "times", "says"), SAYS, ids=range(len(SAYS)))
+def test_a_written_contract_says_no_more_than_was_seen(values, times, says):
+    path, topic = "/check_0/node", "/check_0/numbers"
+    seen = Seen(
+        publications=[Registration(path, topic, "std_msgs/Some", 0)],
+        messages=[Message(path, topic, {"data": v}, float(t)) for v, t in zip(values, times)],
+    )
+    direct = DirectResult({"node.py": Alone(path, asked=20)}, seen=seen)
+    node = behaviour.Behaviour("node.py", [], direct)
+    (named,) = node.publishes
+    shaped = behaviour.shaped(named, node.series(named))
+    assert (named.name, named.namespace) == ("numbers", "group")
+    assert (shaped.text if isinstance(values[0], str) else node.role(shaped)) == says
 
 
 _WHILE_OTHERS_REGISTER = """

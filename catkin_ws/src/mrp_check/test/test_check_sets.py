@@ -12,7 +12,7 @@ import subprocess
 
 import check_sets
 import pytest
-from mrp_check.contract import defects
+from mrp_check.contract import defects, spec
 from mrp_testing import compiler_cache, scratch
 from mrp_testing.proves import proves
 
@@ -33,37 +33,34 @@ CHECK = check_sets.HERE.parent / "src" / "mrp_check"
 EXERCISES = defects.exercises()
 
 
+def called(folder, *options, cwd=None):
+    """Call check about the package at a folder; return what came of it."""
+    env = scratch.environment()
+    env.update(
+        PYTHONPATH=str(CHECK / "src"),
+        PYTHONDONTWRITEBYTECODE="1",
+        # Only what a style or a defect changes is compiled anew.
+        PATH=f"/usr/lib/ccache:{os.environ['PATH']}",
+        MRP_CHECK_CCACHE=str(compiler_cache.FOLDER.with_name("ccache_of_checks")),
+    )
+    command = ["/usr/bin/python3", CHECK / "scripts" / "check", folder, "--timeout", "900"]
+    return subprocess.run(
+        [*command, *options],
+        env=env,
+        cwd=cwd,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+    )
+
+
 @pytest.fixture
 def run_check(tmp_path):
     """Return a function that checks the package at a folder, and returns the report's data."""
 
     def run(folder, spec, *options):
         report = tmp_path / "report.json"
-        env = scratch.environment()
-        env.update(
-            PYTHONPATH=str(CHECK / "src"),
-            PYTHONDONTWRITEBYTECODE="1",
-            # Only what a style or a defect changes is compiled anew.
-            PATH=f"/usr/lib/ccache:{os.environ['PATH']}",
-            MRP_CHECK_CCACHE=str(compiler_cache.FOLDER.with_name("ccache_of_checks")),
-        )
-        command = ["/usr/bin/python3", CHECK / "scripts" / "check", folder]
-        done = subprocess.run(
-            [
-                *command,
-                "--spec",
-                CHECK / "specs" / spec,
-                "--json",
-                report,
-                "--timeout",
-                "900",
-                *options,
-            ],
-            env=env,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.STDOUT,
-            text=True,
-        )
+        done = called(folder, "--spec", CHECK / "specs" / spec, "--json", report, *options)
         assert report.exists(), done.stdout
         data = json.loads(report.read_text())
         assert done.returncode == {"met": 0, "findings": 1}[data["verdict"]], done.stdout
@@ -189,6 +186,39 @@ def test_exercise_fails_for_its_own_reason_and_its_solution_passes(exercise, tmp
     check_sets.break_(folder, exercise, "--reverse")
     check_sets.lay_out(exercise.base, tmp_path / "correct")
     assert contents(folder) == contents(tmp_path / "correct")
+
+
+# A correct package -> a defect of it that the contract written from it must tell.
+WRITTEN = {
+    "mrp": "wrong_type",
+    "talker_listener_py": "listener_topic",
+    "talker_listener_cpp": "talker_rate",
+    "relay": "relay_times_3",
+    "own_message": "reading_type",
+    "add_two_ints_py": "sum_py_offered_name",
+    "parameter": "parameter_not_set",
+}
+
+
+@pytest.mark.parametrize("style", WRITTEN)
+def test_a_contract_is_written_from_a_correct_package(style, tmp_path, run_check):
+    """The package meets it, and the broken one does not: for what the defect breaks."""
+    folder = tmp_path / "package"
+    check_sets.lay_out(style, folder)
+    done = called(folder, "--write-contract", cwd=tmp_path)
+    assert done.returncode == 0, done.stdout
+    (path,) = tmp_path.glob("*.yaml")
+    nodes = spec.read(path).nodes
+    assert len(path.read_text().splitlines()) <= 15 * max(len(nodes), 2), path.read_text()
+    report = run_check(folder, path)
+    found = [one for one in report["findings"] if one["severity"] != "note"]
+    assert report["verdict"] == "met" and not found, f"{path.read_text()}\n{shown(found)}"
+
+    (defect,) = [one for one in check_sets.DEFECTS if one.name == WRITTEN[style]]
+    check_sets.break_(folder, defect)
+    report = run_check(folder, path)
+    found = {one["id"] for one in report["findings"] if one["severity"] == "error"}
+    assert found & {*defect.finds.split("|")}, f"{path.read_text()}\n{shown(report['findings'])}"
 
 
 ALONE = [

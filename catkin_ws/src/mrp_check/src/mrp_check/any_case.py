@@ -13,6 +13,7 @@ from mrp_check.case import Case
 from mrp_check.contract.finding import Finding
 from mrp_check.contract.spec import Spec
 from mrp_check.running import observing, unasked
+from mrp_check.running.planning import ENOUGH_ALONE
 from mrp_check.sources import executables, uses
 from mrp_check.student import launch as launching
 from mrp_check.student.launch import Launch
@@ -21,7 +22,12 @@ _MOST = 12  # launch files that are looked at
 
 
 class AnyCase(Case):
-    """See above. `launch` is all launch files together."""
+    """See above. `launch` is all launch files together.
+
+    enough: messages of each publisher that are waited for
+    """
+
+    enough = ENOUGH_ALONE
 
     def _copy(self, path: str) -> bool:
         copied, package = super()._copy(path), self.package
@@ -68,7 +74,7 @@ class AnyCase(Case):
 
     @functools.cached_property
     def observed(self) -> observing.Observed:
-        return unasked.observe(self, self.spec, self.launches, self.facts)
+        return unasked.observe(self, self.spec, self.launches, self.facts, self.enough)
 
 
 def _make_startable(path: pathlib.Path) -> None:

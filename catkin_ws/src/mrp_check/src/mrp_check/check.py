@@ -20,8 +20,9 @@ from mrp_check.contract.finding import ERROR, Finding
 from mrp_check.contract.requirements import ANY, CONTRACT, closure
 from mrp_check.contract.spec import MORE, Spec
 from mrp_check.contract.verdict import BROKEN, FINDINGS, MET, UNCHECKED, Report
-from mrp_check.report import diff
+from mrp_check.report import contract, diff
 from mrp_check.rules import REQUIREMENTS, RULES
+from mrp_check.running.planning import ENOUGH
 from mrp_check.sources import python_modules
 from mrp_check.student.package import Package
 
@@ -36,6 +37,7 @@ def check(
     progress: typing.Callable[[str], None] = lambda sentence: None,
     kept: pathlib.Path | None = None,
     early: typing.Callable[[Report], None] | None = None,
+    write: typing.Callable[[str], None] | None = None,
 ) -> Report:
     """Check one package.
 
@@ -45,6 +47,7 @@ def check(
     kept: a scratch_folder() for several checks of one's own package: what has not changed since
         the last of them is not built again
     early: called after each stage with what is known by then
+    write: called with the text of a contract for a package that has none, if nothing is wrong
 
     Raises CannotCheck if a tool is missing. What else keeps something from being checked is in the
     report, with what could be checked.
@@ -57,14 +60,19 @@ def check(
     ids = [id_ for id_ in REQUIREMENTS if id_ in asked and (id_ in only or not only)]
     with contextlib.nullcontext(kept) if kept else scratch_folder() as folder:
         case = (Case if spec else AnyCase)(package, spec, folder, timeout, progress)
+        if isinstance(case, AnyCase) and write:
+            case.enough = ENOUGH
         try:
             examination = _Examination(case, rules, ids, asked, early)
+            report = examination.report()
+            if isinstance(case, AnyCase) and write and report.verdict == MET:
+                write(contract.text(case))
         except BaseException:  # such as Ctrl-C
             confine.stop()
             raise
         finally:
             case.close()
-    return examination.report()
+    return report
 
 
 @contextlib.contextmanager

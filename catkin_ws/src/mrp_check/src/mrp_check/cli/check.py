@@ -13,6 +13,7 @@ from mrp_check import check, sandbox
 from mrp_check.cli import classroom, cluster
 from mrp_check.contract import by_hand, spec
 from mrp_check.contract.errors import CannotCheck, ClusterError, PackageError, SpecError
+from mrp_check.contract.finding import ERROR
 from mrp_check.contract.verdict import FINDINGS, MET, UNCHECKED, public, unchecked
 from mrp_check.report import (
     alike,
@@ -62,6 +63,7 @@ OF_CLASS = {  # of the submissions, the contract, the folder of their pages, and
 }
 FLAGS = {  # what --help says of each
     "any": "check a package that has no contract: report what fails",
+    "write_contract": "run a correct package, and write NAME.yaml: a contract for it, to be edited",
     "public": "leave the contract's hidden requirements out of the reports",
     "github": "print the findings as annotations of GitHub Actions, too",
     "timing": "show after how many seconds each part of the check begins",
@@ -103,7 +105,7 @@ def parser():
     since = "with --class: show what has changed since an earlier hand-in, whose DIR.checked it is"
     parser.add_argument("--before", metavar="FOLDER", help=since)
     for flag, text in FLAGS.items():
-        parser.add_argument(f"--{flag}", action="store_true", help=text)
+        parser.add_argument(f"--{flag.replace('_', '-')}", action="store_true", help=text)
     number = (
         f"with --class: check N at the same time, 1 to 64 (default: {classroom.JOBS}; with"
         " --scheduler, as many as its workers have threads)"
@@ -144,7 +146,8 @@ def run(options):
                 needed = "without" if options.class_ else "with"
                 name = name.replace("_", "-")
                 raise CannotCheck(f"--{name} goes {needed} --class.")
-        result = run_class(options) if options.class_ else run_package(options)
+        run_one = write_contract if options.write_contract else run_package
+        result = run_class(options) if options.class_ else run_one(options)
     except (PackageError, SpecError, CannotCheck, ClusterError, OSError) as error:
         print(f"check: {error}", file=sys.stderr)
         result = UNCHECKED
@@ -252,6 +255,34 @@ def run_package(options):
     if report.reason:
         print(f"check: {report.reason}", file=sys.stderr)
     return report.verdict
+
+
+def write_contract(options):
+    """Write a contract of what a package does, and return MET. Raises CannotCheck, PackageError."""
+    progress = console.Progress(sys.stderr)
+    texts: list[str] = []
+    try:
+        with check.scratch_folder() as scratch:
+            package = Package(unpacked(options, scratch))
+            path = pathlib.Path(f"{package.name}.yaml")
+            if path.exists():
+                raise CannotCheck(
+                    f"{path} is there already: rename it, or call check in another folder."
+                )
+            say_how_apart()
+            report = check.check(
+                package, None, timeout=options.timeout, progress=progress.show, write=texts.append
+            )
+    finally:
+        progress.clear()
+    if not texts:
+        errors = [one for one in report.findings if one.severity == ERROR]
+        why = report.reason or f"{errors[0].message} Fix what check --any {options.path} reports."
+        raise CannotCheck(f"no contract is written, as {package.name} is not correct: {why}")
+    with open(path, "x", encoding="utf-8") as file:
+        file.write(texts[0])
+    print(f"Wrote {path}: edit it, and call check with --spec {path}.")
+    return MET
 
 
 def write(path, text_of, *arguments):

@@ -39,6 +39,7 @@ def run(plan: DirectPlan, observer: Observer, starter: apart.Starter) -> DirectR
             node.exchange.step(node.name())
 
     wait(plan.common, nodes, _Node.is_up, _Node.is_settled, send)
+    observer.ask_types()
     running = [node for node in nodes if node.program.poll() is None]
     for node in running:
         node.end(signal.SIGKILL if node.plan.is_wrap or node.plan.example else plan.signal)

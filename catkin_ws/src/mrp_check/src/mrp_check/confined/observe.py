@@ -209,13 +209,24 @@ class Observer:
             code, _, found = answer
             if code != 1 or not found:
                 return None
-            with socket.create_connection(tuple(found[1:3]), _ANSWER) as connection:
-                header = {"topic": topic, "md5sum": "*", "type": "*", "callerid": NAME + "_late"}
-                rosgraph.network.write_ros_handshake_header(connection, header)
-                said = rosgraph.network.read_ros_handshake_header(connection, io.BytesIO(), _HEADER)
-                return dict(said)
+            header = {"topic": topic, "md5sum": "*", "type": "*", "callerid": NAME + "_late"}
+            return _answer(tuple(found[1:3]), header)
         except (KeyError, OSError, xmlrpc.client.Error, rosgraph.network.ROSHandshakeException):
             return None
+
+    def ask_types(self) -> None:
+        """Find out the types of the services that were announced: the master is not told them."""
+        for one in self.seen.services:
+            one.type = one.type or self._type_of(one.topic)
+
+    def _type_of(self, service: str) -> str:
+        header = {"probe": "1", "md5sum": "*", "callerid": NAME, "service": service}
+        try:
+            address = self._handler.lookupService(NAME, service)[2]
+            place = rosgraph.network.parse_http_host_and_port(address)
+            return _answer(place, header).get("type", "")
+        except (OSError, ValueError, rosgraph.network.ROSHandshakeException):
+            return ""  # it has ended
 
     # --- How busy the machine is
 
@@ -230,6 +241,14 @@ class Observer:
         one in ten."""
         lag = sorted(self._lag)
         return lag[len(lag) * 9 // 10] if lag else 0.0
+
+
+def _answer(place: Tuple[Any, ...], header: Dict[str, str]) -> Dict[str, str]:
+    """Return what a publisher, or a service, answers to a header."""
+    with socket.create_connection(place, _ANSWER) as connection:
+        rosgraph.network.write_ros_handshake_header(connection, header)
+        said = rosgraph.network.read_ros_handshake_header(connection, io.BytesIO(), _HEADER)
+        return dict(said)
 
 
 def _refuse(self: object, caller_id: str, reason: str = "") -> Answer:

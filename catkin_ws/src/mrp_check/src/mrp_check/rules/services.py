@@ -14,10 +14,8 @@ from mrp_check.contract.spec import Message, Service
 from mrp_check.contract.words import last_part, nearest
 from mrp_check.running.node import Node, each_node
 from mrp_check.running.planning import resolved
+from mrp_check.running.traces import ROS_SERVICES
 from mrp_check.running.words import few
-
-# What each node offers by itself.
-_OF_ROS = ("get_loggers", "set_logger_level", "tf2_frames")
 
 
 def _of(node: Node) -> Iterator[Finding]:
@@ -39,7 +37,7 @@ def _key(node: Node, service: Service) -> str:
 
 def _not_offered(node: Node, service: Service) -> Finding:
     offered = {one.topic for one in node.seen_alone.services}
-    others = sorted(last_part(name) for name in offered if last_part(name) not in _OF_ROS)
+    others = sorted(last_part(name) for name in offered if last_part(name) not in ROS_SERVICES)
     return node.finding(
         "services",
         f"{node.name} offers {few(others) or 'no service'}, not {service.name}.",

@@ -91,7 +91,7 @@ class Planner:
         )
 
     def of_file(
-        self, file: pathlib.Path, seconds: float, nodes: list[plans.LaunchNode]
+        self, file: pathlib.Path, seconds: float, nodes: list[plans.LaunchNode], enough: int
     ) -> plans.LaunchPlan:
         """Return the plan for a launch file without a contract; all lines come to the screen."""
         common = self._common(self.spec.shutdown.seconds + _ROSLAUNCH_SECONDS)
@@ -99,7 +99,7 @@ class Planner:
             common=dataclasses.replace(common, seconds=seconds),
             command=["roslaunch", "--screen", str(file)],
             nodes=nodes,
-            enough=ENOUGH_ALONE,
+            enough=enough,
         )
 
     def _launch_node(self, node: specs.Node, senders: list[str]) -> plans.LaunchNode:

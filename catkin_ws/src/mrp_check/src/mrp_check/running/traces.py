@@ -20,6 +20,8 @@ DIED = re.compile(
 )
 # Topics that belong to ROS itself.
 ROS_TOPICS = {"/rosout", "/rosout_agg", "/clock", "/tf", "/tf_static", "/diagnostics"}
+# What each node offers by itself.
+ROS_SERVICES = {"get_loggers", "set_logger_level", "tf2_frames"}
 
 
 class Traces:

@@ -17,7 +17,7 @@ from mrp_check.confined.seen import DirectResult, LaunchResult
 from mrp_check.contract.spec import Spec
 from mrp_check.running import observing
 from mrp_check.running.observing import Launched, Observed
-from mrp_check.running.planning import ENOUGH_ALONE
+from mrp_check.sources import asked
 from mrp_check.sources.facts import Facts
 from mrp_check.student.launch import Launch
 from mrp_check.student.workspace import Workspace
@@ -26,8 +26,13 @@ _SECONDS = 8  # in which the nodes are watched, once all are up
 _MOST = 6  # launch files that are run
 
 
-def observe(workspace: Workspace, spec: Spec, launches: list[Launch], facts: Facts) -> Observed:
-    """Run the nodes, and return what was seen. Raises CannotCheck."""
+def observe(
+    workspace: Workspace, spec: Spec, launches: list[Launch], facts: Facts, enough: int
+) -> Observed:
+    """Run the nodes, and return what was seen. Raises CannotCheck.
+
+    enough: messages of each publisher
+    """
     result = Observed()
     own = {launch.file: _own(workspace, spec, launch) for launch in _outermost(launches)}
     for launch in launches:
@@ -41,7 +46,7 @@ def observe(workspace: Workspace, spec: Spec, launches: list[Launch], facts: Fac
     direct = planner.direct()
     direct.common.seconds = _SECONDS
     for key, one in direct.nodes.items():
-        direct.nodes[key] = dataclasses.replace(one, publishes=ENOUGH_ALONE)
+        direct.nodes[key] = dataclasses.replace(one, publishes=enough)
     problems = result.problems
     ran = workspace.submit(observing.session, workspace, direct, DirectResult, problems)
     files = {file: nodes for file, nodes in own.items() if nodes and file}
@@ -51,7 +56,7 @@ def observe(workspace: Workspace, spec: Spec, launches: list[Launch], facts: Fac
         named = {path[1:]: result.executables[name] for path, name in made.items()}
         runs.append(("", planner.write_launch_file(named), made))
     for file, path, nodes in runs:
-        plan = planner.of_file(path, _SECONDS, _watched(workspace, facts, nodes))
+        plan = planner.of_file(path, _SECONDS, _watched(workspace, facts, nodes), enough)
         seen = observing.session(workspace, plan, LaunchResult, problems)
         if seen:
             result.launches.append(Launched(file, nodes, seen))
@@ -89,8 +94,14 @@ def _made(workspace: Workspace, facts: Facts, names: list[str]) -> dict[str, str
 
 
 def _watched(workspace: Workspace, facts: Facts, nodes: Mapping[str, str]) -> list[LaunchNode]:
-    package = workspace.package.name
+    package = workspace.package
+    # One that asks a service is waited for as one that publishes: until it has ended, or is silent.
+    busy = {
+        name: bool(facts.of(name, Kind.PUBLISH))
+        or any(one.what == "asks" for one in asked.of(package, facts.sources.get(name, ())))
+        for name in nodes.values()
+    }
     return [
-        LaunchNode(path, f"{package}/{name}", bool(facts.of(name, Kind.PUBLISH)), None, None, 0)
+        LaunchNode(path, f"{package.name}/{name}", busy[name], None, None, 0)
         for path, name in nodes.items()
     ]
