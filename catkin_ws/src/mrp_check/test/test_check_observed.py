@@ -89,6 +89,37 @@ def test_a_publisher_that_was_never_connected_to_is_not_silent(tmp_path, heard):
     assert check.unseen(case, ["values"]) == {"values": "publisher_right published no number"}
 
 
+@pytest.mark.parametrize("waited", [0.0, 0.1, 0.6])
+@pytest.mark.parametrize("period", [0.5, 1.0, 5.0])
+def test_a_publisher_that_waited_for_a_processor_is_not_slow(tmp_path, period, waited):
+    """It is slow by itself if it would be without the time in which Linux did not let it run."""
+    folder = make_package(tmp_path / "lab_pkg", {"right": ("", "")}, {})
+    path, alone, topic = "/lab/publisher_right", "/check_0/publisher_right", "of_right"
+    sent = [(2 * number + 1, number * period) for number in range(8)]
+    seen, by_itself = (
+        Seen(
+            publications=[Registration(name, f"{space}/{topic}", "std_msgs/UInt32", 0)],
+            messages=[Message(name, f"{space}/{topic}", {"data": v}, at) for v, at in sent],
+        )
+        for name, space in ((path, "/lab"), (alone, "/check_0"))
+    )
+    launch = LaunchResult(
+        ending="enough", asked=8 * period, lines=[], seen=seen, waited={path: waited}
+    )
+    direct = DirectResult({"publisher_right": Alone(alone)}, seen=by_itself)
+    observed = observing.Observed(
+        launch=launch, direct=direct, executables={"publisher_right": folder}
+    )
+    case = observed_case(tmp_path, folder, observed)
+    found = [finding.id for rule in OF_RUN for finding in rule.findings(case)]
+    case.close()
+    is_slow = period * (1 - waited) > 0.55
+    assert ("rate" in found) == is_slow
+    is_open = period > 0.5 and not is_slow
+    said = "publisher_right was slow on a machine that is too busy to tell"
+    assert check.unseen(case, ["rate"]) == ({"rate": said} if is_open else {})
+
+
 EVERY_SECOND = range(8)
 SAYS = [
     ([1, 3, 5, 7], EVERY_SECOND, {"values": {"start": 1, "step": 2}, "period": 1.0}),
@@ -133,6 +164,24 @@ with Observer() as observer:
 """
 
 
+_HELD = """
+import threading
+from mrp_check.confined.observe import Observer
+def announce():
+    observer._handler.registerPublisher("/n", "/t", "std_msgs/Empty", "http://localhost:1")
+with Observer() as observer:
+    node = threading.Thread(target=announce)
+    node.start()
+    while node.is_alive() and not observer.is_held("/n"):
+        pass
+    print("held" if observer.is_held("/n") else "not held")
+    observer.release()
+    node.join(10)  # less than it is held for
+    print("held" if node.is_alive() else "let go")
+    print(observer.seen.publications[0].heard)
+"""
+
+
 def _said_by(code):
     """Return what Python code prints that makes an Observer: there can be one in a process."""
     done = subprocess.run(
@@ -141,6 +190,11 @@ def _said_by(code):
     )  # fmt: skip
     assert done.returncode == 0, done.stdout
     return done.stdout
+
+
+def test_the_observer_lets_a_publisher_go_on_that_is_to_end():
+    """One that waits for the master's answer cannot end: that was called its own fault."""
+    assert _said_by(_HELD) == "held\nlet go\nFalse\n"
 
 
 def test_the_observer_reads_who_has_registered_while_others_register():

@@ -1,6 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""How long nodes are waited for: as long as they do something, whatever the machine's load."""
+"""How long nodes are waited for: as long as they do something, whatever the machine's load.
 
+Linux counts how long each thread could have run, and had no processor. So it is known what a busy
+machine has cost a node, and by how much all takes longer.
+"""
+
+import glob
 import time
 from typing import Callable, Dict, Iterable, List, Optional, Tuple, TypeVar, Union
 
@@ -13,7 +18,9 @@ from mrp_check.confined.seen import Log, Message, Registration
 TICK = 0.02  # seconds between two looks
 _IDLE = 3.0  # seconds in which an idle process uses hardly any processor time, ...
 _HARDLY = 0.05  # ... which is less than this many seconds
+_CALM = 0.5  # seconds after which one that has announced something announces no more
 BUSY = 20.0  # seconds of processor time: a process is no longer starting up, or ending
+_LONGER = 6.0  # times, at most, that a busy machine may take longer
 _RECENT = 400  # messages, and lines, in which a node's last one is looked for
 
 Node = TypeVar("Node")
@@ -25,6 +32,20 @@ class Activity:
     def __init__(self, observer: Observer) -> None:
         self.observer = observer
         self._used: Dict[int, List[Tuple[float, float]]] = {}
+        self._began: Dict[str, Tuple[float, float]] = {}
+
+    def begin(self, node: str, pid_of: Callable[[], Optional[int]]) -> None:
+        """Remember when a node began to publish, and how long it had waited by then."""
+        if node not in self._began and self.observer.most_of(node):
+            self._began[node] = time.monotonic(), _processor_of(pid_of())[1]
+
+    def waited(self, node: str, pid: Optional[int]) -> float:
+        """Return which part of the time since then its threads waited for a processor."""
+        if node not in self._began:
+            return 0.0
+        then, before = self._began[node]
+        waited = max(_processor_of(pid)[1] - before, 0.0) / (time.monotonic() - then)
+        return min(waited, 1.0)
 
     def is_up_or_stuck(self, node: Optional[str], pid: Optional[int]) -> bool:
         """Return whether a node has registered, or is not going to: its process is gone, does
@@ -51,6 +72,14 @@ class Activity:
         then, before = history[0]
         return now - then >= _IDLE and used - before < _HARDLY
 
+    def is_calm(self, node: str) -> bool:
+        """Return whether a node has announced all that it has, as far as one can see."""
+        seen = self.observer.seen
+        records = [*seen.publications, *seen.subscriptions, *seen.services]
+        times = [one.time for one in records if one.node == node]
+        is_late = bool(times) and is_over(time.monotonic() - max(times), _CALM)
+        return is_late and not self.observer.is_held(node)
+
     def last(self, node: str) -> Optional[float]:
         """Return when something last came from a node, or None if nothing has."""
         seen = self.observer.seen
@@ -67,6 +96,29 @@ def processor_seconds(pid: Optional[int]) -> Optional[float]:
     except psutil.Error:
         return None
     return times and times.user + times.system
+
+
+def _processor_of(pid: Union[int, str, None]) -> Tuple[float, float]:
+    """Return the seconds that a process ran, and that it waited for a processor meanwhile."""
+    ran = waited = 0
+    for path in glob.glob(f"/proc/{pid}/task/*/schedstat"):
+        try:
+            with open(path) as file:
+                numbers = file.read().split()
+        except OSError:
+            continue  # the thread has ended
+        ran, waited = ran + int(numbers[0]), waited + int(numbers[1])
+    return ran / 1e9, waited / 1e9
+
+
+def is_over(passed: float, seconds: float) -> bool:
+    """Return whether so many seconds are over, and as many more as a busy machine takes longer.
+
+    By how much it does, this process knows from itself."""
+    if passed <= seconds:
+        return False
+    ran, waited = _processor_of("self")
+    return passed > seconds * min(1 + waited / max(ran, TICK), _LONGER)
 
 
 def wait(
@@ -89,7 +141,7 @@ def wait(
         ending = step()
         if ending:
             return ending
-        if now - (all_up or now) > plan.seconds:
+        if is_over(now - (all_up or now), plan.seconds):
             return "time"
         if now - began > plan.most:
             return "most"

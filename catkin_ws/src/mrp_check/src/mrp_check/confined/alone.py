@@ -9,7 +9,7 @@ from typing import List, Optional
 import rospy
 
 from mrp_check.confined import apart, crossing, messages, variables, written
-from mrp_check.confined.activity import BUSY, TICK, Activity, processor_seconds, wait
+from mrp_check.confined.activity import BUSY, TICK, Activity, is_over, processor_seconds, wait
 from mrp_check.confined.exchange import Exchange
 from mrp_check.confined.observe import Observer
 from mrp_check.confined.plans import Common, DirectNode, DirectPlan
@@ -40,6 +40,7 @@ def run(plan: DirectPlan, observer: Observer, starter: apart.Starter) -> DirectR
 
     wait(plan.common, nodes, _Node.is_up, _Node.is_settled, send)
     observer.ask_types()
+    observer.release()
     running = [node for node in nodes if node.program.poll() is None]
     for node in running:
         node.end(signal.SIGKILL if node.plan.is_wrap or node.plan.example else plan.signal)
@@ -143,7 +144,7 @@ class _Node:
         pending = self.plan.paced[max(len(self.sent) - len(self.plan.values), 0) :]
         if self.publisher is None or not self.sent or not pending:
             return
-        if self._has_logged(self.sent[-1]) or time.monotonic() - self.sent_at > _PACE:
+        if self._has_logged(self.sent[-1]) or is_over(time.monotonic() - self.sent_at, _PACE):
             self._send_one(self.publisher, pending[0])
 
     def _has_logged(self, value: Optional[int]) -> bool:
@@ -176,7 +177,9 @@ class _Node:
             return names.count("after") >= _AFTER or "error" in names or "not_found" in names
         if self.observer.most_of(name) < self.plan.publishes:
             return False
-        return not self.plan.values or self._has_heard(name)
+        if self.plan.values:
+            return self._has_heard(name)
+        return bool(self.plan.publishes) or self.activity.is_calm(name)
 
     def _has_heard(self, name: str) -> bool:
         """Return whether the node has logged all that it was sent, if it is to log it."""
@@ -205,7 +208,7 @@ class _Node:
         idle = self.activity.is_idle(self.program.pid)  # asked each time, so that it knows
         since = time.monotonic() - self.asked
         used = processor_seconds(self.program.pid) or 0
-        return since < seconds or not idle and used < BUSY and since < _ENDING
+        return not is_over(since, seconds) or not idle and used < BUSY and since < _ENDING
 
     def result(self) -> Alone:
         """Return what is known of its end, but for its output."""

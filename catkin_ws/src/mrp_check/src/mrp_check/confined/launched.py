@@ -7,7 +7,7 @@ import time
 from typing import Dict, List, Optional
 
 from mrp_check.confined import apart, variables
-from mrp_check.confined.activity import TICK, Activity, wait
+from mrp_check.confined.activity import TICK, Activity, is_over, wait
 from mrp_check.confined.observe import Observer
 from mrp_check.confined.plans import LaunchNode, LaunchPlan
 from mrp_check.confined.program import Program, left_behind
@@ -25,13 +25,17 @@ def run(plan: LaunchPlan, observer: Observer, starter: apart.Starter) -> LaunchR
     launch = _Launch(plan, roslaunch, observer)
 
     def has_ended() -> Optional[str]:
+        launch.begin()
         return None if roslaunch.poll() is None else "itself"
 
     ending = wait(plan.common, plan.nodes, launch.is_up, launch.is_settled, has_ended)
+    waited = launch.waited()
     latched = _latched(observer)
+    observer.release()
     asked, code = time.monotonic(), roslaunch.poll()
     roslaunch.send(signal.SIGINT)
-    while roslaunch.poll() is None and time.monotonic() - asked < plan.common.stop_seconds:
+    stop_seconds = plan.common.stop_seconds
+    while roslaunch.poll() is None and not is_over(time.monotonic() - asked, stop_seconds):
         time.sleep(TICK)
     stopped_in = None if roslaunch.poll() is None else time.monotonic() - asked
     if stopped_in is None:
@@ -44,6 +48,7 @@ def run(plan: LaunchPlan, observer: Observer, starter: apart.Starter) -> LaunchR
         left=left_behind({None: roslaunch}),
         lines=roslaunch.all_lines(),
         latched=latched,
+        waited=waited,
         seen=observer.seen_since(roslaunch.started),
     )
 
@@ -61,6 +66,16 @@ class _Launch:
     def __init__(self, plan: LaunchPlan, roslaunch: Program, observer: Observer) -> None:
         self.plan, self.roslaunch, self.observer = plan, roslaunch, observer
         self.activity = Activity(observer)
+
+    def begin(self) -> None:
+        """Look which nodes have begun to publish."""
+        for node in self.plan.nodes:
+            self.activity.begin(node.path, lambda: self._pid(node))
+
+    def waited(self) -> Dict[str, float]:
+        """Return node -> which part of the time since then it waited for a processor."""
+        nodes = self.plan.nodes
+        return {node.path: self.activity.waited(node.path, self._pid(node)) for node in nodes}
 
     def is_up(self, node: LaunchNode) -> bool:
         return self._has_died(node) or self.activity.is_up_or_stuck(node.path, self._pid(node))
@@ -87,7 +102,7 @@ class _Launch:
         if node.hears and not any(one.node == node.path for one in list(subscriptions)):
             return False
         if not node.received:
-            return True
+            return node.publishes or self.activity.is_calm(node.path)
         pattern = re.compile(node.received)
         lines = [log for log in list(logs) if log.node == node.path and pattern.search(log.text)]
         enough = self.plan.enough * node.senders

@@ -73,6 +73,8 @@ class Observer:
         self._subscribers: Dict[str, rospy.Subscriber] = {}
         self._types: Dict[Tuple[str, str], Any] = {}
         self._lock = threading.Lock()
+        self._held: List[str] = []
+        self._is_released = False
         self._lag: List[float] = []
         os.environ.setdefault(variables.HOSTNAME, "localhost")
         # rosmaster says much to the root logger, which writes it to standard error.
@@ -104,12 +106,25 @@ class Observer:
         """Wait until this observer is connected to a publisher, or for _HOLD seconds; return
         whether it is."""
         end = time.monotonic() + _HOLD
+        self._held.append(node)
         while not self._is_connected(node, topic) and time.monotonic() < end:
+            if self._is_released:
+                break
             time.sleep(0.002)
-        # A publisher answers a subscriber before it begins to send to it. It lets in one after the
-        # other: where the next one is answered, it sends to the one before.
-        self._shake_hands(node, topic)
+        else:
+            # A publisher answers a subscriber before it begins to send to it. It lets in one after
+            # the other: where the next one is answered, it sends to the one before.
+            self._shake_hands(node, topic)
+        self._held.remove(node)
         return self._is_connected(node, topic)
+
+    def is_held(self, node: str) -> bool:
+        """Return whether a node waits for the master's answer: it has done no more as yet."""
+        return node in self._held
+
+    def release(self) -> None:
+        """Let no publisher wait from now on: one that waits cannot end."""
+        self._is_released = True
 
     def _is_connected(self, node: str, topic: str) -> bool:
         impl = self._subscribers[topic].impl

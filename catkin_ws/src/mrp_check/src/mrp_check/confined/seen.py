@@ -103,6 +103,7 @@ class LaunchResult:
     asked: when roslaunch was asked to end; stopped_in: after which time it did, if it did
     code: its exit code (negative: killed by that signal), if it had ended before it was asked to
     latched: topic -> the nodes that latch it
+    waited: node -> which part of the time in which it published it waited for a processor
     lines: what it printed
     """
 
@@ -114,6 +115,7 @@ class LaunchResult:
     stopped_in: Optional[float] = None
     left: List[Left] = dataclasses.field(default_factory=list)
     latched: Dict[str, List[str]] = dataclasses.field(default_factory=dict)
+    waited: Dict[str, float] = dataclasses.field(default_factory=dict)
 
     def until_asked(self) -> List[str]:
         """Return the lines that were printed before it was asked to end, or just then."""

@@ -30,6 +30,7 @@ class Traces:
     wanted: what the spec says of it
     path: its full name under the launch file
     seen, seen_alone: what the observer has seen of it, under the launch file and by itself
+    waited: which part of the time it waited for a processor while it published there
     console: what roslaunch printed until it was to end
     direct, wrap: what came of it by itself, and near the end of its numbers; or None
     """
@@ -44,6 +45,7 @@ class Traces:
         self.in_launch = launch is not None and has_started
         self.asked = launch.asked if launch else 0.0
         self.console = launch.until_asked() if launch else []
+        self.waited = launch.waited.get(self.path, 0.0) if launch else 0.0
         self.latched = launch.latched if launch else {}
         self.direct = observed.alone(self.name)
         self.wrap = observed.alone(WRAP + self.name)
