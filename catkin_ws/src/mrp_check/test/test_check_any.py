@@ -121,6 +121,7 @@ def test_each_defect_is_found_at_its_place(tmp_path):
     assert "asking.py" not in {f.node for f in report.findings}, shown(report.findings)
 
 
+@proves("If the package does not build or run, no contract is written.")
 @pytest.mark.parametrize(
     ("has_cmake", "says"),
     [

@@ -74,6 +74,7 @@ def test_timing_shows_when_each_part_began():
     assert seconds == sorted(seconds)
 
 
+@proves("The new file replaces no other one.")
 def test_a_contract_replaces_no_file(tmp_path):
     contract = tmp_path / "mrp.yaml"
     contract.write_text("mine")

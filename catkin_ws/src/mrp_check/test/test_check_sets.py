@@ -200,6 +200,11 @@ WRITTEN = {
 }
 
 
+@proves(
+    "Or have one written from a correct package: check --write-contract PKG builds the package, "
+    "runs its nodes, and writes down what they did.",
+    "The package meets that contract, and a package in which one thing is wrong does not.",
+)
 @pytest.mark.parametrize("style", WRITTEN)
 def test_a_contract_is_written_from_a_correct_package(style, tmp_path, run_check):
     """The package meets it, and the broken one does not: for what the defect breaks."""
