@@ -198,6 +198,10 @@ SUBSCRIBERS = {
 }
 
 
+def numbers(topic):
+    return spec.Topic(topic, "std_msgs/UInt32", kind="uint32")
+
+
 def spec_of(publishers, subscribers):
     """Return a Spec with a node for each defect, publishers on topics of their own."""
     topics, nodes = {}, {}
@@ -206,16 +210,16 @@ def spec_of(publishers, subscribers):
         return (rf"\[{name}\] namespace = {{name}}", *(line.format(name=name) for line in more))
 
     for key in publishers:
-        name, topics[key] = f"publisher_{key}", spec.Topic(f"of_{key}", "std_msgs/UInt32")
+        name, topics[key] = f"publisher_{key}", numbers(f"of_{key}")
         rule = spec.Values(1, 2, 2**32)
         role = spec.Publishes(topics[key], queue=10, period=0.5, tolerance=0.1, values=rule)
         nodes[name] = spec.Node(name, "python", published=(role,), prints=prints(name))
     for key in subscribers:
         name = f"subscriber_{key}"
-        topics["to_" + key] = spec.Topic("to_" + key, "std_msgs/UInt32")
+        topics["to_" + key] = numbers(f"to_{key}")
         role = spec.Subscribes(topics["to_" + key], queue=10)
         lines = prints(name, r"\[{name}\] received {{value}}")
-        nodes[name] = spec.Node(name, "python", subscribes=role, prints=lines)
+        nodes[name] = spec.Node(name, "python", subscribed=(role,), prints=lines)
     shutdown = spec.Shutdown("SIGINT", 0, 10)
     return spec.Spec("test", topics, nodes, spec.Launch("all.launch", "lab"), shutdown)
 

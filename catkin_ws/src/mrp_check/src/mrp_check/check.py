@@ -44,16 +44,13 @@ def check(
     spec: its contract; None for a package that has none
     only: ids of the only requirements to check; all if empty
     timeout: seconds that all of it may take
-    kept: a scratch_folder() for several checks of one's own package: what has not changed since
-        the last of them is not built again
+    kept: a scratch_folder() for several checks: what has not changed since is not built again
     early: called after each stage with what is known by then
     write: called with the text of a contract for a package that has none, if nothing is wrong
 
-    Raises CannotCheck if a tool is missing. What else keeps something from being checked is in the
-    report, with what could be checked.
+    Raises CannotCheck if a tool is missing. What else cannot be checked, the report says.
     """
-    missing = missing_tool()
-    if missing:
+    if missing := missing_tool():
         raise CannotCheck(missing)
     rules = [rule for rule in RULES if rule.only != (ANY if spec else CONTRACT)]
     asked = {id_ for rule in rules for id_ in rule.ids if not spec or spec.asks(id_)}
@@ -63,8 +60,7 @@ def check(
         if isinstance(case, AnyCase) and write:
             case.enough = ENOUGH
         try:
-            examination = _Examination(case, rules, ids, asked, early)
-            report = examination.report()
+            report = _Examination(case, rules, ids, asked, early).report()
             if isinstance(case, AnyCase) and write and report.verdict == MET:
                 write(contract.text(case))
         except BaseException:  # such as Ctrl-C

@@ -98,21 +98,9 @@ def parser():
     )
     for option, (text, _) in {**OF_PACKAGE, **OF_CLASS}.items():
         parser.add_argument(f"--{option}", metavar="FILE", help=text)
-    set_ = "with --class: take late days, maxima and overrides of students' points from this CSV"
-    parser.add_argument("--by-hand", metavar="FILE", help=set_)
-    given = "with --alike: a package that all students were given, of which nothing counts"
-    parser.add_argument("--template", metavar="PATH", action="append", default=[], help=given)
-    since = "with --class: show what has changed since an earlier hand-in, whose DIR.checked it is"
-    parser.add_argument("--before", metavar="FOLDER", help=since)
     for flag, text in FLAGS.items():
         parser.add_argument(f"--{flag.replace('_', '-')}", action="store_true", help=text)
-    number = (
-        f"with --class: check N at the same time, 1 to 64 (default: {classroom.JOBS}; with"
-        " --scheduler, as many as its workers have threads)"
-    )
-    parser.add_argument("--jobs", type=int, choices=range(1, 65), metavar="N", help=number)
-    where = "with --class: check on the workers of the Dask scheduler at ADDRESS"
-    parser.add_argument("--scheduler", metavar="ADDRESS", help=where)
+    _add_of_class(parser)
     seconds = "stop the check of a package after S seconds (default: %(default)s)"
     parser.add_argument("--timeout", type=_seconds, default=600, metavar="S", help=seconds)
     parser.add_argument(
@@ -124,6 +112,22 @@ def parser():
         help="check only these requirements",
     )
     return parser
+
+
+def _add_of_class(parser):
+    set_ = "with --class: take late days, maxima and overrides of students' points from this CSV"
+    parser.add_argument("--by-hand", metavar="FILE", help=set_)
+    given = "with --alike: a package that all students were given, of which nothing counts"
+    parser.add_argument("--template", metavar="PATH", action="append", default=[], help=given)
+    since = "with --class: show what has changed since an earlier hand-in, whose DIR.checked it is"
+    parser.add_argument("--before", metavar="FOLDER", help=since)
+    number = (
+        f"with --class: check N at the same time, 1 to 64 (default: {classroom.JOBS}; with"
+        " --scheduler, as many as its workers have threads)"
+    )
+    parser.add_argument("--jobs", type=int, choices=range(1, 65), metavar="N", help=number)
+    where = "with --class: check on the workers of the Dask scheduler at ADDRESS"
+    parser.add_argument("--scheduler", metavar="ADDRESS", help=where)
 
 
 def _seconds(text):
