@@ -30,7 +30,8 @@ def start_findings(node: Traces) -> Iterator[Finding]:
         if node.in_launch and not registered and not node.own_name:
             yield _not_registered(node)
         return
-    if node.wanted.ends and code == 0:
+    # By itself, it is answered as the contract says; beside others, as these do.
+    if node.wanted.ends and 0 in (code, direct.code if direct.asked is None else None):
         return
     found = _traceback(node)
     if found and code != 0:
