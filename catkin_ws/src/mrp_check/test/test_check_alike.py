@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Which submissions are alike: other names, another order and another layout hide nothing, and
-whoever works alone is like nobody.
+a package that was written alone is like no other.
 """
 
 import csv

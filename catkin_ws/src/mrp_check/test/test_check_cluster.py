@@ -25,7 +25,7 @@ from mrp_check.student.package import MAX_BYTES
 from mrp_testing.process import Process, processes_with
 from mrp_testing.proves import proves
 from mrp_testing.waiting import wait_until
-from test_check_stopped import command
+from test_check_stopped import command, hanging
 
 pytestmark = pytest.mark.slow
 
@@ -51,13 +51,6 @@ def quick(monkeypatch, tmp_path, headers):
 def second():
     """Seconds for which a submission sleeps: a number that no other test on this machine has."""
     return f"5.{uuid.uuid4().int}"
-
-
-def sleeping(seconds):
-    return f"""cmake_minimum_required(VERSION 3.10)
-project(some_pkg)
-execute_process(COMMAND sleep {seconds})
-"""
 
 
 @contextlib.contextmanager
@@ -136,7 +129,7 @@ def test_marks_are_those_of_one_machine(tmp_path):
 @proves("If a worker dies or hangs, another one checks its submission.")
 def test_a_worker_that_dies_or_hangs_takes_no_marks(tmp_path, monkeypatch, second):
     """Of three workers, one is killed while it checks, and another stopped."""
-    hand_in(tmp_path / "class", "anna", sleeping(second))
+    hand_in(tmp_path / "class", "anna", hanging(second))
     hand_in(tmp_path / "class", "berta")
     quiet = checked(tmp_path / "class")
     shutil.rmtree(tmp_path / "class.checked")
@@ -195,7 +188,7 @@ def test_a_submission_that_kills_its_workers_is_named(tmp_path, monkeypatch):
 @proves("If the scheduler dies, the same command goes on later with what was checked.")
 def test_a_scheduler_that_dies_loses_nothing(tmp_path, second):
     hand_in(tmp_path / "class", "anna")
-    hand_in(tmp_path / "class", "berta", sleeping(second))
+    hand_in(tmp_path / "class", "berta", hanging(second))
     with cluster(tmp_path, workers=1) as (scheduler, address, workers):
         with command("--class", tmp_path / "class", *SPEC, "--scheduler", address) as checker:
             wait_until(lambda: worker_of(second, workers), "the worker checks the second one")
@@ -216,7 +209,7 @@ def test_a_scheduler_that_dies_loses_nothing(tmp_path, second):
 
 @proves("Ctrl-C ends the checks on the workers, too.")
 def test_a_signal_ends_what_runs_on_the_workers(tmp_path, second):
-    hand_in(tmp_path / "class", "anna", sleeping(f"1000{second}"))
+    hand_in(tmp_path / "class", "anna", hanging(f"1000{second}"))
     with cluster(tmp_path, workers=1) as (_, address, workers):
         with command("--class", tmp_path / "class", *SPEC, "--scheduler", address) as checker:
             wait_until(lambda: worker_of(second, workers), "the worker checks it")

@@ -215,10 +215,10 @@ ROSHandler._connect_topic = connect
 from mrp_check.confined.observe import Observer
 with Observer():
     publisher = None, "/topic", "http://publisher:1"
-    told = [threading.Thread(target=ROSHandler._connect_topic, args=publisher) for _ in range(2)]
-    for one in told:
+    asked = [threading.Thread(target=ROSHandler._connect_topic, args=publisher) for _ in range(2)]
+    for one in asked:
         one.start()
-    for one in told:
+    for one in asked:
         one.join()
     print("both at once" if both.is_set() else "one after the other")
 """

@@ -230,7 +230,7 @@ class Observer:
             return None
 
     def ask_types(self) -> None:
-        """Find out the types of the services that were announced: the master is not told them."""
+        """Find out the types of the services that were announced: the master does not know them."""
         for one in self.seen.services:
             one.type = one.type or self._type_of(one.topic)
 

@@ -144,11 +144,11 @@ class Behaviour:
     def lines(self, topic: Topic | None, of_all: bool) -> list[str]:
         """Return the lines that it is sure to log: once in each run; or with each number that came
         on a topic, from it or from all nodes."""
-        told = [run.lines() for run in self.runs]
-        first = told[0] if len(told) > 1 else []
-        once = [line for line in first if all(one.count(line) == 1 for one in told)]
+        logged = [run.lines() for run in self.runs]
+        first = logged[0] if len(logged) > 1 else []
+        once = [line for line in first if all(one.count(line) == 1 for one in logged)]
         sure = [line for line in dict.fromkeys(once) if not _NUMBER.search(line)]
-        for run, lines in zip(self.launched, told):
+        for run, lines in zip(self.launched, logged):
             known = {float(one) for one in run.numbers(topic, of_all)} if topic else set()
             said: dict[str, list[float]] = {}
             for line in lines:
