@@ -85,6 +85,11 @@ _ENGLISH = {
 }
 # Of a path, only the last part counts, and whether it is that of ROS's own packages.
 _FOLDERS = re.compile(r"(?<![\w.])~?(/opt/ros/\w+)?/(?:[^\s/:;,'\"()\[\]<>]+/)*")
+# What ROS 2 alone prints: only an entry that prints it too can be right.
+_ROS2 = re.compile(
+    r"(?<![\w/-])ros2(?![\w/.-])|rosbag2|\brcl(?:cpp|py)?\b|\bament_|\bcolcon\b|/opt/ros/(?:foxy|humble|iron|jazzy)\b"
+    r"|(?<![\w/])[a-z]\w*/(?:msg|srv|action)/[A-Z]\w*\b(?!\.)"
+)
 _WORD = re.compile(r"[^\W\d_]+|\d+")
 # A name in quotes or brackets is somebody's own: that of a package, a topic, a parameter.
 _NAME = re.compile(r"""'[^'\s]+'|"[^"\s]+"|\[[^][\s]+\]""")
@@ -209,7 +214,8 @@ class Index:
                 line = " ".join(shown_on(text))
                 words = _words(line)
                 self._known.update(words)
-                self._sure.append(set(_words(_NAME.sub(" ", mask(line))) or words))
+                sure = set(_words(_NAME.sub(" ", mask(line))) or words)
+                self._sure.append(sure | set(words) & {"rosii"})
                 self._table.execute("INSERT INTO texts VALUES (?, ?)", (" ".join(words), number))
 
     def nearest(self, text, count=ANSWERS):
@@ -246,6 +252,8 @@ class Index:
 
 def _is_near(words, others, score):
     shared = words & others
+    if "rosii" in words - others:
+        return False
     enough = others <= words or (score >= _SCORE and not shared <= _COMMON)
     enough = enough and (len(shared) > 1 or len(others) == 1)
     return enough and (
@@ -254,6 +262,7 @@ def _is_near(words, others, score):
 
 
 def _words(text):
+    text = _ROS2.sub(r"\g<0> rosii ", text)
     text = _FOLDERS.sub(lambda match: " optros " if match[1] else " ", text)
     return [word.lower() for word in _WORD.findall(mask(text))]
 
