@@ -95,7 +95,7 @@ _WORD = re.compile(r"[^\W\d_]+|\d+")
 _NAME = re.compile(r"""'[^'\s]+'|"[^"\s]+"|\[[^][\s]+\]""")
 # A text is near an entry if it has this part of the entry's words, or the entry this part of its.
 _OF_ENTRY, _OF_TEXT = 0.5, 0.7
-# It also shares more with the entry than "does not exist" and the like, or has all of its words.
+# It also shares two words with the entry beside "does not exist" and the like, or has all of its.
 _SCORE = 15
 _COMMON = set(
     "a an and are as be been by does error exist for from has in is it no not of on or such that"
@@ -254,7 +254,7 @@ def _is_near(words, others, score):
     shared = words & others
     if "rosii" in words - others:
         return False
-    enough = others <= words or (score >= _SCORE and not shared <= _COMMON)
+    enough = others <= words or (score >= _SCORE and len(shared - _COMMON) > 1)
     enough = enough and (len(shared) > 1 or len(others) == 1)
     return enough and (
         len(shared) / len(others) >= _OF_ENTRY or len(shared) / len(words) >= _OF_TEXT
