@@ -85,9 +85,11 @@ _ENGLISH = {
 }
 # Of a path, only the last part counts, and whether it is that of ROS's own packages.
 _FOLDERS = re.compile(r"(?<![\w.])~?(/opt/ros/\w+)?/(?:[^\s/:;,'\"()\[\]<>]+/)*")
-# What ROS 2 alone prints: only an entry that prints it too can be right.
+# What ROS 2 alone prints: only an entry with most of the words, and with such a word, can be right.
+# The names of its packages, such as ament_cmake, stand in what ROS 1 prints, too.
 _ROS2 = re.compile(
-    r"(?<![\w/-])ros2(?![\w/.-])|rosbag2|\brcl(?:cpp|py)?\b|\bament_|\bcolcon\b|/opt/ros/(?:foxy|humble|iron|jazzy)\b"
+    r"(?<![\w/-])ros2(?![\w/.-])|rosbag2|\brcl(?:cpp|py)?\b|\brmw_\w+|\bcolcon\b"
+    r"|/opt/ros/(?:foxy|galactic|humble|iron|jazzy)\b"
     r"|(?<![\w/])[a-z]\w*/(?:msg|srv|action)/[A-Z]\w*\b(?!\.)"
 )
 _WORD = re.compile(r"[^\W\d_]+|\d+")
@@ -252,7 +254,7 @@ class Index:
 
 def _is_near(words, others, score):
     shared = words & others
-    if "rosii" in words - others:
+    if "rosii" in words and ("rosii" not in others or len(shared) / len(others) < _OF_TEXT):
         return False
     enough = others <= words or (score >= _SCORE and len(shared - _COMMON) > 1)
     enough = enough and (len(shared) > 1 or len(others) == 1)
@@ -262,7 +264,7 @@ def _is_near(words, others, score):
 
 
 def _words(text):
-    text = _ROS2.sub(r"\g<0> rosii ", text)
+    text = _ROS2.sub(" rosii ", text)
     text = _FOLDERS.sub(lambda match: " optros " if match[1] else " ", text)
     return [word.lower() for word in _WORD.findall(mask(text))]
 
