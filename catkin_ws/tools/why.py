@@ -116,6 +116,9 @@ _EVERYWHERE = re.compile(
     r"|all processes on machine have died.*|(?:\.\.\. )?shutting down processing monitor.*"
     r"|-- (?:Using|Found) .*|\[ *\d+%\] .*)\s*"
 )
+# What begins a warning; lines below it that are indented belong to it. That the standard of C++ is
+# too old is a cause, though g++ only warns.
+_WARNING = re.compile(r"\b(?:warning:(?!.* only available with )|\w*Warning\b|WARN(?:ING)?\b)")
 # A line of code in a traceback, below the line that names its file: the error stands further below,
 # unless the text was cut off there.
 _CODE = re.compile(r'^([ \t]*)File "[^"\n]*", line \d+.*\n\1[ \t]+\S.*$', re.MULTILINE)
@@ -230,14 +233,16 @@ class Index:
         return [one for one in ranked if one not in ends][:count]
 
     def _scores(self, text):
-        """Return, by the numbers of the entries that are near to a text, their best score, and how
-        many of their texts have it: the most general entry does if only names differ."""
+        """Return, by the numbers of the entries that are near to a text, whether they are an error,
+        their best score, and how many of their texts have it: the most general entry does if only
+        names differ."""
         best = {}
-        for words in _passages(text):
+        for words, warning in _passages(text):
             for row, number, score in self._search(words):
-                highest, count = best.get(number, (0, 0))
-                if score >= highest and _is_near(set(words), self._sure[row - 1], score):
-                    best[number] = (score, count + 1 if score == highest else 1)
+                *highest, count = best.get(number, (False, 0, 0))
+                found = [not warning, score]
+                if found >= highest and _is_near(set(words), self._sure[row - 1], score):
+                    best[number] = (*found, count + 1 if found == highest else 1)
         return best
 
     def _search(self, words):
@@ -270,16 +275,22 @@ def _words(text):
 
 
 def _passages(text):
-    """Yield the words of each line of a text, and of lines that follow each other."""
-    lines = [line for line in text.splitlines() if not _EVERYWHERE.fullmatch(line)]
-    lines = [words for words in map(_words, lines) if words]
+    """Yield the words of each line of a text, and of lines that follow each other, and whether one
+    of them warns: an error counts more."""
+    lines, warns = [], False
+    for line in text.splitlines():
+        warns = bool(_WARNING.search(line)) or (warns and line.startswith(" "))
+        words = [] if _EVERYWHERE.fullmatch(line) else _words(line)
+        if words:
+            lines.append((words, warns))
     seen = set()
     for length in range(1, _TOGETHER + 1):
         for begin in range(max(len(lines) - length, 0) + 1):
-            passage = tuple(itertools.chain(*lines[begin : begin + length]))
+            together = lines[begin : begin + length]
+            passage = tuple(itertools.chain(*(words for words, _ in together)))
             if passage and passage not in seen:
                 seen.add(passage)
-                yield passage
+                yield passage, any(warns for _, warns in together)
 
 
 def answer(found):
