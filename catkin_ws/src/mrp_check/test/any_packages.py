@@ -129,6 +129,17 @@ if __name__ == "__main__":
         print(usage())
         sys.exit(1)
 """
+_INDEXED = """\
+#!/usr/bin/env python3
+import sys
+
+import rospy
+
+if __name__ == "__main__":
+    rospy.init_node("indexed")
+    rospy.loginfo("hello, %s", sys.argv[1])
+    rospy.spin()
+"""
 _ASKING = """\
 #!/usr/bin/env python3
 import rospy
@@ -236,6 +247,7 @@ def faulty(folder):
         ),
         "scripts__client_DOT_py": _CLIENT,
         "scripts__asker_DOT_py": _ASKER,
+        "scripts__indexed_DOT_py": _INDEXED,
         "scripts__asking_DOT_py": _ASKING,
     }
     check_rules.make(folder, **files)

@@ -44,6 +44,7 @@ FOUND = [
     (NOTE, "starts", "scripts/client.py: switch", "waits for the service switch"),
     (NOTE, "starts", "scripts/client.py: ", "waits for arguments"),
     (NOTE, "starts", "scripts/asker.py: ", "waits for arguments"),
+    (NOTE, "starts", "scripts/indexed.py: sys.argv", "waits for arguments"),
 ]
 
 

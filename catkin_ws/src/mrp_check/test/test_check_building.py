@@ -7,6 +7,8 @@ import check_rules
 import pytest
 from check_rules import CMAKE, MANIFEST
 from mrp_check.building import compiler, configuring, cpp_words
+from mrp_check.rules import cmake as cmake_rule
+from mrp_check.student.package import Package
 
 pytestmark = pytest.mark.quick
 
@@ -141,3 +143,12 @@ def test_a_header_that_this_machine_has_not_is_no_misspelt_one(tmp_path, monkeyp
     text = "far_msgs/Empty.h: No such file or directory"
     words = cpp_words.of(package, cpp_words.Problem("src/a.cpp", 1, text, ""))
     assert "Debian package libfar-msgs-dev" in words.said and "std_msgs" not in words.said
+
+
+def test_catkin_simple_finds_catkin_and_describes_the_package(tmp_path):
+    simple = "find_package(catkin_simple REQUIRED)\ncatkin_simple()\ncs_export()\n"
+    text = "cmake_minimum_required(VERSION 3.10)\nproject(some_pkg)\n"
+    package = check_rules.make(tmp_path / "some_pkg", CMakeLists_DOT_txt=text + simple)
+    assert not check_rules.file_findings(cmake_rule, package)
+    (package.root / "CMakeLists.txt").write_text(text)
+    assert len(check_rules.file_findings(cmake_rule, Package(package.root))) == 2

@@ -29,7 +29,10 @@ _WAITS = (
     (r"(?i)cannot open display|could not connect to display|no display name", "a screen"),
     (r"(?i)can.t open camera|VIDEOIO|/dev/(video|tty)\w*", "a device"),
     (r"KeyError: ", "a parameter"),
+    (r"IndexError: list index", "arguments"),
 )
+# What stands in the line that raised, as anything else raises these errors, too.
+_READS = {"a parameter": "param", "arguments": "sys.argv["}
 # How a program counts its arguments: beside the line at which it ends, it misses some.
 _COUNTS = re.compile(r"\bargc\s*[!<>=]|[<>=]\s*argc\b|\blen\(sys\.argv\)")
 _ENDS = re.compile(r"\bexit\s*\(|\bquit\s*\(|\breturn\s+(-?[1-9]|EXIT_FAILURE)")
@@ -143,7 +146,7 @@ def _of_start(node: Node, finding: Finding) -> None:
         said = next((text for text in lines if re.search(shape, text)), None)
         if said:
             is_parameter = what == "a parameter"
-            if is_parameter and "param" not in _source(node, finding):
+            if _READS.get(what, "") not in _source(node, finding):
                 continue
             finding.severity = WARNING if is_parameter else NOTE
             finding.message = f"{node.name} waits for {what}: {said.strip()[:200]}"

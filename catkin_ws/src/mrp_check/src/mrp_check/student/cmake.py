@@ -223,7 +223,9 @@ class Model:
             call.arguments, {"REQUIRED", "COMPONENTS", "QUIET", "OPTIONAL_COMPONENTS", "CONFIG"}
         )
         name = call.arguments[0]
-        if name == "catkin":
+        if name == "catkin_simple":  # it finds catkin, and calls catkin_package()
+            self.catkin = self.catkin_package = call
+        elif name == "catkin":
             self.catkin = self.catkin or call
             # find_package(catkin REQUIRED roscpp) means the same as with COMPONENTS.
             rest = parts[START][1:] + parts.get("REQUIRED", []) + parts.get("COMPONENTS", [])
