@@ -31,6 +31,11 @@ pytestmark = pytest.mark.slow
 
 HERE = pathlib.Path(__file__).resolve().parent
 SPEC = ("--spec", "talker_listener_py")
+COMMON = ("--no-dashboard", "--host", "127.0.0.1")  # of a scheduler and of a worker
+NO_WORKER = (
+    "check: The scheduler at {0} has no worker: expected one or more. Start one, and the checks go"
+    " on: dask worker {0} --nthreads 1."
+)
 
 
 @pytest.fixture(scope="module")
@@ -57,21 +62,22 @@ def second():
 def cluster(folder, workers=2, options=(), **worker_env):
     """Yield a scheduler, its address, and its workers; options: the scheduler's."""
     file = folder / f"scheduler_{uuid.uuid4().hex}.json"
-    common = ("--no-dashboard", "--host", "127.0.0.1")
-    asked = ("/usr/bin/dask", "scheduler", *common, "--port", "0", "--scheduler-file", str(file))
+    asked = ("/usr/bin/dask", "scheduler", *COMMON, "--port", "0", "--scheduler-file", str(file))
     with contextlib.ExitStack() as stack:
         scheduler = stack.enter_context(Process(*asked, *options))
         scheduler.wait_for(file.is_file, "the scheduler listens")
         wait_until(lambda: file.read_text().endswith("}"), "it has said where")
         address = json.loads(file.read_text())["address"]
-        asked = ("/usr/bin/dask", "worker", address, *common, "--nthreads", "1", "--no-nanny")
-        asked += ("--local-directory", str(folder / "space"))
-        started = [Process(*asked, extra_env=worker_env) for _ in range(workers)]
-        for worker in started:
-            stack.enter_context(worker)
-        for worker in started:
-            worker.wait_for(lambda: any("Registered to" in x for x in worker.lines), "it is there")
+        started = [stack.enter_context(worker(address, folder, **worker_env)) for _ in range(workers)]
+        for one in started:
+            one.wait_for(lambda: any("Registered to" in x for x in one.lines), "it is there")
         yield scheduler, address, started
+
+
+def worker(address, folder, **env):
+    """Start a worker of the scheduler at an address; folder: where it may write."""
+    asked = ("/usr/bin/dask", "worker", address, *COMMON, "--nthreads", "1", "--no-nanny")
+    return Process(*asked, "--local-directory", str(folder / "space"), extra_env=env)
 
 
 def checked(folder, *options):
@@ -147,6 +153,27 @@ def test_a_worker_that_dies_or_hangs_takes_no_marks(tmp_path, monkeypatch, secon
         rows = list(csv.DictReader((tmp_path / "table.csv").read_text().splitlines()))
     assert (checker.returncode, rows) == (quiet[0], quiet[2]), said
     wait_until(lambda: not processes_with(second), "what the killed worker ran has ended")
+
+
+@proves("If all workers are gone, the command says so and waits for another one.")
+def test_when_all_workers_are_gone_it_says_so_and_waits(tmp_path, second):
+    """Two die and are one loss; a third one checks what is left."""
+    hand_in(tmp_path / "class", "anna", hanging(second))
+    hand_in(tmp_path / "class", "berta", hanging(second))
+    asked = (HERE.parent / "scripts" / "check", "--class", tmp_path / "class", *SPEC)
+    with cluster(tmp_path) as (_, address, workers):
+        expected = [NO_WORKER.format(address), "check: There is a worker again: the checks go on."]
+
+        def said():
+            return [line for line in checker.errors if "worker" in line]
+
+        with Process(*map(str, asked), "--scheduler", address) as checker:
+            checker.wait_for(lambda: worker_of(second, workers), "one checks")
+            for one in workers:
+                one.stop(signal.SIGKILL)
+            checker.wait_for(lambda: said() == expected[:1], "it says that there is none")
+            with worker(address, tmp_path):
+                assert (checker.wait(), said()) == (1, expected), str(checker)
 
 
 # A worker's check that takes no time: of what Dask does with it, that is enough.
@@ -267,11 +294,7 @@ def test_a_scheduler_without_a_worker(tmp_path, monkeypatch):
     hand_in(tmp_path / "class", "anna")
     with cluster(tmp_path, workers=0) as (_, address, _):
         code, said, _ = checked(tmp_path / "class", "--scheduler", address)
-    assert (code, said) == (
-        2,
-        f"check: The scheduler at {address} has no worker. Start one: dask-worker {address}"
-        " --nthreads 1.\n",
-    )
+    assert (code, said) == (2, f"{NO_WORKER.format(address)}\n")
 
 
 def test_without_dask_the_package_is_named(tmp_path, monkeypatch):

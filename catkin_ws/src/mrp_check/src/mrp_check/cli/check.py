@@ -188,7 +188,7 @@ def run_class(options):
     if options.alike:
         pairs = alike.pairs_in(room.entries, options.package, options.template)
     try:
-        with cluster.reached(options.scheduler) as machines:
+        with cluster.reached(options.scheduler, progress.show) as machines:
             say_how_apart(machines)
             checked = room.check(machines)
     finally:

@@ -12,7 +12,7 @@ import asyncio
 import concurrent.futures
 import contextlib
 import logging
-from typing import Iterator
+from typing import Callable, Iterator
 
 from mrp_check import sandbox
 from mrp_check.cli import marking
@@ -23,13 +23,14 @@ class Cluster:
     """The workers of a Dask scheduler.
 
     address: of the scheduler, such as tcp://192.168.0.7:8786
+    say: called with a sentence when the last worker is lost, and when there is one again
     threads: how many they have together; those that come later take over from others
     not_apart: what a student's code could reach on some of them, as sentences
 
     Raises ClusterError, as all of its methods do.
     """
 
-    def __init__(self, address: str) -> None:
+    def __init__(self, address: str, say: Callable[[str], None]) -> None:
         try:
             import dask
             import distributed
@@ -57,6 +58,23 @@ class Cluster:
             self._client.close()
             raise self._unusable(error) from None
         self._pool = self._client.get_executor(pure=False)
+        self._say, self._has_worker = say, True
+        self._client.subscribe_topic("all", self._look)
+
+    async def _look(self, event):
+        """Say if there is no worker any more, or one again; event: the scheduler's."""
+        if event[1]["action"] not in ("add-worker", "remove-worker"):
+            return
+        has_worker = bool((await self._client.scheduler.identity())["workers"])
+        if has_worker != self._has_worker:
+            self._has_worker = has_worker
+            self._say("There is a worker again: the checks go on." if has_worker else self._none())
+
+    def _none(self):
+        return (
+            f"The scheduler at {self.address} has no worker: expected one or more. Start one, and"
+            f" the checks go on: dask worker {self.address} --nthreads 1."
+        )
 
     def mark(self, job: marking.Job) -> tuple[dict, str]:
         """As marking.mark(), on the worker that is free first."""
@@ -92,10 +110,7 @@ class Cluster:
                 " is checked is kept: start it and its workers, and call the same command again."
             )
         if isinstance(error, TimeoutError):
-            return ClusterError(
-                f"The scheduler at {self.address} has no worker. Start one: dask-worker"
-                f" {self.address} --nthreads 1."
-            )
+            return ClusterError(self._none())
         return ClusterError(
             f"The scheduler at {self.address} or a worker of it cannot be used: expected machines"
             f" with the checker, and dask started where it is on PYTHONPATH. {_said(error)}"
@@ -103,12 +118,12 @@ class Cluster:
 
 
 @contextlib.contextmanager
-def reached(address: str | None) -> Iterator[Cluster | None]:
-    """Yield the Cluster at an address: None without one. Raises ClusterError."""
+def reached(address: str | None, say: Callable[[str], None]) -> Iterator[Cluster | None]:
+    """Yield the Cluster at an address: None without one; say: see there. Raises ClusterError."""
     if not address:
         yield None
         return
-    with contextlib.closing(Cluster(address)) as cluster:
+    with contextlib.closing(Cluster(address, say)) as cluster:
         yield cluster
 
 
