@@ -7,7 +7,6 @@ import contextlib
 import copy
 import itertools
 import pathlib
-import tempfile
 import traceback
 import typing
 
@@ -23,6 +22,7 @@ from mrp_check.contract.verdict import BROKEN, FINDINGS, MET, UNCHECKED, Report
 from mrp_check.report import contract, diff
 from mrp_check.rules import REQUIREMENTS, RULES
 from mrp_check.running.planning import ENOUGH
+from mrp_check.scratch import scratch_folder
 from mrp_check.sources import python_modules
 from mrp_check.student.package import Package
 
@@ -69,17 +69,6 @@ def check(
         finally:
             case.close()
     return report
-
-
-@contextlib.contextmanager
-def scratch_folder() -> typing.Iterator[pathlib.Path]:
-    """Make a folder for checks, and delete it in the end."""
-    folder = pathlib.Path(tempfile.mkdtemp(prefix="mrp_check_"))
-    folder.chmod(0o711)  # for the user that the package's programs run as
-    try:
-        yield folder
-    finally:
-        confine.remove(folder)
 
 
 class _Examination:

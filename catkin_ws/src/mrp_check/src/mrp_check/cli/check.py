@@ -10,7 +10,7 @@ import sys
 import time
 
 from mrp_check import check, sandbox
-from mrp_check.cli import classroom, cluster
+from mrp_check.cli import classroom, cluster, marking
 from mrp_check.contract import by_hand, spec
 from mrp_check.contract.errors import CannotCheck, ClusterError, PackageError, SpecError
 from mrp_check.contract.finding import ERROR
@@ -30,6 +30,7 @@ from mrp_check.report import (
     sarif,
 )
 from mrp_check.rules import REQUIREMENTS
+from mrp_check.scratch import kept_folder, scratch_folder
 from mrp_check.student import submissions
 from mrp_check.student.package import Package
 
@@ -237,10 +238,12 @@ def run_package(options):
     contract = None
     try:
         contract = None if options.any else spec.read(spec.find(options.spec), REQUIREMENTS)
-        with check.scratch_folder() as scratch:
+        with scratch_folder() as scratch, kept_folder(marking.checker()) as kept:
             package = Package(unpacked(options, scratch))
             say_how_apart()
-            report = check.check(package, contract, options.only, options.timeout, progress.show)
+            report = check.check(
+                package, contract, options.only, options.timeout, progress.show, kept
+            )
             if options.timing:
                 progress.show("the end")
     except (PackageError, SpecError, CannotCheck) as error:
@@ -266,7 +269,7 @@ def write_contract(options):
     progress = console.Progress(sys.stderr)
     texts: list[str] = []
     try:
-        with check.scratch_folder() as scratch:
+        with scratch_folder() as scratch:
             package = Package(unpacked(options, scratch))
             path = pathlib.Path(f"{package.name}.yaml")
             if path.exists():

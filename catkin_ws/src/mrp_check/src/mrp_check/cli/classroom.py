@@ -17,13 +17,13 @@ import time
 import uuid
 
 from mrp_check import confine
-from mrp_check.check import scratch_folder
 from mrp_check.cli import marking
 from mrp_check.contract import spec
 from mrp_check.contract.errors import CannotCheck, ClusterError, PackageError
 from mrp_check.contract.verdict import UNCHECKED, unchecked
 from mrp_check.report import json_
 from mrp_check.report.class_table import Submission
+from mrp_check.scratch import scratch_folder
 from mrp_check.student import submissions
 from mrp_check.student.package import Package
 

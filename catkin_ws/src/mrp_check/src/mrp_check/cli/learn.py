@@ -9,7 +9,6 @@ import pathlib
 import signal
 import sys
 
-from mrp_check.check import scratch_folder
 from mrp_check.confined import variables
 from mrp_check.contract.defects import DefectError
 from mrp_check.contract.errors import CannotCheck
@@ -17,6 +16,7 @@ from mrp_check.contract.packages import PatchError
 from mrp_check.learning import plain
 from mrp_check.learning.exercise import Course
 from mrp_check.learning.watch import Watched
+from mrp_check.scratch import scratch_folder
 
 FAILED = 2
 

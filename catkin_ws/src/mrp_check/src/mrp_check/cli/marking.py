@@ -19,11 +19,11 @@ import tarfile
 import tempfile
 import threading
 
-from mrp_check.check import scratch_folder
 from mrp_check.confined import cpp_headers, variables
 from mrp_check.contract import resources
 from mrp_check.contract.errors import CannotCheck
 from mrp_check.report import json_
+from mrp_check.scratch import scratch_folder
 from mrp_check.student.package import MAX_BYTES, Package, is_of_tools
 
 _HERE = pathlib.Path(__file__).resolve().parents[1]

@@ -44,11 +44,16 @@ def make(path: pathlib.Path) -> pathlib.Path:
     return path
 
 
+def installed() -> str:
+    """Return a text that is another one when other packages are installed."""
+    stats = [os.stat(path) for path in _INSTALLED if os.path.exists(path)]
+    known = repr([(one.st_mtime_ns, one.st_size) for one in stats])
+    return hashlib.sha256(known.encode()).hexdigest()[:16]
+
+
 def _in_cache() -> pathlib.Path:
     """Return the path at which the headers of what is installed now are kept."""
-    stats = [os.stat(path) for path in _INSTALLED if os.path.exists(path)]
-    installed = repr([(one.st_mtime_ns, one.st_size) for one in stats])
-    name = f"ros_{hashlib.sha256(installed.encode()).hexdigest()[:16]}.pch"
+    name = f"ros_{installed()}.pch"
     cache = os.environ.get("XDG_CACHE_HOME") or os.path.expanduser("~/.cache")
     return pathlib.Path(cache, "mrp_check", name)
 

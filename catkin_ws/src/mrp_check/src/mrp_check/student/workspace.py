@@ -31,6 +31,7 @@ _AT_ONCE = 3  # commands that run in the background at the same time
 _BUILT = ("cpp", "header", "launch")  # kinds of files that CMake does not read
 _NOT_MADE = {"python", "launch"}  # kinds that make does not read, but for a command of one's own
 _OWN_COMMAND = b"add_custom_"
+_KNOWN = ".known"  # the ending of what run_once() keeps
 _OF_RUNS = variables.FOLDERS.values()  # folders that the commands of one check write to
 
 
@@ -65,6 +66,8 @@ class Workspace:
         self.configured = kept and kept["configured"]
         if not self.configured and self.folder.exists():
             confine.remove(self.folder)
+            for known in self.given.glob(f"*{_KNOWN}"):
+                known.unlink()
         self.folder.mkdir(mode=0o700, exist_ok=True)
         copied = [path for path in package.files if self._copy(path)]
         changed = {package.kind(path) for path in copied if self.configured}
@@ -97,10 +100,12 @@ class Workspace:
             return None
         kept = json.loads(self._kept.read_text())
         self._kept.unlink()
+        if kept["of"] != self._read_by_cmake or _has_link(self.package_folder):
+            return None
         for folder in (*self.folder.glob("nodes_*"), *map(self.folder.joinpath, _OF_RUNS)):
             if folder.exists():
                 confine.remove(folder)
-        return kept if kept["of"] == self._read_by_cmake else None
+        return kept
 
     def keep(self, configured: Done, made: Done) -> None:
         """Let the next check go on with what is built now."""
@@ -154,7 +159,7 @@ class Workspace:
         read = [(path, written.read(self.package_folder / path)) for path in of]
         made = sorted(os.walk(self.folder / "devel" / "include"))
         known = repr((command, env, self._read_by_cmake, read, made)).encode()
-        path = self.given / hashlib.sha256(known).hexdigest()
+        path = self.given / (hashlib.sha256(known).hexdigest() + _KNOWN)
         if path.exists():
             return confine.Result(**json.loads(path.read_text()))
         result = self.run(*command, seconds=seconds, env=env)
@@ -167,6 +172,12 @@ class Workspace:
         """The ROS_PACKAGE_PATH of the copy and of this machine's own packages."""
         folders = [self.folder / "src", *map(pathlib.Path, SHARES)]
         return ":".join(str(folder) for folder in folders if folder.is_dir())
+
+
+def _has_link(folder: pathlib.Path) -> bool:
+    """Return whether a package has put a link into its copy: what is copied next would follow it to
+    a file of the user's."""
+    return any(path.is_symlink() for path in (folder, folder.parent, *folder.rglob("*")))
 
 
 def _read_by_cmake(package: Package) -> str:

@@ -1,0 +1,101 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The folder that stays from one check to the next: what it saves, and what it must not carry."""
+
+import os
+import tempfile
+
+import check_sets
+import pytest
+from mrp_check import check, confine
+from mrp_check.contract import spec
+from mrp_check.scratch import kept_folder
+from mrp_check.student.package import Package
+from mrp_testing.proves import proves
+
+pytestmark = [pytest.mark.slow, pytest.mark.usefixtures("open_folders")]
+
+
+@pytest.fixture(autouse=True)
+def temporary(tmp_path, monkeypatch):
+    """A folder of its own for what is temporary; returns it."""
+    folder = tmp_path / "temporary"
+    folder.mkdir(mode=0o711)
+    monkeypatch.setattr(tempfile, "tempdir", str(folder))
+    return folder
+
+
+@pytest.fixture
+def checked(tmp_path, monkeypatch):
+    """A function that checks whether the tutorial's package can be configured; it returns the ids
+    of the findings, and whether CMake ran."""
+    place, ran = tmp_path / "package", []
+    check_sets.lay_out("mrp", place)
+    run = confine.run
+
+    def spied(command, *arguments, **options):
+        ran.append(os.path.basename(command[0]))
+        return run(command, *arguments, **options)
+
+    monkeypatch.setattr(confine, "run", spied)
+
+    def once():
+        ran.clear()
+        with kept_folder("this version") as kept:
+            report = check.check(
+                Package(place), spec.read(spec.find("pub_sub")), ("compile",), kept=kept
+            )
+        return [one.id for one in report.findings], "catkin_make" in ran
+
+    return once
+
+
+@proves(
+    "A second check of a package builds only what has changed since the first, with the same"
+    " checker and the same Debian packages."
+)
+def test_second_check_builds_only_what_has_changed(checked, tmp_path):
+    assert checked() == ([], True)
+    assert checked() == ([], False)
+    source = tmp_path / "package" / "src" / "publisher_cpp_node.cpp"
+    source.write_text(source.read_text() + "not C++\n")
+    assert checked() == (["compile"], False)
+    with (tmp_path / "package" / "CMakeLists.txt").open("a") as file:
+        file.write("# another line\n")
+    assert checked() == (["compile"], True)
+
+
+def test_link_in_the_folder_is_not_followed(checked, temporary, tmp_path):
+    """A package can change its copy: the next check must not write through it to the user's."""
+    assert checked() == ([], True)
+    (folder,) = temporary.glob("mrp_check.*/workspace/src/package")
+    victim = tmp_path / "victim"
+    (folder / "src").rename(victim)
+    (folder / "src").symlink_to(victim)
+    source = tmp_path / "package" / "src" / "publisher_cpp_node.cpp"
+    source.write_text(source.read_text() + "// changed\n")
+    assert checked() == ([], True)
+    assert "// changed" not in (victim / "publisher_cpp_node.cpp").read_text()
+
+
+def test_two_at_the_same_time_share_nothing():
+    with kept_folder("1") as one, kept_folder("1") as other:
+        assert one != other
+    assert one.exists() and not other.exists()
+
+
+def test_another_version_trusts_nothing_of_it():
+    for version, is_there in (("1", False), ("1", True), ("2", False)):
+        with kept_folder(version) as folder:
+            file = folder / "given" / "file"
+            assert file.exists() is is_there
+            file.parent.mkdir(exist_ok=True)
+            file.touch()
+
+
+def test_folder_that_others_can_change_is_left_alone(temporary):
+    planted = temporary / f"mrp_check.{os.getuid()}"
+    planted.mkdir()
+    planted.chmod(0o777)
+    with kept_folder("1") as folder:
+        assert folder != planted
+    assert not [*planted.iterdir()]
