@@ -68,7 +68,9 @@ def cluster(folder, workers=2, options=(), **worker_env):
         scheduler.wait_for(file.is_file, "the scheduler listens")
         wait_until(lambda: file.read_text().endswith("}"), "it has said where")
         address = json.loads(file.read_text())["address"]
-        started = [stack.enter_context(worker(address, folder, **worker_env)) for _ in range(workers)]
+        started = [
+            stack.enter_context(worker(address, folder, **worker_env)) for _ in range(workers)
+        ]
         for one in started:
             one.wait_for(lambda: any("Registered to" in x for x in one.lines), "it is there")
         yield scheduler, address, started

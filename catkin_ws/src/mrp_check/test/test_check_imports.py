@@ -15,7 +15,7 @@ LAYERS = (
     ("confined", "contract"),
     ("sandbox",),
     ("confine",),
-    ("student",),
+    ("student", "scratch"),
     ("sources",),
     ("building",),
     ("running",),
