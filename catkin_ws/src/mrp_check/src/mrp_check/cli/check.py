@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import argparse
+import contextlib
 import pathlib
 import signal
 import sys
@@ -238,9 +239,12 @@ def run_package(options):
     contract = None
     try:
         contract = None if options.any else spec.read(spec.find(options.spec), REQUIREMENTS)
-        with scratch_folder() as scratch, kept_folder(marking.checker()) as kept:
+        with scratch_folder() as scratch, contextlib.ExitStack() as stack:
             package = Package(unpacked(options, scratch))
             say_how_apart()
+            kept = None
+            if scratch not in package.root.parents:  # what was unpacked is not there again
+                kept = stack.enter_context(kept_folder(marking.checker()))
             report = check.check(
                 package, contract, options.only, options.timeout, progress.show, kept
             )
