@@ -97,7 +97,7 @@ def test_a_signal_ends_all(tmp_path, monkeypatch, seconds, what, number):
     assert checker.returncode == 1
     assert "stopped before its end" in errors
     assert "Traceback" not in errors
-    assert list(scratch.iterdir()) == []
+    assert [path for folder in scratch.iterdir() for path in folder.iterdir()] == []
     assert not processes_with(seconds)
 
 

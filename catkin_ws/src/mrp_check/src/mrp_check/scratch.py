@@ -49,7 +49,11 @@ def kept_folder(version: str) -> Iterator[pathlib.Path]:
             if not known.exists() or known.read_text() != of:
                 _empty(folder)
                 known.write_text(of)
-            yield folder
+            try:
+                yield folder
+            except BaseException:  # such as Ctrl-C: of what was stopped, nothing stays
+                _empty(folder)
+                raise
         else:
             yield stack.enter_context(scratch_folder())
 
