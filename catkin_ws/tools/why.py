@@ -92,6 +92,7 @@ _ROS2 = re.compile(
     r"|/opt/ros/(?:foxy|galactic|humble|iron|jazzy)\b"
     r"|(?<![\w/])[a-z]\w*/(?:msg|srv|action)/[A-Z]\w*\b(?!\.)"
 )
+_OF_ROS2 = "rosii"  # the word that stands for it
 _WORD = re.compile(r"[^\W\d_]+|\d+")
 # A name in quotes or brackets is somebody's own: that of a package, a topic, a parameter.
 _NAME = re.compile(r"""'[^'\s]+'|"[^"\s]+"|\[[^][\s]+\]""")
@@ -220,7 +221,7 @@ class Index:
                 words = _words(line)
                 self._known.update(words)
                 sure = set(_words(_NAME.sub(" ", mask(line))) or words)
-                self._sure.append(sure | set(words) & {"rosii"})
+                self._sure.append(sure | set(words) & {_OF_ROS2})
                 self._table.execute("INSERT INTO texts VALUES (?, ?)", (" ".join(words), number))
 
     def nearest(self, text, count=ANSWERS):
@@ -259,7 +260,7 @@ class Index:
 
 def _is_near(words, others, score):
     shared = words & others
-    if "rosii" in words and ("rosii" not in others or len(shared) / len(others) < _OF_TEXT):
+    if _OF_ROS2 in words and (_OF_ROS2 not in others or len(shared) / len(others) < _OF_TEXT):
         return False
     enough = others <= words or (score >= _SCORE and len(shared - _COMMON) > 1)
     enough = enough and (len(shared) > 1 or len(others) == 1)
@@ -269,7 +270,7 @@ def _is_near(words, others, score):
 
 
 def _words(text):
-    text = _ROS2.sub(" rosii ", text)
+    text = _ROS2.sub(f" {_OF_ROS2} ", text)
     text = _FOLDERS.sub(lambda match: " optros " if match[1] else " ", text)
     return [word.lower() for word in _WORD.findall(mask(text))]
 

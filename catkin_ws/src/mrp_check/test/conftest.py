@@ -2,6 +2,7 @@
 """What several tests of the checker use."""
 
 import json
+import os
 import textwrap
 import uuid
 
@@ -18,6 +19,20 @@ def open_folders(tmp_path, tmp_path_factory):
         if folder.name.startswith("pytest-") or tmp_path_factory.getbasetemp() in folder.parents:
             folder.chmod(0o711)
     tmp_path_factory.getbasetemp().chmod(0o711)
+
+
+@pytest.fixture
+def programs(monkeypatch):
+    """The names of the programs that run confined: a list that grows, and may be cleared."""
+    names, run = [], confine.run
+
+    def spied(command, *arguments, **options):
+        program = command[1] if command[0] == "/usr/bin/python3" else command[0]
+        names.append(os.path.basename(program))
+        return run(command, *arguments, **options)
+
+    monkeypatch.setattr(confine, "run", spied)
+    return names
 
 
 @pytest.fixture

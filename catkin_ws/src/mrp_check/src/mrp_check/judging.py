@@ -21,18 +21,17 @@ _RULES = set(
     ).split()
 )
 _SEEN = {"build", "run", "stop"}
-# What a node says that stands before an empty keyboard, screen or command line -> what it waits for
+# What a node says that stands before an empty keyboard, screen or command line, what it waits for,
+# and what must stand in the line that raised, where anything else raises the same error, too.
 _WAITS = (
-    (r"(?i)^\s*\W*usage\b|\[ ?\w+\] \[[\d., ]+\]: usage\b", "arguments on its command line"),
-    (r"EOFError: EOF when reading a line", "the keyboard"),
-    (r"termios\.error|Inappropriate ioctl for device", "the keyboard"),
-    (r"(?i)cannot open display|could not connect to display|no display name", "a screen"),
-    (r"(?i)can.t open camera|VIDEOIO|/dev/(video|tty)\w*", "a device"),
-    (r"KeyError: ", "a parameter"),
-    (r"IndexError: list index", "arguments"),
+    (r"(?i)^\s*\W*usage\b|\[ ?\w+\] \[[\d., ]+\]: usage\b", "arguments on its command line", ""),
+    (r"EOFError: EOF when reading a line", "the keyboard", ""),
+    (r"termios\.error|Inappropriate ioctl for device", "the keyboard", ""),
+    (r"(?i)cannot open display|could not connect to display|no display name", "a screen", ""),
+    (r"(?i)can.t open camera|VIDEOIO|/dev/(video|tty)\w*", "a device", ""),
+    (r"KeyError: ", "a parameter", "param"),
+    (r"IndexError: list index", "arguments", "sys.argv["),
 )
-# What stands in the line that raised, as anything else raises these errors, too.
-_READS = {"a parameter": "param", "arguments": "sys.argv["}
 # How a program counts its arguments: beside the line at which it ends, it misses some.
 _COUNTS = re.compile(r"\bargc\s*[!<>=]|[<>=]\s*argc\b|\blen\(sys\.argv\)")
 _ENDS = re.compile(r"\bexit\s*\(|\bquit\s*\(|\breturn\s+(-?[1-9]|EXIT_FAILURE)")
@@ -142,13 +141,12 @@ def _of_run(case: Case, finding: Finding) -> None:
 
 def _of_start(node: Node, finding: Finding) -> None:
     lines = [text for _, _, text in node.direct.lines] if node.direct else []
-    for shape, what in _WAITS:
+    for shape, what, reads in _WAITS:
         said = next((text for text in lines if re.search(shape, text)), None)
         if said:
-            is_parameter = what == "a parameter"
-            if _READS.get(what, "") not in _source(node, finding):
+            if reads not in _source(node, finding):
                 continue
-            finding.severity = WARNING if is_parameter else NOTE
+            finding.severity = WARNING if what == "a parameter" else NOTE
             finding.message = f"{node.name} waits for {what}: {said.strip()[:200]}"
             return
     if not any("Error:" in line for line in lines) and _misses_arguments(node, finding):
