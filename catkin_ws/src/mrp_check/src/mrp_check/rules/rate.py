@@ -40,7 +40,7 @@ def _rate(node: Node, role: Publishes, period: float) -> _Rate:
         return _Rate(middle)
     # What has to wait for a processor is slow without any fault of its own.
     own = min(middle, mean) * (1 - node.waited) - 2 * lag
-    too_slow = own > high and _is_slow_by_itself(node, role, high)
+    too_slow = own > high and _is_slow_by_itself(node, high)
     return _Rate(middle, too_slow=too_slow, is_open=not too_slow)
 
 
@@ -96,10 +96,9 @@ def _too_few(
     )
 
 
-def _is_slow_by_itself(node: Node, role: Publishes, high: float) -> bool:
+def _is_slow_by_itself(node: Node, high: float) -> bool:
     """Return whether the node was as slow when it ran by itself: two runs agree."""
-    messages = node.seen_alone.messages
-    times = [m.time for m in messages if m.topic.endswith("/" + role.topic.name)]
+    times = [message.time for message in node.published(alone=True)]
     gaps = [b - a for a, b in zip(times, times[1:])]
     return not gaps or statistics.median(gaps) > high
 

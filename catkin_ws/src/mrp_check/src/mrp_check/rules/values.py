@@ -7,7 +7,7 @@ from typing import Iterator, Sequence
 
 from mrp_check import evidence
 from mrp_check.confined.places import Kind
-from mrp_check.confined.seen import Number
+from mrp_check.confined.seen import Message, Number
 from mrp_check.contract.finding import Finding, Where
 from mrp_check.contract.requirements import CONTRACT, Requirement, Rule
 from mrp_check.contract.spec import Publishes, Topic, Values
@@ -26,10 +26,9 @@ def _of(node: Node) -> Iterator[Finding]:
     if topic in node.topics(Kind.PUBLISHER) and not messages and node.wanted.of_itself:
         silent = _silent_seconds(node)
         waits = _long_period(node, role)
-        talks = node.own_name and resolved(role.topic, node.own_name)
         if node.is_unheard(topic) or silent * (1 - node.waited) < 6 * (role.period or 0.5):
             return  # the machine was too busy to tell
-        if any(message.topic == talks for message in node.seen_alone.messages):
+        if node.published(alone=True):
             return  # by itself it published: two runs do not agree
         yield node.finding(
             "values",
@@ -39,15 +38,20 @@ def _of(node: Node) -> Iterator[Finding]:
             expected=_rule_text(role) + (f", every {role.period:g} s" if role.period else ""),
             seen="no message",
         )
-    values = [node.value(m, role.topic) for m in messages]
-    numbers = [value for value in values if value is not None]
     for text in node.wrong_texts()[:1]:
         yield _other_text(node, text, role.topic)
-    if numbers and len(numbers) == len(values):
-        if role.values:
-            yield from _value_findings(node, numbers, role.values, _rule_text(role))
-        if role.rises:
-            yield from _not_rising(node, numbers, _rule_text(role))
+    # A mistake shows in both runs, or only in the longer one.
+    found = (_wrong_numbers(node, role, messages) for messages in node.runs())
+    yield from next(filter(None, found), [])
+
+
+def _wrong_numbers(node: Node, role: Publishes, messages: Sequence[Message]) -> list[Finding]:
+    values = [node.value(message, role.topic) for message in messages]
+    numbers = [value for value in values if value is not None]
+    if not numbers or len(numbers) < len(values):
+        return []
+    wrong = [*_value_findings(node, numbers, role.values, _rule_text(role))] if role.values else []
+    return wrong + ([*_not_rising(node, numbers, _rule_text(role))] if role.rises else [])
 
 
 def _other_text(node: Node, said: str, topic: Topic) -> Finding:

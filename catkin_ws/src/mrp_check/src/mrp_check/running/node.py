@@ -6,6 +6,7 @@ from __future__ import annotations
 import copy
 import dataclasses
 import functools
+import itertools
 from typing import Callable, Iterable, Iterator, Mapping, Protocol
 
 from mrp_check.confined.places import Kind
@@ -65,10 +66,17 @@ class Node(Traces):
         sent = self.direct.sent if self.direct else []
         return [value for value in sent if value is not None]
 
-    def published(self) -> list[Message]:
-        """Return its messages, under the launch file, on the topic that the spec says."""
-        name = self._topic and resolved(self._topic, self.path)
-        return [message for message in self.seen.messages if message.topic == name]
+    def published(self, alone: bool = False) -> list[Message]:
+        """Return its messages, under the launch file or alone, on the topic that the spec says."""
+        path, seen = (self.own_name, self.seen_alone) if alone else (self.path, self.seen)
+        name = path and self._topic and resolved(self._topic, path)
+        return [message for message in seen.messages if message.topic == name]
+
+    def runs(self) -> list[list[Message]]:
+        """Return its messages there of each run; by itself it is seen for longer."""
+        # What a node publishes may follow from what it was sent, which differs.
+        alone = [] if self.wanted.subscribing else self.published(alone=True)
+        return [self.published(), alone]
 
     @property
     def _topic(self) -> Topic | None:
@@ -88,7 +96,8 @@ class Node(Traces):
         topic = self._topic
         if topic is None or not topic.text:
             return []
-        said = [(message.fields or {}).get(topic.field) for message in self.published()]
+        messages = itertools.chain(*self.runs())
+        said = [(message.fields or {}).get(topic.field) for message in messages]
         return [one for one in said if isinstance(one, str) and topic.value_in(one) is None]
 
     def has_wrapped(self) -> bool:

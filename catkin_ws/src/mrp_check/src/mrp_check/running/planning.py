@@ -19,8 +19,9 @@ from mrp_check.confined.launch_dump import Started
 from mrp_check.contract import spec as specs
 from mrp_check.student.workspace import Workspace
 
-ENOUGH = 8  # messages of each publisher
-ENOUGH_ALONE = 3  # messages of a publisher that runs by itself
+ENOUGH = 8  # messages of a publisher that runs by itself
+# Under a launch file its nodes begin later: both runs are to end at about the same time.
+ENOUGH_LAUNCHED = 5
 BURST = tuple(range(21, 29))  # what each subscriber is sent at once: fewer than its queue holds
 PACED = (2, 3, 33, 34)  # and then one by one, small ones too
 WRAP = "wrap:"  # before the name of a Python publisher that runs near the end of its numbers
@@ -87,7 +88,7 @@ class Planner:
             common=self._common(self.spec.shutdown.seconds + _ROSLAUNCH_SECONDS),
             command=["roslaunch", str(file or self.write_launch_file(self.executables))],
             nodes=nodes,
-            enough=ENOUGH,
+            enough=ENOUGH_LAUNCHED,
         )
 
     def of_file(
@@ -180,7 +181,7 @@ class Planner:
             namespace=namespace,
             env=dict(started.env) if started else {},
             params=params,
-            publishes=relayed or (ENOUGH_ALONE if node.of_itself else 0),
+            publishes=relayed or (ENOUGH if node.of_itself else 0),
             values=list(BURST) if is_sent else [],
             paced=list(PACED) if is_sent else [],
             field=topic.field if topic else None,
