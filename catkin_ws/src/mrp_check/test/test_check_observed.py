@@ -1,13 +1,15 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What follows from what the observer has seen of a package's nodes, and from what it has not."""
 
+import pathlib
 import subprocess
 import sys
+import tempfile
 
 import check_rules
 import pytest
 from lab_package import OF_RUN, findings_of, make_package, spec_of
-from mrp_check import check
+from mrp_check import check, sandbox
 from mrp_check.confined.seen import (
     Alone,
     DirectResult,
@@ -21,6 +23,7 @@ from mrp_check.rules import REQUIREMENTS
 from mrp_check.running import behaviour, observing, planning
 from mrp_check.sources.facts import Facts
 from mrp_check.student.package import Package
+from mrp_testing.waiting import wait_until
 
 pytestmark = pytest.mark.slow
 
@@ -59,6 +62,22 @@ def test_a_fault_of_the_observer_is_no_finding(tmp_path, monkeypatch):
     said = r"The observer itself failed: .*\.enough: expected int; found 'none'"
     with pytest.raises(CannotCheck, match=said):
         findings_of(folder, spec_of(["right"], []), tmp_path / "scratch")
+
+
+@pytest.mark.usefixtures("open_folders")
+def test_observer_leaves_nothing_in_tmp(tmp_path, monkeypatch):
+    """With namespaces /tmp is each run's own. genpy makes a module there of each type it hears."""
+    monkeypatch.setattr(sandbox, "isolation", lambda: sandbox.Isolation.USER)
+
+    def modules():
+        return {*pathlib.Path(tempfile.gettempdir()).glob("genpy_*")}
+
+    before = modules()
+    folder = make_package(tmp_path / "lab_pkg", {"right": ("", "")}, {})
+    assert findings_of(folder, spec_of(["right"], []), tmp_path / "scratch") == []
+    # Other programs make some, too, and take them away.
+    new = modules() - before
+    wait_until(lambda: not any(path.exists() for path in new), f"{new} to go")
 
 
 def test_what_a_dead_node_would_do_was_never_seen(tmp_path):

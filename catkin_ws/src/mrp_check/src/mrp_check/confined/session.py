@@ -33,6 +33,7 @@ def main() -> None:
     del os.environ["TMPDIR"]
     with answer, tempfile.TemporaryDirectory() as folder:
         os.environ.update(dict.fromkeys(variables.FOLDERS, folder))
+        tempfile.tempdir = folder  # else it stays what it has just been, such as for genpy
         with Observer() as observer:
             result: object
             if kind == LaunchPlan.__name__:
