@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Two packages without a contract: one as beginners write it, and one with several defects."""
+"""Packages without a contract: one as beginners write it, one with several defects, and one of
+which another machine may say more."""
 
 import check_rules
 
@@ -265,6 +266,98 @@ def tested(folder):
         "scripts__ends_DOT_py": _LISTENER.replace("env python", "env python3").replace(
             "    rospy.spin()\n", ""
         ),
+    }
+    check_rules.make(folder, **files)
+    return folder
+
+
+_CMAKE_OF_DOUBTFUL = """\
+cmake_minimum_required(VERSION 2.8.12)
+project(some_pkg)
+find_package(catkin REQUIRED COMPONENTS roscpp)
+catkin_package(LIBRARIES some_pkg DEPENDS system_lib)
+include_directories(include ${catkin_INCLUDE_DIRS})
+add_executable(far src/far.cpp)
+target_link_libraries(far ${catkin_LIBRARIES})
+add_executable(busy src/busy.cpp)
+target_link_libraries(busy ${catkin_LIBRARIES})
+add_dependencies(busy some_pkg_generate_messages_cpp)
+add_executable(client src/client.cpp)
+target_link_libraries(client ${catkin_LIBRARIES})
+"""
+_FAR = """\
+#include <nowhere_msgs/Thing.h>
+#include <ros/ros.h>
+
+int main(int argc, char** argv)
+{
+  ros::init(argc, argv, "far");
+  ros::NodeHandle n;
+  ros::Publisher publisher = n.advertise<nowhere_msgs::Thing>("things", 10);
+  ros::spin();
+}
+"""
+_BUSY = """\
+#include <fstream>
+
+#include <ros/ros.h>
+
+int main(int argc, char** argv)
+{
+  ros::init(argc, argv, "busy");
+  ros::NodeHandle n;
+  double gain;
+  n.getParam("gain", gain);
+  std::ifstream table("/home/nobody/table.txt");
+  while (ros::ok())
+  {
+    ros::spinOnce();
+  }
+}
+"""
+_CPP_CLIENT = """\
+#include <ros/ros.h>
+#include <roscpp/Empty.h>
+
+int main(int argc, char** argv)
+{
+  ros::init(argc, argv, "client");
+  ros::NodeHandle n;
+  ros::ServiceClient client = n.serviceClient<roscpp::Empty>("empty");
+  roscpp::Empty asked;
+  if (!client.call(asked))
+  {
+    ROS_ERROR("Failed to call the service");
+    return 1;
+  }
+}
+"""
+_WAVES = """\
+#!/usr/bin/env python3
+import nowhere_lib
+import rospy
+
+if __name__ == "__main__":
+    rospy.init_node("waves")
+    waves = nowhere_lib.read("/home/nobody/waves.txt")
+    client = nowhere_lib.SimpleActionClient("wave", waves.Action)
+    rospy.spin()
+"""
+
+
+def doubtful(folder):
+    """Make a package in which nothing is seen to fail: it lacks what other machines may have."""
+    files = {
+        "package_DOT_xml": check_rules.MANIFEST.replace(
+            "</package>", "  <exec_depend>rosspy</exec_depend>\n</package>"
+        ),
+        "CMakeLists_DOT_txt": _CMAKE_OF_DOUBTFUL,
+        "launch__busy_DOT_launch": '<launch>\n  <param name="map" value="/home/nobody/map.pgm"/>\n'
+        '  <node pkg="some_pkg" type="busy" name="busy"/>\n</launch>\n',
+        "src__far_DOT_cpp": _FAR,
+        "src__busy_DOT_cpp": _BUSY,
+        "src__client_DOT_cpp": _CPP_CLIENT,
+        "scripts__waves_DOT_py": _WAVES,
     }
     check_rules.make(folder, **files)
     return folder

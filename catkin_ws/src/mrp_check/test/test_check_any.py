@@ -46,6 +46,24 @@ FOUND = [
     (NOTE, "starts", "scripts/asker.py: ", "waits for arguments"),
     (NOTE, "starts", "scripts/indexed.py: sys.argv", "waits for arguments"),
 ]
+# The same of what works here, or cannot be checked here.
+DOUBTED = [
+    (WARNING, "dependencies", "package.xml: depend", "does not name nowhere_msgs"),
+    (WARNING, "dependencies", "CMakeLists.txt: find_package", "does not name nowhere_msgs"),
+    (WARNING, "dependencies", "package.xml: rosspy", "Perhaps rospy"),
+    (WARNING, "targets", "CMakeLists.txt: add_dependencies", "no such target"),
+    (WARNING, "targets", "CMakeLists.txt: LIBRARIES", "the library some_pkg"),
+    (WARNING, "targets", "CMakeLists.txt: DEPENDS", "system_lib"),
+    (NOTE, "targets", "CMakeLists.txt: include_directories", "the folder include"),
+    (WARNING, "starts", "src/busy.cpp: getParam", "gain has no value"),
+    (WARNING, "starts", "src/busy.cpp: /home/", "/home/nobody/table.txt"),
+    (WARNING, "starts", "scripts/waves.py: /home/", "/home/nobody/waves.txt"),
+    (WARNING, "starts", "launch/busy.launch: /home/", "/home/nobody/map.pgm"),
+    (WARNING, "spin", "src/busy.cpp: while", "never pauses"),
+    (WARNING, "starts", "src/client.cpp: client.call", "wait"),
+    (NOTE, "starts", "scripts/waves.py: SimpleActionClient", "the action wave"),
+    (NOTE, "python-names", "scripts/waves.py: nowhere_lib", "not on this machine"),
+]
 
 
 @proves(
@@ -117,12 +135,22 @@ def test_each_defect_is_found_at_its_place(tmp_path):
     folder = any_packages.faulty(tmp_path / "some_pkg")
     report = checked(folder)
     missed = [one for one in FOUND if not any(is_told(f, folder, *one) for f in report.findings)]
-    assert not missed, shown(report.findings)
+    assert not missed, f"{missed}\n{shown(report.findings)}"
     errors = [f for f in report.findings if f.severity == ERROR and not f.consequence_of]
     others = [f for f in errors if not any(is_told(f, folder, *one) for one in FOUND)]
     assert not others, shown(others)
     assert not [f for f in report.findings if f.file == "scripts/talker.py"]
     assert "asking.py" not in {f.node for f in report.findings}, shown(report.findings)
+
+
+def test_what_another_machine_may_have_is_no_error(tmp_path):
+    folder = any_packages.doubtful(tmp_path / "some_pkg")
+    report = checked(folder)
+    missed = [one for one in DOUBTED if not any(is_told(f, folder, *one) for f in report.findings)]
+    assert not missed, f"{missed}\n{shown(report.findings)}"
+    assert not [f for f in report.findings if f.severity == ERROR], shown(report.findings)
+    assert report.verdict == check.UNCHECKED
+    assert "nowhere_msgs is not on this machine" in report.reason
 
 
 @proves("If the package does not build or run, no contract is written.")

@@ -12,6 +12,8 @@ from mrp_check.contract.finding import ERROR, NOTE, WARNING, Finding
 from mrp_check.rules.responses import NO_RESPONSE
 from mrp_check.running.node import Node
 from mrp_check.running.words import last_words
+from mrp_check.sources import asked
+from mrp_check.sources.asked import Said
 
 # What neither catkin, nor the compiler, Linux or roslaunch takes: nobody has to see it fail.
 _RULES = set(
@@ -153,9 +155,24 @@ def _of_start(node: Node, finding: Finding) -> None:
         finding.severity = NOTE
         finding.message = f"{node.name} waits for arguments on its command line."
         return
+    early = _early_call(node, lines)
+    if early:
+        finding.severity, finding.file, finding.line = WARNING, early.file, early.line
+        finding.message += f" It does not wait for the service {early.name}, which it calls."
+        return
     if node.direct and node.direct.code == 0 and not _is_left_alone(node):
         finding.severity = NOTE
         finding.message = f"{node.name} does its work, and ends: {last_words(lines) or 'in peace'}"
+
+
+def _early_call(node: Node, lines: list[str]) -> Said | None:
+    """Return the call of a service, if the node ends as nobody offers it yet."""
+    raised = any("Traceback" in line for line in lines)
+    if not node.direct or (node.direct.code or 0) <= 0:
+        return None
+    if raised and not any("ServiceException" in line for line in lines):
+        return None
+    return asked.unwaited(node.package, node.places.sources(node.name))
 
 
 def _misses_arguments(node: Node, finding: Finding) -> bool:
@@ -188,5 +205,5 @@ def _is_unbuilt(case: Case, finding: Finding) -> bool:
         finding.id == "starts"
         and finding.consequence_of is None
         and "has no executable" in finding.message
-        and case.built is None
+        and not (case.built and case.built.ok)
     )

@@ -10,6 +10,7 @@ import re
 from mrp_check.building import cpp_words
 from mrp_check.building.cpp_words import Problem
 from mrp_check.contract.finding import Finding, Line
+from mrp_check.sources import uses
 from mrp_check.student.cmake import relative
 from mrp_check.student.package import Package
 
@@ -61,6 +62,17 @@ def problems(output: str, copy: pathlib.Path) -> list[Problem]:
     for problem in found:
         first.setdefault(problem.file, problem)
     return list(first.values())
+
+
+def absent(package: Package, problems: list[Problem]) -> dict[str, str]:
+    """Return file -> the package that has the header it stops at, and is not on this machine."""
+    found = {}
+    for problem in problems:
+        header = re.match(r"(\S+): No such file or directory", problem.text)
+        name = header and uses.absent_header(package, header[1])
+        if name:
+            found[problem.file] = name
+    return found
 
 
 def without_return(package: Package, output: str, copy: pathlib.Path) -> list[Finding]:

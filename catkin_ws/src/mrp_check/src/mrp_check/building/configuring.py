@@ -110,6 +110,7 @@ _COMMANDS = (
 
 
 _PACKAGES = ["roscpp", "rospy", "std_msgs", "catkin", "message_generation", "roslib"]
+_MESSAGE_TARGETS = ["generate_messages", "generate_messages_cpp", "gencpp"]
 _ALIKE = 0.8  # of a misspelt name; nav_msgs and std_msgs, two packages, are 0.63
 
 
@@ -189,6 +190,15 @@ def _no_target(package: Package, model: Model, match: re.Match[str], text: str) 
     )
 
 
+def _no_dependency(package: Package, model: Model, match: re.Match[str], text: str) -> _Said:
+    name = match.group(1)
+    near = nearest(name, [*model.targets, *(f"{package.name}_{one}" for one in _MESSAGE_TARGETS)])
+    return (
+        f"there is no target {name} to wait for.{perhaps(near)}",
+        f"Write {near} for {name}." if near else f"Take {name} out.",
+    )
+
+
 def _no_script(package: Package, model: Model, match: re.Match[str], text: str) -> _Said:
     shown = "/".join(match.group(1).rsplit("/", 2)[1:])
     near = nearest(shown, package.of_kind("python"))
@@ -229,6 +239,12 @@ _WORDS: Sequence[tuple[str | None, str, Callable[..., _Said] | _Said, str]] = (
         None,
         r'add_dependencies Cannot add target-level dependencies to non-existent target "(\S+?)"',
         _no_target,
+        "cmake-no-target",
+    ),
+    (
+        "add_dependencies",
+        r'The dependency target "(\S+)" of target "\S+" does not exist',
+        _no_dependency,
         "cmake-no-target",
     ),
     (

@@ -9,6 +9,7 @@ from typing import Iterator
 from mrp_check import evidence
 from mrp_check.building import compiler, configuring, linker
 from mrp_check.case import Case
+from mrp_check.contract.errors import CannotCheck
 from mrp_check.contract.finding import Finding
 from mrp_check.contract.requirements import Requirement, Rule
 from mrp_check.sources import uses
@@ -23,9 +24,14 @@ def findings(case: Case) -> Iterator[Finding]:
     if case.built.ok:
         return
     problems = compiler.problems(output, case.package_folder)
-    found = [compiler.finding(package, problem) for problem in problems]
+    absent = {} if case.spec.is_contract else compiler.absent(package, problems)
+    found = [compiler.finding(package, p) for p in problems if p.file not in absent]
     found += linker.findings(package, output, case.model)
-    yield from found or [configuring.unknown(package, case.built, "compile")]
+    if not found and not absent:
+        found = [configuring.unknown(package, case.built, "compile")]
+    yield from found
+    if absent:
+        raise CannotCheck(" ".join(uses.absent(name, "cpp") for name in sorted({*absent.values()})))
 
 
 def _of_other_machines(case: Case) -> Iterator[Finding]:

@@ -41,6 +41,7 @@ def _findings(case: Case) -> Iterator[Finding]:
         if not in_cmake and model.catkin:
             yield _not_in_cmake(name, use, model, model.catkin)
     if manifest is not None:
+        yield from _no_packages(package, manifest, used)
         yield from _passed_on(used, manifest, model)
 
 
@@ -90,6 +91,26 @@ def _misspelt(name: str, names: Iterable[str], used: Collection[str]) -> str | N
     """Return the name in `names` that is no package and looks like this one, or None."""
     others = [one for one in names if one not in used and not uses.is_ros_package(one)]
     return nearest(name, others, 0.8)
+
+
+def _no_packages(package: Package, manifest: Manifest, used: Collection[str]) -> Iterator[Finding]:
+    """Yield a warning for each misspelt name that package.xml has beside the right one."""
+    names = _all(manifest, tests=True)
+    for name in sorted(names - {*used}):
+        near = nearest(name, (names | {*used}) - {name}, 0.9)
+        if near and "-" not in name and uses.exists(near) and not uses.exists(name):
+            line = package.find_line(FILE, f">{name}<", 1)
+            yield Finding(
+                "dependencies",
+                f"package.xml names {name}, and there is no such package. Perhaps {near} is meant.",
+                FILE,
+                line,
+                WARNING,
+                expected="the name of a package",
+                seen=package.lines(FILE)[line - 1].strip(),
+                fix=f"Write {near} for {name}.",
+                change=(f">{name}<", f">{near}<"),
+            )
 
 
 def _not_in_manifest(

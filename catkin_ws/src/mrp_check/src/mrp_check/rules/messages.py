@@ -176,11 +176,8 @@ def _order(package: Package, model: Model) -> Iterator[Finding]:
             for header, line in uses.includes(package, file)
             if header.split("/")[0] == package.name and header.split("/")[-1][:-2] in own
         ]
-        waits = any(
-            word.startswith(f"{package.name}_") and "gen" in word or "EXPORTED_TARGETS" in word
-            for word in target.dependencies
-        )
-        if used and not waits and model.complete and model.generate is not None:
+        waits = any(_is_made(package, model, word) for word in target.dependencies)
+        if used and not waits and _knows_what_waits(model) and model.generate is not None:
             file, line, header = used[0]
             yield Finding(
                 "messages",
@@ -193,6 +190,17 @@ def _order(package: Package, model: Model) -> Iterator[Finding]:
                 fix=f"Add add_dependencies({target.name} ${{${{PROJECT_NAME}}_EXPORTED_TARGETS}})"
                 " after its add_executable().",
             )
+
+
+def _is_made(package: Package, model: Model, word: str) -> bool:
+    """Return whether what a target waits for makes the package's messages."""
+    makes = word.startswith(f"{package.name}_") and "gen" in word or "EXPORTED_TARGETS" in word
+    return makes and not model.lacks_target(word)
+
+
+def _knows_what_waits(model: Model) -> bool:
+    calls = [call for call in model.calls if call.command == "add_dependencies"]
+    return model.complete or not any("$" in call.arguments[0] for call in calls)
 
 
 def _headers(package: Package, model: Model, target: Target) -> list[str]:

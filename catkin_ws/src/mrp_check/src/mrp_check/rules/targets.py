@@ -1,18 +1,31 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The sources of each target are there."""
+"""Targets are made of files that are there, and what the calls of CMakeLists.txt name exists."""
 
 from __future__ import annotations
 
+import os
+import re
 from typing import Iterator
 
 from mrp_check import evidence
 from mrp_check.case import Case
-from mrp_check.contract.finding import Finding
+from mrp_check.contract.finding import NOTE, WARNING, Finding
 from mrp_check.contract.requirements import Requirement, Rule
 from mrp_check.contract.words import nearest, perhaps
+from mrp_check.student.cmake import Call, Model
+
+_NO_FOLDERS = ("BEFORE", "AFTER", "SYSTEM")
 
 
 def _findings(case: Case) -> Iterator[Finding]:
+    yield from _no_sources(case)
+    yield from _no_dependencies(case.model)
+    yield from _no_libraries(case.model)
+    yield from _no_system_libraries(case)
+    yield from _no_folders(case.model)
+
+
+def _no_sources(case: Case) -> Iterator[Finding]:
     for target in case.model.targets.values():
         for source, file, line in target.missing:
             near = nearest(source, case.package.of_kind("cpp"))
@@ -26,6 +39,81 @@ def _findings(case: Case) -> Iterator[Finding]:
                 seen=source,
                 fix=f"Write {near} for {source}." if near else "Name a file that is there.",
             )
+
+
+def _missing(call: Call, name: str, message: str, expected: str, fix: str) -> Finding:
+    return Finding(
+        "targets", message, call.file, call.line, WARNING, expected=expected, seen=name, fix=fix
+    )
+
+
+def _no_dependencies(model: Model) -> Iterator[Finding]:
+    """Yield a warning for each target that is waited for, and that nothing makes. CMake says so
+    only where cmake_minimum_required() names version 3.0 or later: then it stops."""
+    for call in model.calls:
+        for name in call.arguments[1:] if call.command == "add_dependencies" else ():
+            if model.lacks_target(name):
+                near = nearest(name, model.made)
+                yield _missing(
+                    call,
+                    name,
+                    f"add_dependencies() lets {call.arguments[0]} wait for {name}, and there is no"
+                    f" such target.{perhaps(near)}",
+                    f"a target {name}",
+                    f"Write {near} for {name}." if near else f"Take {name} out.",
+                )
+
+
+def _no_libraries(model: Model) -> Iterator[Finding]:
+    call, targets = model.catkin_package, model.targets
+    if not call or any("$" in name for name in targets):
+        return
+    libraries = {target.name for target in targets.values() if target.is_library}
+    others = {*model.made} - {*targets}  # macros of other packages may make libraries, too
+    for name in model.libraries:
+        if re.fullmatch(r"\w+", name) and name not in libraries | others:
+            near = nearest(name, libraries)
+            yield _missing(
+                call,
+                name,
+                f"catkin_package() names the library {name} in LIBRARIES, and CMakeLists.txt makes"
+                " none of that name: a package that depends on this one cannot be built."
+                + perhaps(near),
+                f"add_library({name} ...)",
+                f"Write {near} for {name}." if near else f"Take LIBRARIES {name} out.",
+            )
+
+
+def _no_system_libraries(case: Case) -> Iterator[Finding]:
+    said = re.findall(r"DEPENDS on '(\w+)'\s+but\s+neither", case.catkin.configured.output)
+    call = case.model.catkin_package
+    for name in dict.fromkeys(said):
+        if call:
+            yield _missing(
+                call,
+                name,
+                f"catkin_package() names {name} in DEPENDS, and no find_package() has found it:"
+                " CMake warns, and passes on nothing of it.",
+                f"find_package({name}) above it, or no such name",
+                f"Take DEPENDS {name} out, or find it first.",
+            )
+
+
+def _no_folders(model: Model) -> Iterator[Finding]:
+    for call in model.calls:
+        for name in call.arguments if call.command == "include_directories" else ():
+            path = model.path(name, call) if "$" not in name else None
+            if path and name not in _NO_FOLDERS and not os.path.isdir(model.folder / path):
+                finding = _missing(
+                    call,
+                    name,
+                    f"include_directories() names the folder {path}, and there is no such folder:"
+                    " the compiler passes over it.",
+                    "a folder of the package",
+                    f"Take {name} out.",
+                )
+                finding.severity = NOTE
+                yield finding
 
 
 RULE = Rule(

@@ -6,11 +6,13 @@ from __future__ import annotations
 from typing import Iterator, NamedTuple
 
 from mrp_check.case import Case
+from mrp_check.confined.places import Kind
 from mrp_check.contract.finding import NOTE, WARNING, Finding
 from mrp_check.contract.requirements import ANY, Rule
 from mrp_check.contract.words import last_part, nearest
 from mrp_check.sources import asked
 from mrp_check.sources.asked import Said
+from mrp_check.student.package import Package
 
 _ALIKE = 0.8
 
@@ -28,6 +30,11 @@ _SERVICE = _Words(
     "no node of this package offers it.",
     "the package offers {near}, which nobody asks for.",
 )
+_ACTION = _Words(
+    "action",
+    "no node of this package serves it.",
+    "the package serves {near}, which nobody commands.",
+)
 _PARAMETER = _Words(
     "parameter",
     "no launch file and no node of this package sets it.",
@@ -37,12 +44,41 @@ _PARAMETER = _Words(
 
 def _findings(case: Case) -> Iterator[Finding]:
     said = {node: [*asked.of(case.package, files)] for node, files in case.facts.sources.items()}
+    for node, files in case.facts.sources.items():
+        yield from _unwaited(case, node, files)
     every = [one for found in said.values() for one in found]
     params = {last_part(name) for name in (case.launch.params if case.launch else {})}
     services = {one.base for one in every if one.what == "offers"}
     given = params | {one.base for one in every if one.what == "sets"}
     yield from _lacking(said, "asks", services, every, _SERVICE)
+    served = {one.base for one in every if one.what == "serves"}
+    yield from _lacking(said, "commands", served, every, _ACTION)
     yield from _lacking(said, "reads", given, every, _PARAMETER)
+
+
+def _unwaited(case: Case, node: str, files: list[str]) -> Iterator[Finding]:
+    """Yield a warning if a node calls a service once, and does not wait until it is there."""
+    goes_on = case.facts.of(node, Kind.SPIN, Kind.LOOP)
+    one = asked.unwaited(case.package, files)
+    if one and not goes_on and not case.facts.unread & {*files}:
+        yield too_early(case.package, node, one)
+
+
+def too_early(package: Package, node: str, one: Said) -> Finding:
+    is_python = package.kind(one.file) == "python"
+    wait = f'rospy.wait_for_service("{one.name}")' if is_python else "waitForExistence()"
+    return Finding(
+        "starts",
+        f"{node} calls the service {one.name}, and does not wait until there is one: if the node"
+        " that offers it starts later, the call fails.",
+        one.file,
+        one.line,
+        WARNING,
+        expected=f"{wait} before the call",
+        seen=package.lines(one.file)[one.line - 1].strip(),
+        fix=f"Call {wait} first.",
+        node=node,
+    )
 
 
 def _lacking(

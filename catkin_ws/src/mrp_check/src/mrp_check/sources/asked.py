@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import re
 import typing
-from typing import Iterable, Iterator
+from typing import Iterable, Iterator, Sequence
 
 from mrp_check.contract.words import last_part
 from mrp_check.sources import uses
@@ -18,6 +18,8 @@ _PYTHON = {
     "reads": r"\bget_param\s*" + _NAME + r"\s*\)",
     "knows": r"\b(?:get_param|has_param|search_param|get_param_cached)\s*" + _NAME,
     "sets": r"\bset_param\s*" + _NAME,
+    "commands": r"\bSimpleActionClient\s*" + _NAME,
+    "serves": r"\bSimpleActionServer\s*" + _NAME,
 }
 _CPP = {
     "asks": r"\b(?:serviceClient\s*<[^;()]*>|waitForService)\s*" + _NAME,
@@ -26,15 +28,16 @@ _CPP = {
     "knows": r"\b(?:getParam|getParamCached|hasParam|searchParam|param(?:\s*<[^;()]*>)?|get)\s*"
     + _NAME,
     "sets": r"\bsetParam\s*" + _NAME,
+    "commands": r"\bSimpleActionClient\s*<[^;()]*>\s*\w+\s*" + _NAME,
+    "serves": r"\bSimpleActionServer\s*<[^;()]*>\s*\w+\s*\(\s*\w+\s*,\s*[\"']([~/\w]+)[\"']",
 }
-_PYTHON_COMMENT = re.compile(r"^[ \t]*#[^\n]*", re.MULTILINE)
 
 
 class Said(typing.NamedTuple):
     """Where a source names a service or a parameter.
 
-    what: "asks" or "offers", of a service; "reads" (without a default), "knows" or "sets", of a
-        parameter
+    what: "asks" or "offers", of a service; "commands" or "serves", of an action; "reads" (without a
+        default), "knows" or "sets", of a parameter
     """
 
     what: str
@@ -48,16 +51,24 @@ class Said(typing.NamedTuple):
         return last_part(self.name.strip("~/"))
 
 
+# What waits for a service, or looks whether there is one.
+_WAITS = r"\b(wait_for_service|waitForService|waitForExistence|exists)\s*\("
+
+
+def unwaited(package: Package, files: Sequence[str]) -> Said | None:
+    """Return the first service that these sources call, where they do, if they wait for none."""
+    asks = [one for one in of(package, files) if one.what == "asks"]
+    if not asks or package.first_match(files, _WAITS):
+        return None
+    file, line = package.first_match(files, r"(\.|->)call\s*\(") or (asks[0].file, asks[0].line)
+    return asks[0]._replace(file=file, line=line)
+
+
 def of(package: Package, files: Iterable[str]) -> Iterator[Said]:
     """Yield what these sources say, in order."""
     for file in files:
-        is_python = package.kind(file) == "python"
-        text = package.text(file)
-        if is_python:
-            text = _PYTHON_COMMENT.sub("", text)
-        else:
-            text = uses.without_comments(text)
-        for what, shape in (_PYTHON if is_python else _CPP).items():
+        text = uses.code(package, file)
+        for what, shape in (_PYTHON if package.kind(file) == "python" else _CPP).items():
             for match in re.finditer(shape, text):
                 line = text.count("\n", 0, match.start(1)) + 1
                 yield Said(what, match.group(1), file, line)

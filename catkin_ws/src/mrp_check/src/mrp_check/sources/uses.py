@@ -19,6 +19,7 @@ from mrp_check.student.package import Package
 # Headers whose folder is not called like the package that has them.
 _HEADERS = {"ros/package.h": "roslib", "ros/package.hpp": "roslib"}
 _INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*[<"]([\w./+-]+)[>"]', re.MULTILINE)
+_PYTHON_COMMENT = re.compile(r"^[ \t]*#[^\n]*", re.MULTILINE)
 _COMMENT = re.compile(r"/\*.*?\*/|//[^\n]*", re.DOTALL)
 
 # They come with roscpp or rospy: whoever does not name them has them all the same.
@@ -60,15 +61,23 @@ _ALL = 20000  # a Debian release has more packages; without its lists, apt knows
 _DEBIAN = {"cv2": "python3-opencv", "PIL": "python3-pil", "OpenGL": "python3-opengl"}
 
 
+def _guesses(name: str, language: str) -> list[str]:
+    """Return how Debian may call the package that has a package, a module or a definition."""
+    plain = name.lower().replace("_", "-")
+    python = _DEBIAN.get(name, f"python3-{plain}")
+    if language == "msg":
+        return [f"ros-{plain}"]
+    return [f"lib{plain}-dev", f"ros-{plain}", python, plain] if language == "cpp" else [python]
+
+
+def exists(name: str) -> bool:
+    """Return whether this machine or Debian has a ROS package of that name."""
+    return is_ros_package(name) or bool(debian_packages() & {*_guesses(name, "cpp")})
+
+
 def absent(name: str, language: str) -> str:
     """Return the sentence about a package or a module that this machine has not."""
-    plain = name.lower().replace("_", "-")
-    guesses = [_DEBIAN.get(name, f"python3-{plain}")]
-    if language == "msg":
-        guesses = [f"ros-{plain}"]
-    if language == "cpp":
-        guesses = [f"lib{plain}-dev", f"ros-{plain}", *guesses, plain]
-    debian = debian_packages()
+    guesses, debian = _guesses(name, language), debian_packages()
     guess = next((guess for guess in guesses if guess in debian), None if debian else guesses[0])
     where = f"Debian package {guess}" if guess else "not in Debian"
     return (
@@ -104,6 +113,13 @@ def without_comments(text: str) -> str:
     return _COMMENT.sub(lambda m: re.sub(r"[^\n]", " ", m.group()), text)
 
 
+def code(package: Package, file: str) -> str:
+    """Return the text of a source, with spaces, or nothing, for its comments."""
+    text = package.text(file)
+    is_python = package.kind(file) == "python"
+    return _PYTHON_COMMENT.sub("", text) if is_python else without_comments(text)
+
+
 def includes(package: Package, file: str) -> Iterator[tuple[str, int]]:
     """Yield (header, line) of each #include that is no comment."""
     text = without_comments(package.text(file))
@@ -116,6 +132,17 @@ def package_of_header(header: str) -> str:
         return _HEADERS[header]
     folder = header.split("/")[0] if "/" in header else ""
     return "roscpp" if folder == "ros" else folder
+
+
+def absent_header(package: Package, header: str) -> str | None:
+    """Return the ROS package, or the library of Debian's, that has a header and is not on this
+    machine; None if the header is the package's own, or the name of what has it is misspelt."""
+    name = package_of_header(header)
+    if not name or name == package.name or is_ros_package(name):
+        return None
+    is_named = package.find_line("package.xml", f">{name}<")
+    is_debian = _guesses(name, "cpp")[0] in debian_packages()
+    return name if is_named or is_debian or is_called_so(name) else None
 
 
 def is_test(path: str) -> bool:

@@ -148,18 +148,26 @@ class Model:
     """What all calls of a package come to.
 
     complete: whether CMake went through all of it; if not, the rest is read as text
+    made: all targets, those of ROS and of the messages, too; nothing if CMake failed
     project: (name, Call) or None
     components: ROS package -> Call, of find_package
     catkin: the Call of find_package(catkin ...), or None
     catkin_package: its Call, or None; late: the first target before it, or None
-    depends: the packages in CATKIN_DEPENDS; include_dirs: the folders in INCLUDE_DIRS
+    depends: the packages in CATKIN_DEPENDS; include_dirs: the folders in INCLUDE_DIRS; libraries:
+        those in LIBRARIES
     targets: name -> Target; scripts: list of Script; message_files: name -> Call, of services and
         actions, too
     """
 
-    def __init__(self, folder: pathlib.Path, calls: Iterable[Call], complete: bool) -> None:
+    def __init__(
+        self,
+        folder: pathlib.Path,
+        calls: Iterable[Call],
+        complete: bool,
+        made: Collection[str] = (),
+    ) -> None:
         self.folder = pathlib.Path(folder)
-        self.complete = complete
+        self.complete, self.made = complete, made
         self.calls = list(calls)
         if not complete:
             self.calls += self._rest()
@@ -172,6 +180,7 @@ class Model:
         self.components: dict[str, Call] = {}
         self.depends: list[str] = []
         self.include_dirs: list[str] = []
+        self.libraries: list[str] = []
         self.targets: dict[str, Target] = {}
         self.scripts: list[Script] = []
         self.message_files: dict[str, Call] = {}
@@ -205,6 +214,14 @@ class Model:
 
     def executables(self) -> dict[str, Target]:
         return {t.output or t.name: t for t in self.targets.values() if not t.is_library}
+
+    def lacks_target(self, name: str) -> bool:
+        """Return whether it is certain that there is no target of that name."""
+        if self.complete:
+            return bool(self.made) and name not in self.made and not re.search(r"[$:]", name)
+        project = self.project[0] if self.project else ""
+        own = rf"{re.escape(project)}_(gen(cpp|py)|generate_messages(_\w+)?)"
+        return self.generate is None and bool(re.fullmatch(own, name))
 
     def all_sources(self, target: Target, seen: tuple[str, ...] = ()) -> list[str]:
         """Return the sources of a target and of the package's libraries that it is linked with."""
@@ -245,6 +262,7 @@ class Model:
         parts = sections(call.arguments, names)
         self.depends = parts.get("CATKIN_DEPENDS", [])
         self.include_dirs = parts.get("INCLUDE_DIRS", [])
+        self.libraries = parts.get("LIBRARIES", [])
 
     def _add_executable(self, call: Call, is_library: bool = False) -> None:
         name, *sources = call.arguments

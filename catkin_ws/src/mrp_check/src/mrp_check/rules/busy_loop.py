@@ -1,0 +1,42 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A node's loop pauses: by a rate, a sleep, or whatever else waits."""
+
+from __future__ import annotations
+
+import re
+from typing import Iterator
+
+from mrp_check.confined.places import Kind
+from mrp_check.contract.finding import WARNING, Finding
+from mrp_check.contract.requirements import ANY, Rule
+from mrp_check.sources import uses
+from mrp_check.sources.node import Node, each_node
+
+# The head of a loop that goes on until Ctrl-C.
+_ENDLESS = re.compile(r"\bwhile\b.*(\bok\s*\(\s*\)|is_shutdown|\(\s*(true|1)\s*\)|\bTrue\b|\b1:)")
+# All that may wait, in this source or in a library. A name that looks like it is believed.
+_WAITS = re.compile(
+    r"(?i)sleep|\bRate\b|\bspin\s*\(|wait|join|input|\bcin\b|get(line|ch|s)\b|scanf|\bf?(read|gets)"
+    r"|recv|accept|select|poll|imshow|callOne|callAvailable|call\s*\(|>>|queue\."
+)
+
+
+def _of(node: Node) -> Iterator[Finding]:
+    lines = {file: node.package.lines(file) for file in node.files}
+    loops = [p for p in node.places(Kind.LOOP) if _ENDLESS.search(lines[p.file][p.line - 1])]
+    if not loops or node.places(Kind.SLEEP):
+        return
+    text = "\n".join(uses.code(node.package, file) for file in node.files)
+    if not _WAITS.search(text):
+        rate = "rospy.Rate" if node.is_python else "ros::Rate"
+        yield node.finding(
+            "spin",
+            "The loop never pauses: it keeps a processor busy, and publishes as fast as it can.",
+            loops[0],
+            severity=WARNING,
+            expected=f"a {rate}, whose sleep() is called in the loop",
+            fix=f"Make a {rate} before the loop, and call its sleep() at the end of it.",
+        )
+
+
+RULE = Rule("static", 51, ("facts",), each_node(_of), also=("spin",), only=ANY)

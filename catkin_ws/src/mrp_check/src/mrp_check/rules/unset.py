@@ -1,0 +1,53 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A variable that a parameter is read into has a value where the parameter is not set."""
+
+from __future__ import annotations
+
+import re
+from typing import Iterator
+
+from mrp_check.case import Case
+from mrp_check.contract.finding import WARNING, Finding
+from mrp_check.contract.requirements import ANY, Rule
+from mrp_check.contract.words import last_part
+from mrp_check.sources import uses
+
+# A whole statement: what the call returns is not looked at.
+_READ = re.compile(
+    r"""(?<=[;{})])\s*(?:\w+(?:\.|->)getParam|ros::param::get)\s*\(\s*"([~/\w]+)"\s*,\s*(\w+)\s*\)\s*;"""
+)
+_NUMBER = r"\b(?:int|double|float|bool|long|short|unsigned|size_t|u?int\d+_t)\s+(?:\w+\s*,\s*)*"
+
+
+def _findings(case: Case) -> Iterator[Finding]:
+    given = {last_part(name) for name in (case.launch.params if case.launch else {})}
+    for node, files in case.facts.sources.items():
+        for file in files:
+            if case.package.kind(file) in ("cpp", "header"):
+                yield from _of(node, file, uses.code(case.package, file), given)
+
+
+def _of(node: str, file: str, text: str, given: set[str]) -> Iterator[Finding]:
+    for match in _READ.finditer(text):
+        name, variable = match.groups()
+        is_declared = re.search(rf"{_NUMBER}{variable}\s*[;,]", text)
+        has_value = re.search(rf"\b{variable}\s*(=(?!=)|\{{|\(|>>)|>>\s*{variable}\b", text)
+        if not is_declared or has_value or last_part(name.strip("~/")) in given:
+            continue
+        if re.search(rf'hasParam\s*\(\s*"{re.escape(name)}"', text):
+            continue
+        yield Finding(
+            "starts",
+            f"Where the parameter {name} is not set, {variable} has no value: getParam() leaves it"
+            " as it is, and it may be any number.",
+            file,
+            text.count("\n", 0, match.start(1)) + 1,
+            WARNING,
+            expected=f'param("{name}", {variable}, DEFAULT), or a value where {variable} is made',
+            seen=match.group().strip(),
+            fix=f"Give {variable} a value where it is declared.",
+            node=node,
+        )
+
+
+RULE = Rule("static", 92, ("facts",), _findings, also=("starts",), only=ANY)
