@@ -8,7 +8,6 @@ import concurrent.futures
 import functools
 import json
 import os
-import re
 import shlex
 import shutil
 import typing
@@ -127,8 +126,7 @@ class Catkin:
         """What CMakeLists.txt says, as a cmake.Model."""
         configured = self.configured
         calls = cmake.traced(self.folder / "trace.json", self.workspace.package_folder)
-        made = re.findall(r"^\.\.\. (\S+)", configured.output, re.MULTILINE)  # of `make help`
-        return cmake.Model(self.workspace.package_folder, calls, configured.ok, made)
+        return cmake.Model(self.workspace.package_folder, calls, configured.ok, configured.output)
 
     def start_building(self) -> None:
         """Begin to build in the background, if CMake succeeded."""

@@ -97,7 +97,7 @@ def _no_packages(package: Package, manifest: Manifest, used: Collection[str]) ->
     """Yield a warning for each misspelt name that package.xml has beside the right one."""
     names = _all(manifest, tests=True)
     for name in sorted(names - {*used}):
-        near = nearest(name, (names | {*used}) - {name}, 0.9)
+        near = nearest(name, names - {name}, 0.9)
         if near and "-" not in name and uses.exists(near) and not uses.exists(name):
             line = package.find_line(FILE, f">{name}<", 1)
             yield Finding(

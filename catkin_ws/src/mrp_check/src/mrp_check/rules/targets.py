@@ -21,7 +21,7 @@ def _findings(case: Case) -> Iterator[Finding]:
     yield from _no_sources(case)
     yield from _no_dependencies(case.model)
     yield from _no_libraries(case.model)
-    yield from _no_system_libraries(case)
+    yield from _no_system_libraries(case.model)
     yield from _no_folders(case.model)
 
 
@@ -69,7 +69,7 @@ def _no_libraries(model: Model) -> Iterator[Finding]:
     if not call or any("$" in name for name in targets):
         return
     libraries = {target.name for target in targets.values() if target.is_library}
-    others = {*model.made} - {*targets}  # macros of other packages may make libraries, too
+    others = model.made - {*targets}  # macros of other packages may make libraries, too
     for name in model.libraries:
         if re.fullmatch(r"\w+", name) and name not in libraries | others:
             near = nearest(name, libraries)
@@ -84,10 +84,9 @@ def _no_libraries(model: Model) -> Iterator[Finding]:
             )
 
 
-def _no_system_libraries(case: Case) -> Iterator[Finding]:
-    said = re.findall(r"DEPENDS on '(\w+)'\s+but\s+neither", case.catkin.configured.output)
-    call = case.model.catkin_package
-    for name in dict.fromkeys(said):
+def _no_system_libraries(model: Model) -> Iterator[Finding]:
+    call = model.catkin_package
+    for name in dict.fromkeys(model.not_found):
         if call:
             yield _missing(
                 call,

@@ -148,7 +148,9 @@ class Model:
     """What all calls of a package come to.
 
     complete: whether CMake went through all of it; if not, the rest is read as text
+    output: what CMake and `make help` print
     made: all targets, those of ROS and of the messages, too; nothing if CMake failed
+    not_found: the names in DEPENDS that no find_package() has found
     project: (name, Call) or None
     components: ROS package -> Call, of find_package
     catkin: the Call of find_package(catkin ...), or None
@@ -164,10 +166,12 @@ class Model:
         folder: pathlib.Path,
         calls: Iterable[Call],
         complete: bool,
-        made: Collection[str] = (),
+        output: str = "",
     ) -> None:
         self.folder = pathlib.Path(folder)
-        self.complete, self.made = complete, made
+        self.complete = complete
+        self.made = set(re.findall(r"^\.\.\. (\S+)", output, re.MULTILINE))
+        self.not_found = re.findall(r"DEPENDS on '(\w+)'\s+but\s+neither", output)
         self.calls = list(calls)
         if not complete:
             self.calls += self._rest()
