@@ -308,7 +308,12 @@ int main(int argc, char** argv)
   ros::NodeHandle n;
   double gain;
   n.getParam("gain", gain);
+  if (gain < 0)
+  {
+    gain = 1;
+  }
   std::ifstream table("/home/nobody/table.txt");
+  ros::Rate rate(10);
   while (ros::ok())
   {
     ros::spinOnce();

@@ -131,15 +131,21 @@ def test_what_was_seen_all_the_same_is_no_consequence(cause, result):
 
 
 @pytest.mark.parametrize(
-    ("header", "cause"), [("std_srvs/Empty.h", "dependencies"), ("some_pkg/Num.h", None)]
+    ("said", "cause"),
+    [
+        ("there is no header std_srvs/Empty.h.", "dependencies"),
+        ("there is no header some_pkg/Num.h.", None),
+        ("a semicolon is missing at its end.", None),
+    ],
+    ids=range(3),
 )
-def test_a_missing_header_follows_from_its_own_package(header, cause):
+def test_a_missing_header_follows_from_its_own_package(said, cause):
     undeclared, failed = findings(
         ("dependencies", "package.xml", 9, "files", None),
         ("compile", "src/a.cpp", 1, "build", None),
     )
     undeclared.message = "package.xml does not name std_srvs, which src/a.cpp uses in line 1."
-    failed.message = f"The compiler stops at line 1 of src/a.cpp: there is no header {header}."
+    failed.message = f"The compiler stops at line 1 of src/a.cpp: {said}"
     causes.told_once([undeclared, failed])
     assert failed.consequence_of == cause
 

@@ -104,10 +104,12 @@ _HEADER = re.compile(r"there is no (?:header )?([\w./+-]+\.h\w*)|includes (/\S+)
 
 
 def _is_of_another(cause, finding):
-    """Return whether a header is missing that is of another package than the undeclared one."""
-    header = _HEADER.search(finding.message) if cause.id == "dependencies" else None
+    """Return whether a source does not compile for another reason than an undeclared package."""
+    if cause.id != "dependencies" or finding.id != "compile":
+        return False
+    header = _HEADER.search(finding.message)
     package = header and uses.package_of_header(header[1] or header[2])
-    return bool(header) and package not in re.findall(r"\w+", cause.message)
+    return package not in re.findall(r"\w+", cause.message)
 
 
 def _causes(cause, finding, earlier, facts, nodes):

@@ -8,12 +8,11 @@ import re
 from typing import Iterable
 
 from mrp_check.case import Case
-from mrp_check.contract.finding import ERROR, NOTE, WARNING, Finding
+from mrp_check.contract.finding import ERROR, NOTE, WARNING, Finding, Line
 from mrp_check.rules.responses import NO_RESPONSE
 from mrp_check.running.node import Node
 from mrp_check.running.words import last_words
 from mrp_check.sources import asked
-from mrp_check.sources.asked import Said
 
 # What neither catkin, nor the compiler, Linux or roslaunch takes: nobody has to see it fail.
 _RULES = set(
@@ -157,15 +156,15 @@ def _of_start(node: Node, finding: Finding) -> None:
         return
     early = _early_call(node, lines)
     if early:
-        finding.severity, finding.file, finding.line = WARNING, early.file, early.line
-        finding.message += f" It does not wait for the service {early.name}, which it calls."
+        finding.severity, (finding.file, finding.line) = WARNING, early
+        finding.message += " It does not wait for the service that it calls."
         return
     if node.direct and node.direct.code == 0 and not _is_left_alone(node):
         finding.severity = NOTE
         finding.message = f"{node.name} does its work, and ends: {last_words(lines) or 'in peace'}"
 
 
-def _early_call(node: Node, lines: list[str]) -> Said | None:
+def _early_call(node: Node, lines: list[str]) -> Line | None:
     """Return the call of a service, if the node ends as nobody offers it yet."""
     raised = any("Traceback" in line for line in lines)
     if not node.direct or (node.direct.code or 0) <= 0:

@@ -16,7 +16,7 @@ from mrp_check.sources.node import Node, each_node
 _ENDLESS = re.compile(r"\bwhile\b.*(\bok\s*\(\s*\)|is_shutdown|\(\s*(true|1)\s*\)|\bTrue\b|\b1:)")
 # All that may wait, in this source or in a library. A name that looks like it is believed.
 _WAITS = re.compile(
-    r"(?i)sleep|\bRate\b|\bspin\s*\(|wait|join|input|\bcin\b|get(line|ch|s)\b|scanf|\bf?(read|gets)"
+    r"(?i)sleep|\bspin\s*\(|wait|join|input|\bcin\b|get(line|ch|s)\b|scanf|\bf?(read|gets)"
     r"|recv|accept|select|poll|imshow|callOne|callAvailable|call\s*\(|>>|queue\."
 )
 

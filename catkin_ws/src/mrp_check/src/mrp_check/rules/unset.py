@@ -30,9 +30,7 @@ def _findings(case: Case) -> Iterator[Finding]:
 def _of(node: str, file: str, text: str, given: set[str]) -> Iterator[Finding]:
     for match in _READ.finditer(text):
         name, variable = match.groups()
-        is_declared = re.search(rf"{_NUMBER}{variable}\s*[;,]", text)
-        has_value = re.search(rf"\b{variable}\s*(=(?!=)|\{{|\(|>>)|>>\s*{variable}\b", text)
-        if not is_declared or has_value or last_part(name.strip("~/")) in given:
+        if _has_value(text, variable, match.start()) or last_part(name.strip("~/")) in given:
             continue
         if re.search(rf'hasParam\s*\(\s*"{re.escape(name)}"', text):
             continue
@@ -48,6 +46,20 @@ def _of(node: str, file: str, text: str, given: set[str]) -> Iterator[Finding]:
             fix=f"Give {variable} a value where it is declared.",
             node=node,
         )
+
+
+def _has_value(text: str, variable: str, at: int) -> bool:
+    """Return whether a variable may have a value at a place: it has none if it is a number that is
+    declared before without one, and not named since then."""
+    declared = [*re.finditer(rf"{_NUMBER}{variable}\s*[;,]", text[:at])]
+    before = text[: declared[-1].start()] if declared else ""
+    if before.count("{") == before.count("}"):
+        return True  # outside of all functions and classes it begins with 0
+    between = text[declared[-1].end() : at]
+    if between.count("{") == between.count("}"):
+        return bool(re.search(rf"\b{variable}\b", between))
+    # In a function of its class, another one may have set it.
+    return bool(re.search(rf"\b{variable}\s*(=(?!=)|[{{(])|(>>|,)\s*{variable}\s*[;,]", text))
 
 
 RULE = Rule("static", 92, ("facts",), _findings, also=("starts",), only=ANY)

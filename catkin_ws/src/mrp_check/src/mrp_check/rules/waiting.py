@@ -12,7 +12,6 @@ from mrp_check.contract.requirements import ANY, Rule
 from mrp_check.contract.words import last_part, nearest
 from mrp_check.sources import asked
 from mrp_check.sources.asked import Said
-from mrp_check.student.package import Package
 
 _ALIKE = 0.8
 
@@ -58,24 +57,19 @@ def _findings(case: Case) -> Iterator[Finding]:
 
 def _unwaited(case: Case, node: str, files: list[str]) -> Iterator[Finding]:
     """Yield a warning if a node calls a service once, and does not wait until it is there."""
-    goes_on = case.facts.of(node, Kind.SPIN, Kind.LOOP)
-    one = asked.unwaited(case.package, files)
-    if one and not goes_on and not case.facts.unread & {*files}:
-        yield too_early(case.package, node, one)
-
-
-def too_early(package: Package, node: str, one: Said) -> Finding:
-    is_python = package.kind(one.file) == "python"
-    wait = f'rospy.wait_for_service("{one.name}")' if is_python else "waitForExistence()"
-    return Finding(
+    place = asked.unwaited(case.package, files)
+    if not place or case.facts.of(node, Kind.SPIN, Kind.LOOP) or case.facts.unread & {*files}:
+        return
+    is_python = case.package.kind(place[0]) == "python"
+    wait = "rospy.wait_for_service()" if is_python else "waitForExistence() of the client"
+    yield Finding(
         "starts",
-        f"{node} calls the service {one.name}, and does not wait until there is one: if the node"
-        " that offers it starts later, the call fails.",
-        one.file,
-        one.line,
+        f"{node} calls a service, and does not wait until it is offered: if the node that offers it"
+        " starts later, the call fails.",
+        *place,
         WARNING,
         expected=f"{wait} before the call",
-        seen=package.lines(one.file)[one.line - 1].strip(),
+        seen=case.package.lines(place[0])[place[1] - 1].strip(),
         fix=f"Call {wait} first.",
         node=node,
     )

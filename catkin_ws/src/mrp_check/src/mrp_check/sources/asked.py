@@ -7,6 +7,7 @@ import re
 import typing
 from typing import Iterable, Iterator, Sequence
 
+from mrp_check.contract.finding import Line
 from mrp_check.contract.words import last_part
 from mrp_check.sources import uses
 from mrp_check.student.package import Package
@@ -51,17 +52,16 @@ class Said(typing.NamedTuple):
         return last_part(self.name.strip("~/"))
 
 
-# What waits for a service, or looks whether there is one.
+# What calls a service; and what waits for one, or looks whether it is there.
+_CALLS = r"(\.|->)call\s*\(", r"\bserviceClient\b", r"\bServiceProxy\b"
 _WAITS = r"\b(wait_for_service|waitForService|waitForExistence|exists)\s*\("
 
 
-def unwaited(package: Package, files: Sequence[str]) -> Said | None:
-    """Return the first service that these sources call, where they do, if they wait for none."""
-    asks = [one for one in of(package, files) if one.what == "asks"]
-    if not asks or package.first_match(files, _WAITS):
+def unwaited(package: Package, files: Sequence[str]) -> Line | None:
+    """Return where these sources call a service, if they never wait for any."""
+    if package.first_match(files, _WAITS) or not package.first_match(files, "|".join(_CALLS[1:])):
         return None
-    file, line = package.first_match(files, r"(\.|->)call\s*\(") or (asks[0].file, asks[0].line)
-    return asks[0]._replace(file=file, line=line)
+    return next(filter(None, (package.first_match(files, one) for one in _CALLS)))
 
 
 def of(package: Package, files: Iterable[str]) -> Iterator[Said]:
