@@ -341,12 +341,26 @@ _WAVES = """\
 #!/usr/bin/env python3
 import nowhere_lib
 import rospy
+from turtlesim.msg import Pose
 
 if __name__ == "__main__":
     rospy.init_node("waves")
     waves = nowhere_lib.read("/home/nobody/waves.txt")
+    publisher = rospy.Publisher("pose", Pose)
     client = nowhere_lib.SimpleActionClient("wave", waves.Action)
     rospy.spin()
+"""
+
+
+_LAUNCH_OF_DOUBTFUL = """\
+<launch>
+  <param name="map" value="/home/nobody/map.pgm"/>
+  <node pkg="some_pkg" type="busy" name="busy" launch-prefix="nowhere_term -e"/>
+</launch>
+"""
+_TOOL = """\
+#!/usr/bin/env python
+print("This is no node.")
 """
 
 
@@ -357,12 +371,12 @@ def doubtful(folder):
             "</package>", "  <exec_depend>rosspy</exec_depend>\n</package>"
         ),
         "CMakeLists_DOT_txt": _CMAKE_OF_DOUBTFUL,
-        "launch__busy_DOT_launch": '<launch>\n  <param name="map" value="/home/nobody/map.pgm"/>\n'
-        '  <node pkg="some_pkg" type="busy" name="busy"/>\n</launch>\n',
+        "launch__busy_DOT_launch": _LAUNCH_OF_DOUBTFUL,
         "src__far_DOT_cpp": _FAR,
         "src__busy_DOT_cpp": _BUSY,
         "src__client_DOT_cpp": _CPP_CLIENT,
         "scripts__waves_DOT_py": _WAVES,
+        "scripts__tool_DOT_py": _TOOL,
     }
     check_rules.make(folder, **files)
     return folder

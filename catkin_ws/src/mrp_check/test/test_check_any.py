@@ -63,6 +63,10 @@ DOUBTED = [
     (WARNING, "starts", "src/client.cpp: client.call", "wait"),
     (NOTE, "starts", "scripts/waves.py: SimpleActionClient", "the action wave"),
     (NOTE, "python-names", "scripts/waves.py: nowhere_lib", "not on this machine"),
+    (WARNING, "dependencies", "package.xml: depend", "does not name turtlesim"),
+    (WARNING, "warnings", "scripts/waves.py: rospy.Publisher", "no queue_size"),
+    (WARNING, "scripts", "scripts/tool.py: env python", "asks for 'python'"),
+    (NOTE, "launch-nodes", "launch/busy.launch: <node", "nowhere_term is not on this machine"),
 ]
 
 

@@ -4,9 +4,11 @@
 from __future__ import annotations
 
 import os
+import shutil
 from typing import Iterator
 
 from mrp_check import evidence
+from mrp_check.building.catkin import search_path
 from mrp_check.case import Case
 from mrp_check.confined.launch_dump import Started
 from mrp_check.contract.finding import NOTE, Finding
@@ -44,10 +46,16 @@ def _findings(case: Case) -> Iterator[Finding]:
 
 
 def _elsewhere(own: str, launch: Launch) -> Iterator[Finding]:
-    """Yield a note for each package that the launch file starts nodes of, and that is not here."""
+    """Yield a note for each package that the launch file starts nodes of, and each program that it
+    starts them by, that is not here."""
     for name, node in {node.package: node for node in launch.nodes}.items():
         if name != own and not uses.is_ros_package(name):
             said = uses.absent(name, "cpp")
+            yield Finding("launch-nodes", said, node.file, node.line, NOTE)
+    for node in launch.nodes:
+        program = node.prefix.split()[0] if node.prefix else None
+        if program and not shutil.which(program, path=search_path()):
+            said = uses.absent(program, "program")
             yield Finding("launch-nodes", said, node.file, node.line, NOTE)
 
 

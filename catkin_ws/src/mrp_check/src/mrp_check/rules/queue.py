@@ -27,7 +27,7 @@ def _of(node: Node) -> Iterator[Finding]:
             queue = place.queue
             if isinstance(queue, int) and queue is not True and queue != asked:
                 yield _other_queue(node, place, kind, queue, asked)
-            elif node.is_python and kind is Kind.PUBLISHER and _says_none(node, place):
+            elif node.is_python and kind is Kind.PUBLISHER and says_none(node, place):
                 yield node.finding(
                     "queue",
                     "rospy.Publisher() is given no queue_size: it then sends each message"
@@ -70,7 +70,7 @@ def _other_queue(node: Node, place: Place, kind: Kind, queue: int, asked: int) -
     )
 
 
-def _says_none(node: Node, place: Place) -> bool:
+def says_none(node: Node, place: Place) -> bool:
     """Return whether a call that begins in a line has no queue_size in its lines."""
     lines = node.package.lines(place.file)[place.line - 1 : place.line + 6]
     text, depth = "", 0

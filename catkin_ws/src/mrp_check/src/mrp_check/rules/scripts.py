@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import ast
 import codecs
+import dataclasses
 import os
 import shutil
 from typing import Iterator
@@ -12,10 +13,10 @@ from typing import Iterator
 from mrp_check import evidence
 from mrp_check.building.catkin import search_path
 from mrp_check.case import Case
-from mrp_check.contract.finding import ERROR, NOTE, Finding
+from mrp_check.contract.finding import ERROR, NOTE, WARNING, Finding
 from mrp_check.contract.requirements import Requirement, Rule
 from mrp_check.contract.words import nearest, perhaps
-from mrp_check.sources import python_modules
+from mrp_check.sources import executables, python_modules
 from mrp_check.sources.uses import is_test
 from mrp_check.student.cmake import Model
 from mrp_check.student.package import Package
@@ -50,6 +51,9 @@ def _findings(case: Case) -> Iterator[Finding]:
         if is_node or shebang and _is_node(package, path):
             yield from _of(package, model, path, shebang, path in relayed)
             yield from _shadowing(path)
+        elif not case.spec.is_contract and executables.is_tool(package, path):
+            for finding in _of(package, model, path, shebang, path in relayed):
+                yield dataclasses.replace(finding, severity=WARNING)
 
 
 def _shadowing(path: str) -> Iterator[Finding]:

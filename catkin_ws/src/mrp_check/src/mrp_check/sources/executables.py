@@ -39,6 +39,13 @@ def is_script(package: Package, path: str) -> bool:
     return bool(is_started or _INIT.search(package.text(path)))
 
 
+def is_tool(package: Package, path: str) -> bool:
+    """Return whether a Python file is no node, and rosrun finds it all the same."""
+    is_module = f"{path.rpartition('/')[0]}/__init__.py" in package.files
+    starts = package.shebang(path) and package.is_executable(path)
+    return bool(starts) and not is_module and not _is_imported(package, path)
+
+
 def _is_imported(package: Package, path: str) -> bool:
     """Return whether another file of the package imports this one as a module."""
     stem = re.escape(last_part(path).split(".")[0])

@@ -65,8 +65,8 @@ def _guesses(name: str, language: str) -> list[str]:
     """Return how Debian may call the package that has a package, a module or a definition."""
     plain = name.lower().replace("_", "-")
     python = _DEBIAN.get(name, f"python3-{plain}")
-    if language == "msg":
-        return [f"ros-{plain}"]
+    if language in ("msg", "program"):
+        return [f"ros-{plain}" if language == "msg" else name]
     return [f"lib{plain}-dev", f"ros-{plain}", python, plain] if language == "cpp" else [python]
 
 
@@ -149,10 +149,19 @@ def is_test(path: str) -> bool:
     return path.split("/")[0] in ("test", "tests")
 
 
+# What many packages use, and is not in Debian, or need not be on this machine.
+_WELL_KNOWN = set(
+    (
+        "turtlesim actionlib tf tf2_ros cv_bridge image_transport dynamic_reconfigure pcl_ros"
+        " moveit_commander rviz gazebo_ros controller_manager"
+    ).split()
+)
+
+
 def is_called_so(name: str) -> bool:
     """Return whether a name is that of a ROS package, on this machine or elsewhere."""
     is_messages = name.endswith(("_msgs", "_srvs")) and not nearest(name, ["std_msgs"], 0.85)
-    return is_messages or is_ros_package(name)
+    return is_messages or name in _WELL_KNOWN or is_ros_package(name)
 
 
 def of(
