@@ -72,6 +72,14 @@ def findings(*entries):
             ],
             [None, "cmake"],
         ),
+        (
+            [
+                ("dependencies", "package.xml", 9, "files", None),
+                ("package-name", "CMakeLists.txt", 2, "files", None),
+                ("configure", "CMakeLists.txt", 4, "build", None),
+            ],
+            [None, "package-name"],
+        ),
         # Two faults of the same kind in two sources are two.
         (
             [
@@ -100,7 +108,7 @@ def findings(*entries):
             [None],
         ),
     ],
-    ids=range(14),
+    ids=range(15),
 )
 def test_consequences(entries, expected):
     told = causes.told_once(findings(*entries), facts())

@@ -85,8 +85,12 @@ def told_once(findings, facts=None, nodes=None):
     for index, finding in enumerate(kept):
         if finding.consequence_of or finding.severity == NOTE:
             continue
-        # Of several causes, the one that stands where it fails is not there by chance.
-        ordered = sorted(enumerate(kept), key=lambda one: not _is_beside(one[1], finding))
+        # Of several causes, the one that stands where it fails is not there by chance. What is not
+        # declared may be found all the same.
+        ordered = sorted(
+            enumerate(kept),
+            key=lambda one: (not _is_beside(one[1], finding), one[1].id == "dependencies"),
+        )
         for number, cause in ordered:
             if cause is not finding and _causes(cause, finding, number < index, facts, nodes or {}):
                 finding.consequence_of = cause.consequence_of or cause.id
