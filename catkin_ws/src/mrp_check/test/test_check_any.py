@@ -147,6 +147,10 @@ def test_each_defect_is_found_at_its_place(tmp_path):
     assert "asking.py" not in {f.node for f in report.findings}, shown(report.findings)
 
 
+@proves(
+    "What works here and may fail elsewhere is a warning: a path in somebody's home folder, or a "
+    "target or a library that CMakeLists.txt names and nothing makes."
+)
 def test_what_another_machine_may_have_is_no_error(tmp_path):
     folder = any_packages.doubtful(tmp_path / "some_pkg")
     report = checked(folder)
