@@ -270,6 +270,10 @@ docker-build-ssh: docker-build  ## build the image for docker/several_hosts/remo
 docker-build-view: docker-build
 	$(IMAGE_OF) --target view --tag mrp-view:$(DEBIAN) -
 
+.PHONY: docker-build-class
+docker-build-class: need-docker  ## build the image for docker/class.yaml, which checks a class
+	$(IMAGE_OF) --target class --tag mrp-class:$(DEBIAN) -
+
 # Without a network: ROS 1 has no authentication, and the nodes talk to one another alone.
 .PHONY: docker-run
 docker-run: docker-build  ## run the four nodes in a container; end them with Ctrl-C
