@@ -111,9 +111,9 @@ class Composition:
         for file in files:
             self._compose += ["--file", FOLDER / file]
 
-    def compose(self, *arguments):
+    def compose(self, *arguments, check=True):
         """Run docker compose; return what it printed."""
-        return run(*self._compose, *arguments).stdout
+        return run(*self._compose, *arguments, check=check).stdout
 
     def __enter__(self):
         try:
