@@ -231,6 +231,24 @@ def test_writes_many_files(confined):
     assert result.ended_by == "disk"
 
 
+def test_digs(confined):
+    """Too deep for a path, so nobody could count what lies there."""
+    result = confined(
+        f"""
+        import os, time
+        for _ in range(3000):
+            os.mkdir("d")
+            os.chdir("d")
+        time.sleep({FOR_EVER})
+        """,
+        time=20,
+    )
+    assert result.ended_by == "disk"
+    confined("")
+    confine.remove(confined.scratch)
+    assert not confined.scratch.exists()
+
+
 def test_opens_many_files(confined):
     result = confined("f = [open('/dev/null') for n in range(10**4)]", open_files=100)
     assert result.code == 1

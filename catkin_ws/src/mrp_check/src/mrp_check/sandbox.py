@@ -29,6 +29,7 @@ _ETC = (
 ).split()
 _SHARED_MEMORY = 64 * warden.MEGABYTE
 CGROUPS = pathlib.Path("/sys/fs/cgroup")
+_DEEPEST = 200  # levels of folders: all that root puts there is above
 _SPARE = 10  # processes beyond the limit that a cgroup may hold: the watcher sees it broken first
 EMPTYING = 5.0  # seconds within which a cgroup is empty after its processes were killed
 # User ids that systemd, too, gives to what runs for a while; no user of a machine has one.
@@ -155,12 +156,14 @@ def hand_over(scratch: str) -> int | None:
         if owner == 0:
             owner = _new_owner(scratch)
     # By file descriptors: what runs at the same time may put links in the way.
-    for _, folders, files, fd in os.fwalk(scratch):
+    for path, folders, files, fd in os.fwalk(scratch):
         for name in (*folders, *files):
             entry = os.stat(name, dir_fd=fd, follow_symlinks=False)
             # A file with two names may be one of root's own, elsewhere.
             if entry.st_uid == 0 and (entry.st_nlink == 1 or name in folders):
                 os.chown(name, owner, owner, dir_fd=fd, follow_symlinks=False)
+        if path.count(os.sep) > _DEEPEST:
+            folders.clear()
     return owner
 
 

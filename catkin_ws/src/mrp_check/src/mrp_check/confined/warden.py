@@ -10,6 +10,7 @@ When its standard input ends, whatever runs is ended.
 
 import ctypes
 import dataclasses
+import errno
 import os
 import pathlib
 import resource
@@ -161,7 +162,7 @@ def kill_all(codes: Dict[int, int]) -> bool:
 
 
 def _disk_used(folder: str) -> int:
-    """Return the bytes that the files under a folder take on disk."""
+    """Return the bytes that the files under a folder take on disk: very many if it is too deep."""
     used, look_at = 0, [folder]
     while look_at:
         try:
@@ -171,8 +172,9 @@ def _disk_used(folder: str) -> int:
                         used += entry.stat(follow_symlinks=False).st_blocks * _DISK_BLOCK
                         if entry.is_dir(follow_symlinks=False):
                             look_at.append(entry.path)
-                    except OSError:
-                        continue
+                    except OSError as error:
+                        if error.errno == errno.ENAMETOOLONG:  # what lies there cannot be counted
+                            return sys.maxsize
         except OSError:
             continue
     return used
