@@ -1,0 +1,201 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Measures what a class takes on 1, 2 and 4 workers, and what 10 000 submissions would take.
+
+Usage: class_scale.py SUBMISSIONS [TABLE]
+
+Every third submission is a correct package, and each other one has one defect: they are those that
+judge the checker, always in the same order. What else runs shows in the figures: end it before.
+TABLE, a CSV file, is written for the page.
+"""
+
+import contextlib
+import csv
+import json
+import os
+import pathlib
+import random
+import re
+import resource
+import shutil
+import statistics
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+
+import psutil
+
+WORKSPACE = pathlib.Path(__file__).resolve().parents[1]
+_PACKAGE = WORKSPACE / "src" / "mrp_check"
+sys.path.insert(0, str(_PACKAGE / "src"))
+from mrp_check.confined import cpp_headers
+from mrp_check.contract import defects, packages
+
+_WORKERS = (1, 2, 4)
+_MANY = 10_000
+_SPEC = "pub_sub.yaml"
+_ORDER = 22  # a seed
+_LOCAL = ("--no-dashboard", "--host", "127.0.0.1")
+_PROGRESS = re.compile(r"check: (\d+) of \d+: ")
+_LOOK = 1.0  # seconds between two looks at the memory
+_WAIT = 60  # seconds within which the cluster is there
+
+
+def make_class(folder, count):
+    """Make so many submissions; the first ones of a larger class are those of a smaller one."""
+    styles = [packages.TUTORIAL, *sorted(path.stem for path in packages.CORRECT.glob("*.patch"))]
+    styles = [style for style in styles if packages.spec_of(style) == _SPEC]
+    broken = [one for one in defects.read_all() if one.finds and one.base in styles]
+    random.Random(_ORDER).shuffle(broken)
+    for number in range(count):
+        turn, rest = divmod(number, 3)
+        defect = broken[(2 * turn + rest) % len(broken)] if rest else None
+        path = folder / f"{number:05}"
+        packages.lay_out(defect.base if defect else styles[turn % len(styles)], path)
+        if defect:
+            packages.break_(path, defect)
+
+
+class Memory:
+    """How much the processes of a name, with all below them, had at most; use it in a `with`.
+
+    peaks: name -> MB, of one process with its own
+    seen: name -> (submissions that were done, MB) at each look
+    """
+
+    def __init__(self, processes):
+        self.done, self.peaks, self.seen = 0, {}, {}
+        self._processes, self._end = processes, threading.Event()
+        self._thread = threading.Thread(target=self._look)
+
+    def __enter__(self):
+        self._thread.start()
+        return self
+
+    def __exit__(self, *_):
+        self._end.set()
+        self._thread.join()
+
+    def _look(self):
+        while not self._end.wait(_LOOK):
+            for name, process in self._processes:
+                with contextlib.suppress(psutil.Error):
+                    found = _megabytes(psutil.Process(process.pid))
+                    self.peaks[name] = max(found, self.peaks.get(name, 0))
+                    self.seen.setdefault(name, []).append((self.done, found))
+
+
+def _megabytes(process):
+    found = 0
+    for one in [process, *process.children(recursive=True)]:
+        with contextlib.suppress(psutil.Error):  # it has ended
+            found += one.memory_full_info().pss
+    return found / 2**20
+
+
+@contextlib.contextmanager
+def started(folder, count):
+    """Yield a scheduler's address, and (name, process) of it and of its workers."""
+    file, env = folder / "scheduler.json", {**os.environ, "PYTHONPATH": str(_PACKAGE / "src")}
+    file.unlink(missing_ok=True)
+    own = ("--scheduler-file", str(file), *_LOCAL)
+    worker = ("worker", *own, "--nthreads", "1", "--no-nanny", "--local-directory", str(folder))
+    commands = [("scheduler", "--port", "0", *own), *[worker] * count]
+    with open(folder / "log", "w") as log, contextlib.ExitStack() as stack:
+        found = []
+        for command in commands:
+            process = subprocess.Popen(["/usr/bin/dask", *command], env=env, stderr=log, stdout=log)
+            stack.callback(process.wait)
+            stack.callback(process.terminate)
+            found.append((command[0], process))
+        end = time.monotonic() + _WAIT
+        while (folder / "log").read_text().count("Registered to") < count:
+            if time.monotonic() > end:
+                sys.exit(f"error: expected {count} workers; they say: {(folder / 'log').read_text()}")
+            time.sleep(_LOOK)
+        yield json.loads(file.read_text())["address"], found
+
+
+def measured(folder, count):
+    """Check the class in `folder` on so many workers; return the figures, and the marks."""
+    before, ends = _processor_seconds(), []
+    shutil.rmtree(folder / "class.checked", ignore_errors=True)
+    with started(folder, count) as (address, processes):
+        options = ("--spec", _PACKAGE / "specs" / _SPEC, "--csv", folder / "table.csv")
+        command = (_PACKAGE / "scripts" / "check", "--class", folder / "class", *options)
+        begin, said = time.monotonic(), []
+        env = {**os.environ, "PYTHONPATH": str(_PACKAGE / "src")}
+        checker = subprocess.Popen(
+            ["/usr/bin/python3", *map(str, command), "--scheduler", address],
+            env=env, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True,
+        )  # fmt: skip
+        with Memory([("command", checker), *processes]) as memory:
+            for line in checker.stderr:
+                said.append(line)
+                match = _PROGRESS.match(line)
+                if match:
+                    memory.done = int(match[1])
+                    ends.append((memory.done, time.monotonic() - begin))
+        if checker.wait() > 1:
+            sys.exit(f"error: expected marks; the checker says: {''.join(said)}")
+        seconds = time.monotonic() - begin
+    with open(folder / "table.csv", newline="") as file:
+        marks = [{**row, "why": ""} for row in csv.DictReader(file)]
+    return seconds, _processor_seconds() - before, ends, memory, marks
+
+
+def _processor_seconds():
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
+
+
+def at_many(points):
+    """Return what there would be after 10 000 submissions, by a line through these points."""
+    if len({done for done, _ in points}) < 2:
+        return float("nan")
+    slope, begin = statistics.linear_regression(*zip(*points))
+    return begin + slope * _MANY
+
+
+def main(count, table=None):
+    rows, first = [], None
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
+        folder.chmod(0o711)
+        make_class(folder / "class", count)
+        cpp_headers.make(folder / "ros.pch")  # a machine does that once
+        for workers in _WORKERS:
+            seconds, processor, ends, memory, marks = measured(folder, workers)
+            first = first or (seconds, marks)
+            moved = [a["submission"] for a, b in zip(first[1], marks) if a != b]
+            hours = at_many(ends) / 3600
+            rows.append(
+                {
+                    "workers": workers,
+                    "submissions": count,
+                    "seconds": f"{seconds:.0f}",
+                    "processor seconds": f"{processor:.0f}",
+                    "efficiency": f"{first[0] / seconds / workers:.2f}",
+                    "MB of the scheduler": f"{memory.peaks['scheduler']:.0f}",
+                    "MB of a worker": f"{memory.peaks['worker']:.0f}",
+                    "marks": "the same" if not moved else f"{len(moved)} moved",
+                    f"hours for {_MANY}": f"{hours:.1f}",
+                }
+            )
+            print(", ".join(f"{name}: {value}" for name, value in rows[-1].items()), *moved)
+            print(f"  {_MANY} take {processor / count * _MANY / 3600:.0f} hours of one processor;")
+            for part in ("command", "scheduler", "worker"):
+                print(f"  the {part} has {at_many(memory.seen[part]):.0f} MB then", flush=True)
+    if table:
+        with open(table, "w", newline="") as file:
+            out = csv.DictWriter(file, rows[0], lineterminator="\n")
+            out.writeheader()
+            out.writerows(rows)
+
+
+if __name__ == "__main__":
+    if len(sys.argv) not in (2, 3) or not sys.argv[1].isdigit():
+        sys.exit(__doc__)
+    main(int(sys.argv[1]), *sys.argv[2:])
