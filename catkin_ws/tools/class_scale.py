@@ -62,7 +62,7 @@ class Memory:
     """How much the processes of a name, with all below them, had at most; use it in a `with`.
 
     peaks: name -> MB, of one process with its own
-    seen: name -> (submissions that were done, MB) at each look
+    seen: name -> (submissions that were done, MB), at each look since the first was done
     """
 
     def __init__(self, processes):
@@ -84,7 +84,8 @@ class Memory:
                 with contextlib.suppress(psutil.Error):
                     found = _megabytes(psutil.Process(process.pid))
                     self.peaks[name] = max(found, self.peaks.get(name, 0))
-                    self.seen.setdefault(name, []).append((self.done, found))
+                    if self.done:
+                        self.seen.setdefault(name, []).append((self.done, found))
 
 
 def _megabytes(process):
@@ -154,7 +155,7 @@ def _processor_seconds():
 def at_many(points):
     """Return what there would be after 10 000 submissions, by a line through these points."""
     if len({done for done, _ in points}) < 2:
-        return float("nan")
+        return float("nan")  # such as of a class of one
     slope, begin = statistics.linear_regression(*zip(*points))
     return begin + slope * _MANY
 
@@ -186,8 +187,9 @@ def main(count, table=None):
             )
             print(", ".join(f"{name}: {value}" for name, value in rows[-1].items()), *moved)
             print(f"  {_MANY} take {processor / count * _MANY / 3600:.0f} hours of one processor;")
-            for part in ("command", "scheduler", "worker"):
-                print(f"  the {part} has {at_many(memory.seen[part]):.0f} MB then", flush=True)
+            for part in ("command", "scheduler"):  # a worker has no more than before
+                megabytes = at_many(memory.seen.get(part, []))
+                print(f"  the {part} has {megabytes:.0f} MB then", flush=True)
     if table:
         with open(table, "w", newline="") as file:
             out = csv.DictWriter(file, rows[0], lineterminator="\n")
