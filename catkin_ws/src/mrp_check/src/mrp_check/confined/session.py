@@ -29,11 +29,10 @@ def main() -> None:
     libc.prctl(warden.PR_SET_CHILD_SUBREAPER, 1, 0, 0, 0)
     libc.prctl(warden.PR_SET_DUMPABLE, 0, 0, 0, 0)
     starter = apart.Starter()
-    # The nodes cannot write to its own files.
-    del os.environ["TMPDIR"]
-    with answer, tempfile.TemporaryDirectory() as folder:
+    # The nodes cannot write to its own files; nor do those of genpy lie anywhere else: tempfile looks
+    # at TMPDIR once, when it is first asked without a folder.
+    with answer, tempfile.TemporaryDirectory(dir="/tmp") as folder:
         os.environ.update(dict.fromkeys(variables.FOLDERS, folder))
-        tempfile.tempdir = folder  # else it stays what it has just been, such as for genpy
         with Observer() as observer:
             result: object
             if kind == LaunchPlan.__name__:
