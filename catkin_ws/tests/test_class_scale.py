@@ -18,7 +18,10 @@ def contents(folder):
     return {path.name: path.read_bytes() for path in folder.rglob("*") if path.is_file()}
 
 
-@proves("Every third package is correct, and each other one has one defect.")
+@proves(
+    "catkin_ws/tools/class_scale.py measures a class in which every third package is correct, and "
+    "each other one has one defect."
+)
 def test_class_has_correct_packages_and_broken_ones(tmp_path, monkeypatch):
     """And a smaller class is the beginning of a larger one."""
     laid_out, broken = [], []

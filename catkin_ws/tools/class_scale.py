@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Measures what a class takes on 1, 2 and 4 workers, and what 10 000 submissions would take.
 
-Usage: class_scale.py SUBMISSIONS [TABLE]
+Usage: class_scale.py SUBMISSIONS [TABLE]    (in a shell with the workspace's setup.bash)
 
 Every third submission is a correct package, and each other one has one defect: they are those that
 judge the checker, always in the same order. What else runs shows in the figures: end it before.
@@ -12,7 +12,6 @@ TABLE, a CSV file, is written for the page.
 import contextlib
 import csv
 import json
-import os
 import pathlib
 import random
 import re
@@ -26,12 +25,8 @@ import threading
 import time
 
 import psutil
-
-WORKSPACE = pathlib.Path(__file__).resolve().parents[1]
-_PACKAGE = WORKSPACE / "src" / "mrp_check"
-sys.path.insert(0, str(_PACKAGE / "src"))
 from mrp_check.confined import cpp_headers
-from mrp_check.contract import defects, packages
+from mrp_check.contract import defects, packages, resources
 
 _WORKERS = (1, 2, 4)
 _MANY = 10_000
@@ -99,7 +94,7 @@ def _megabytes(process):
 @contextlib.contextmanager
 def started(folder, count):
     """Yield a scheduler's address, and (name, process) of it and of its workers."""
-    file, env = folder / "scheduler.json", {**os.environ, "PYTHONPATH": str(_PACKAGE / "src")}
+    file = folder / "scheduler.json"
     file.unlink(missing_ok=True)
     own = ("--scheduler-file", str(file), *_LOCAL)
     worker = ("worker", *own, "--nthreads", "1", "--no-nanny", "--local-directory", str(folder))
@@ -107,14 +102,16 @@ def started(folder, count):
     with open(folder / "log", "w") as log, contextlib.ExitStack() as stack:
         found = []
         for command in commands:
-            process = subprocess.Popen(["/usr/bin/dask", *command], env=env, stderr=log, stdout=log)
+            process = subprocess.Popen(["/usr/bin/dask", *command], stderr=log, stdout=log)
             stack.callback(process.wait)
             stack.callback(process.terminate)
             found.append((command[0], process))
         end = time.monotonic() + _WAIT
         while (folder / "log").read_text().count("Registered to") < count:
             if time.monotonic() > end:
-                sys.exit(f"error: expected {count} workers; they say: {(folder / 'log').read_text()}")
+                sys.exit(
+                    f"error: expected {count} workers; they say: {(folder / 'log').read_text()}"
+                )
             time.sleep(_LOOK)
         yield json.loads(file.read_text())["address"], found
 
@@ -124,13 +121,12 @@ def measured(folder, count):
     before, ends = _processor_seconds(), []
     shutil.rmtree(folder / "class.checked", ignore_errors=True)
     with started(folder, count) as (address, processes):
-        options = ("--spec", _PACKAGE / "specs" / _SPEC, "--csv", folder / "table.csv")
-        command = (_PACKAGE / "scripts" / "check", "--class", folder / "class", *options)
+        options = ("--spec", resources.folder("specs") / _SPEC, "--csv", folder / "table.csv")
+        command = ("rosrun", "mrp_check", "check", "--class", folder / "class", *options)
         begin, said = time.monotonic(), []
-        env = {**os.environ, "PYTHONPATH": str(_PACKAGE / "src")}
         checker = subprocess.Popen(
-            ["/usr/bin/python3", *map(str, command), "--scheduler", address],
-            env=env, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True,
+            [*map(str, command), "--scheduler", address],
+            stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True,
         )  # fmt: skip
         with Memory([("command", checker), *processes]) as memory:
             for line in checker.stderr:
