@@ -80,7 +80,7 @@ class Result:
             "time": f"it did not end within {limits.time:.0f} s",
             "memory": f"it used more than {limits.memory // MEGABYTE} MB of memory",
             "processes": f"it started more than {limits.processes} processes and threads",
-            "disk": f"it wrote more than {limits.disk // MEGABYTE} MB of files, or too deep folders",
+            "disk": f"it wrote more than {limits.disk // MEGABYTE} MB, or too deep folders",
             "output": f"it printed more than {_FLOOD * limits.output // MEGABYTE} MB",
         }
         return said.get(self.ended_by or "")
