@@ -297,6 +297,6 @@ def test_workers_killed_at_random_change_no_mark(tmp_path, monkeypatch):
             said = checker.stderr.read()
     rows = list(csv.DictReader(table.read_text().splitlines()))
     expected = [{**quiet[kind], "submission": f"{n:02}"} for n, kind in enumerate(kinds)]
-    assert killed > 10, said
-    assert [row for row in rows if row not in expected] == []
     assert len(rows) == len(expected)
+    assert [row for row in rows if row not in expected] == []
+    assert killed > 10, said
