@@ -26,7 +26,7 @@ from mrp_check.scratch import scratch_folder
 from mrp_check.sources import python_modules
 from mrp_check.student.package import Package
 
-_FOLD = 3  # findings about files outside the exercise: more are folded into one
+_FOLD = 3  # findings about files outside the exercise, or such files: more are folded into one
 
 
 def check(
@@ -161,7 +161,8 @@ class _Examination:
         for finding in findings:
             diff.add(package, finding)
         findings, suppressed = suppression.applied(package, findings, self._open(), not is_any)
-        findings = _folded([f for f in findings if f.id in self.ids], known.get("facts"))
+        findings = [f for f in findings if f.id in self.ids]
+        findings = _folded(findings, known.get("facts"), is_any)
         errors = [finding for finding in findings if finding.severity == ERROR]
         broken = {f.id for f in errors if not f.consequence_of}
         unseen = {id_: why for id_, why in self.failed.items() if id_ not in broken}
@@ -186,9 +187,9 @@ class _Examination:
         )
 
 
-def _folded(findings, facts):
-    """Return the findings; of many about scripts that are no node of the exercise, one for each id
-    and severity tells of them all."""
+def _folded(findings, facts, is_any):
+    """Return the findings; of many about scripts that are no node, one for each id and severity
+    tells of them all. Without a contract, many are those of more files."""
     of_nodes = {file for files in facts.sources.values() for file in files} if facts else set()
     outside = facts.python.keys() - of_nodes if facts else ()
     groups: dict[object, list[Finding]] = {}
@@ -199,10 +200,11 @@ def _folded(findings, facts):
     kept = []
     for group in groups.values():
         first = group[0]
-        if len(group) > _FOLD:
-            files = list(dict.fromkeys(f.file for f in group if f.file))
+        files = list(dict.fromkeys(f.file for f in group if f.file))
+        if len(files if is_any else group) > _FOLD:
+            where = "no node" if is_any else "no node of the exercise"
             first.message = (
-                f"{len(group)} such faults in files that are no node of the exercise:"
+                f"{len(group)} such faults in files that are {where}:"
                 f" {', '.join(files[:5])}{', ...' if files[5:] else ''}. The first: {first.message}"
             )
             group = [first]

@@ -9,7 +9,6 @@ from typing import Iterator
 from mrp_check.case import Case
 from mrp_check.contract.finding import WARNING, Finding
 from mrp_check.contract.requirements import ANY, Rule
-from mrp_check.contract.words import last_part
 from mrp_check.sources import uses
 
 # A whole statement: what the call returns is not looked at.
@@ -20,19 +19,17 @@ _NUMBER = r"\b(?:int|double|float|bool|long|short|unsigned|size_t|u?int\d+_t)\s+
 
 
 def _findings(case: Case) -> Iterator[Finding]:
-    given = {last_part(name) for name in (case.launch.params if case.launch else {})}
     for node, files in case.facts.sources.items():
         for file in files:
             if case.package.kind(file) in ("cpp", "header"):
-                yield from _of(node, file, uses.code(case.package, file), given)
+                yield from _of(node, file, uses.code(case.package, file))
 
 
-def _of(node: str, file: str, text: str, given: set[str]) -> Iterator[Finding]:
+def _of(node: str, file: str, text: str) -> Iterator[Finding]:
     for match in _READ.finditer(text):
         name, variable = match.groups()
-        if _has_value(text, variable, match.start()) or last_part(name.strip("~/")) in given:
-            continue
-        if re.search(rf'hasParam\s*\(\s*"{re.escape(name)}"', text):
+        is_asked = re.search(rf'hasParam\s*\(\s*"{re.escape(name)}"', text)
+        if is_asked or _has_value(text, variable, match.start()):
             continue
         yield Finding(
             "starts",

@@ -1,0 +1,81 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What the rules for packages without a contract read in the sources' texts; nothing is built."""
+
+import types
+
+import check_rules
+import pytest
+from check_rules import MANIFEST
+from mrp_check import check
+from mrp_check.building import configuring
+from mrp_check.contract.finding import NOTE, WARNING, Finding
+from mrp_check.rules import unset, waiting
+from mrp_check.sources.facts import Facts
+from mrp_check.student.cmake import Model
+
+pytestmark = pytest.mark.quick
+
+MAIN = "int main()\n{{\n  {}\n}}\n"
+
+
+def case(package):
+    facts = Facts(sources={file: [file] for file in package.of_kind("cpp")})
+    return types.SimpleNamespace(package=package, facts=facts, launch=None)
+
+
+@pytest.mark.parametrize(
+    ("text", "line"),
+    [
+        (MAIN.format('int a; n.getParam("a", a); if (a > 5) a = 5;'), 3),
+        (MAIN.format('int a, b;\n  if (b)\n  {\n    n.getParam("a", a);\n  }'), 6),
+        (MAIN.format('int a = 3; n.getParam("a", a);'), None),
+        (MAIN.format('int a; a = 3; n.getParam("a", a);'), None),
+        (MAIN.format('int a; if (n.hasParam("a")) { n.getParam("a", a); }'), None),
+        (MAIN.format('int a; if (!n.getParam("a", a)) a = 3;'), None),
+        (MAIN.format('std::string a; n.getParam("a", a);'), None),
+        ("int a;\n" + MAIN.format('n.getParam("a", a);'), None),
+    ],
+    ids=range(8),
+)
+def test_a_number_without_a_value_is_found_where_a_parameter_is_read_into_it(text, line, tmp_path):
+    package = check_rules.make(tmp_path / "some_pkg", src__a_DOT_cpp=text)
+    found = [(one.severity, one.line) for one in unset.RULE.findings(case(package))]
+    assert found == ([(WARNING, line)] if line else [])
+
+
+@pytest.mark.parametrize(
+    ("server", "told"),
+    [
+        ("", ["a.cpp waits for the action wave: no node of this package serves it."]),
+        ('actionlib::SimpleActionServer<Wave> server(n, "wave", act);', []),
+        ("actionlib::SimpleActionServer<Wave> server_; Server() : server_(n_, name, act)", []),
+    ],
+    ids=["none", "named", "unnamed"],
+)
+def test_an_action_is_waited_for_if_no_node_may_serve_it(server, told, tmp_path):
+    client = MAIN.format('actionlib::SimpleActionClient<Wave> client("wave", true);')
+    files = {"a_DOT_cpp": client, "b_DOT_cpp": server}
+    package = check_rules.make(tmp_path / "some_pkg", **files)
+    found = [*waiting.RULE.findings(case(package))]
+    assert [one.message for one in found if one.severity == NOTE] == told
+
+
+def test_a_target_that_is_waited_for_and_does_not_exist_is_found_where_cmake_stops(tmp_path):
+    package = check_rules.make(tmp_path / "src" / "some_pkg", package_DOT_xml=MANIFEST)
+    output = (
+        "CMake Error at some_pkg/CMakeLists.txt:4 (add_dependencies):\n"
+        '  The dependency target "some_pkg_gencp" of target "a" does not exist.\n\n'
+    )
+    model = Model(package.root, [], complete=False)
+    finding = configuring.finding(package, output, package.root, model)
+    assert (finding.file, finding.line) == ("CMakeLists.txt", 4)
+    assert "Perhaps some_pkg_gencpp is meant." in finding.message
+
+
+def test_many_findings_are_one_line_without_a_contract_if_they_are_of_many_files():
+    facts = Facts(python={f"{n}.py": None for n in range(5)})
+    twice = [Finding("starts", "It is so.", f"{n}.py", 1) for n in range(2) for _ in range(3)]
+    assert len(check._folded(twice, facts, is_any=True)) == 6
+    many = [Finding("starts", "It is so.", f"{n}.py", 1) for n in range(5)]
+    (one,) = check._folded(many, facts, is_any=True)
+    assert one.message.startswith("5 such faults in files that are no node: 0.py")
