@@ -75,7 +75,7 @@ def test_a_target_that_is_waited_for_and_does_not_exist_is_found_where_cmake_sto
 def test_many_findings_are_one_line_without_a_contract_if_they_are_of_many_files():
     facts = Facts(python={f"{n}.py": None for n in range(5)})
     twice = [Finding("starts", "It is so.", f"{n}.py", 1) for n in range(2) for _ in range(3)]
-    assert len(check._folded(twice, facts, is_any=True)) == 6
+    assert len(check.folded(twice, facts, is_any=True)) == 6
     many = [Finding("starts", "It is so.", f"{n}.py", 1) for n in range(5)]
-    (one,) = check._folded(many, facts, is_any=True)
+    (one,) = check.folded(many, facts, is_any=True)
     assert one.message.startswith("5 such faults in files that are no node: 0.py")

@@ -162,7 +162,7 @@ class _Examination:
             diff.add(package, finding)
         findings, suppressed = suppression.applied(package, findings, self._open(), not is_any)
         findings = [f for f in findings if f.id in self.ids]
-        findings = _folded(findings, known.get("facts"), is_any)
+        findings = folded(findings, known.get("facts"), is_any)
         errors = [finding for finding in findings if finding.severity == ERROR]
         broken = {f.id for f in errors if not f.consequence_of}
         unseen = {id_: why for id_, why in self.failed.items() if id_ not in broken}
@@ -187,7 +187,7 @@ class _Examination:
         )
 
 
-def _folded(findings, facts, is_any):
+def folded(findings, facts, is_any):
     """Return the findings; of many about scripts that are no node, one for each id and severity
     tells of them all. Without a contract, many are those of more files."""
     of_nodes = {file for files in facts.sources.values() for file in files} if facts else set()

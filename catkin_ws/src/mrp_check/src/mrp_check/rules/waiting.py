@@ -51,8 +51,8 @@ def _findings(case: Case) -> Iterator[Finding]:
     given = params | {one.base for one in every if one.what == "sets"}
     yield from _lacking(said, "asks", services, every, _SERVICE)
     served = {one.base for one in every if one.what == "serves"}
-    files = {file for files in case.facts.sources.values() for file in files}
-    if served or not case.package.first_match(files, r"\bSimpleActionServer\b"):
+    own = {file for files in case.facts.sources.values() for file in files}
+    if served or not case.package.first_match(own, r"\bSimpleActionServer\b"):
         yield from _lacking(said, "commands", served, every, _ACTION)
     yield from _lacking(said, "reads", given, every, _PARAMETER)
 
