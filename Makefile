@@ -329,7 +329,7 @@ need-pytest: need-docker
 	  catkin_ws/tools/install_packages.sh <(printf '%s\n' '# to test the containers' python3-pytest-xdist)
 
 .PHONY: docker-containers
-docker-containers: docker-build-ssh need-pytest
+docker-containers: docker-build-ssh docker-build-class need-pytest
 	@/usr/bin/python3 -m pytest -n 4 --dist loadgroup -m 'not dev' \
 	  --junit-xml=$(DOCKER_RESULTS)/containers.xml docker/test
 
