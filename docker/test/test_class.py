@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A class on Dask, in containers: class.yaml, with the image that `make docker-build-class` made."""
+"""A class on Dask, in containers: class.yaml, with the image of `make docker-build-class`."""
 
 import csv
 import json
