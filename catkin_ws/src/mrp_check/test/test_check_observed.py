@@ -6,11 +6,14 @@ import pathlib
 import subprocess
 import sys
 import tempfile
+import time
 
 import check_rules
+import psutil
 import pytest
 from lab_package import OF_RUN, findings_of, make_package, spec_of
 from mrp_check import check, sandbox
+from mrp_check.confined import activity
 from mrp_check.confined.seen import (
     Alone,
     DirectResult,
@@ -63,6 +66,25 @@ def test_a_fault_of_the_observer_is_no_finding(tmp_path, monkeypatch):
     said = r"The observer itself failed: .*\.enough: expected int; found 'none'"
     with pytest.raises(CannotCheck, match=said):
         findings_of(folder, spec_of(["right"], []), tmp_path / "scratch")
+
+
+def test_a_process_that_waits_for_the_disk_is_not_idle(tmp_path, monkeypatch):
+    """Linux says of a process whose vfork() has not returned what it says of one that reads."""
+    monkeypatch.setattr(activity, "_IDLE", 0.1)
+    program = "int main() { char c; if (!vfork()) { read(0, &c, 1); _exit(0); } read(0, &c, 1); }"
+    gcc = ["gcc", "-x", "c", "-include", "unistd.h", "-", "-o", tmp_path / "a"]
+    subprocess.run(gcc, input=program, text=True, check=True)
+    with subprocess.Popen([tmp_path / "a"], stdin=subprocess.PIPE) as process:
+        looks = activity.Activity(None)
+        status = psutil.Process(process.pid).status
+        wait_until(lambda: status() == psutil.STATUS_DISK_SLEEP, "vfork() to be called")
+        end = time.monotonic() + 0.3
+        while time.monotonic() < end:
+            assert not looks.is_idle(process.pid)
+        process.stdin.write(b"x")
+        process.stdin.flush()
+        wait_until(lambda: looks.is_idle(process.pid), "it to be idle: it waits for more")
+        process.stdin.close()
 
 
 @pytest.mark.usefixtures("open_folders")

@@ -60,10 +60,13 @@ class Activity:
     def is_idle(self, pid: Optional[int]) -> bool:
         """Return whether a process has used hardly any processor time for a while, or is no more.
 
-        On a busy machine, one that wants to work gets little, but more than that."""
+        On a busy machine, one that wants to work gets little, but more than that; unless its
+        modules are still being read from a slow disk."""
         used, now = processor_seconds(pid), time.monotonic()
         if used is None or pid is None:
             return True
+        if _waits_for_disk(pid):
+            self._used.pop(pid, None)
         history = self._used.setdefault(pid, [])
         history.append((now, used))
         # The latest that is old enough to be compared with, and all that came after it.
@@ -96,6 +99,13 @@ def processor_seconds(pid: Optional[int]) -> Optional[float]:
     except psutil.Error:
         return None
     return times and times.user + times.system
+
+
+def _waits_for_disk(pid: int) -> bool:
+    try:
+        return bool(psutil.Process(pid).status() == psutil.STATUS_DISK_SLEEP)
+    except psutil.Error:
+        return False
 
 
 def _processor_of(pid: Union[int, str, None]) -> Tuple[float, float]:

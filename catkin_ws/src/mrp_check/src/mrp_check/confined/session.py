@@ -29,8 +29,8 @@ def main() -> None:
     libc.prctl(warden.PR_SET_CHILD_SUBREAPER, 1, 0, 0, 0)
     libc.prctl(warden.PR_SET_DUMPABLE, 0, 0, 0, 0)
     starter = apart.Starter()
-    # The nodes cannot write to its own files; nor do those of genpy lie anywhere else: tempfile looks
-    # at TMPDIR once, when it is first asked without a folder.
+    # The nodes cannot write to its own files; and those of genpy lie there, too: tempfile looks at
+    # TMPDIR once, when it is first asked without a folder.
     with answer, tempfile.TemporaryDirectory(dir="/tmp") as folder:
         os.environ.update(dict.fromkeys(variables.FOLDERS, folder))
         with Observer() as observer:
