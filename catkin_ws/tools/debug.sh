@@ -11,7 +11,7 @@ if [ -f "devel/lib/mrp/$node" ]; then
 elif [ -f "src/mrp/src/$node.py" ]; then
   debugger=(/usr/bin/python3 -c 'from tools import debug_python; debug_python.main()' "src/mrp/src/$node.py")
 else
-  names=$(find src/mrp/src -name '*_node.*' -printf '%f\n' | sed 's/\..*//' | sort)
+  names=$(find src/mrp/src -maxdepth 1 -name '*_node.*' -printf '%f\n' | sed 's/\..*//' | sort)
   echo "error: expected NODE=NAME, one of: ${names//$'\n'/, }" >&2
   exit 2
 fi
