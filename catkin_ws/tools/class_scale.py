@@ -40,8 +40,7 @@ _WAIT = 60  # seconds within which the cluster is there
 
 def make_class(folder, count):
     """Make so many submissions; the first ones of a larger class are those of a smaller one."""
-    styles = [packages.TUTORIAL, *sorted(path.stem for path in packages.CORRECT.glob("*.patch"))]
-    styles = [style for style in styles if packages.spec_of(style) == _SPEC]
+    styles = [style for style in packages.STYLES if packages.spec_of(style) == _SPEC]
     broken = [one for one in defects.read_all() if one.finds and one.base in styles]
     random.Random(_ORDER).shuffle(broken)
     for number in range(count):

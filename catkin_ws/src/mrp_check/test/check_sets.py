@@ -8,13 +8,12 @@ import pathlib
 import re
 
 from mrp_check.contract import defects
-from mrp_check.contract.packages import CORRECT, break_, fields_of, lay_out, spec_of
+from mrp_check.contract.packages import STYLES, break_, fields_of, lay_out, spec_of
 
-__all__ = ["break_", "fields_of", "lay_out", "spec_of"]
+__all__ = ["STYLES", "break_", "fields_of", "lay_out", "spec_of"]
 
 HERE = pathlib.Path(__file__).resolve().parents[3] / "tests"
 TUTORIAL = HERE.parent / "src" / "mrp"
-STYLES = ["mrp", *sorted(path.stem for path in CORRECT.glob("*.patch"))]
 DEFECTS = [defect for defect in defects.read_all() if defect.finds]
 
 

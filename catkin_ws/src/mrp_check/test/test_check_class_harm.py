@@ -258,7 +258,7 @@ def test_a_hostile_class_harms_nobody(tmp_path, monkeypatch, quiet, port, where)
     assert not [path for path in kept if b"a secret" in path.read_bytes()]
 
 
-# Of 20 submissions, two run: these are the others' CMakeLists.txt.
+# Two of 20 submissions run nodes. The others have one of these as their CMakeLists.txt.
 FAULTS = ["", "project(", CMAKE, f"{CMAKE}find_package(nothing REQUIRED)\n", f"{CMAKE}catkin()\n"]
 SEED, MOST_KILLED = 22, 20
 

@@ -44,7 +44,7 @@ def test_a_number_without_a_value_is_found_where_a_parameter_is_read_into_it(tex
 
 
 @pytest.mark.parametrize(
-    ("server", "told"),
+    ("server", "expected"),
     [
         ("", ["a.cpp waits for the action wave: no node of this package serves it."]),
         ('actionlib::SimpleActionServer<Wave> server(n, "wave", act);', []),
@@ -52,12 +52,12 @@ def test_a_number_without_a_value_is_found_where_a_parameter_is_read_into_it(tex
     ],
     ids=["none", "named", "unnamed"],
 )
-def test_an_action_is_waited_for_if_no_node_may_serve_it(server, told, tmp_path):
+def test_a_client_waits_in_vain_if_no_node_serves_its_action(server, expected, tmp_path):
     client = MAIN.format('actionlib::SimpleActionClient<Wave> client("wave", true);')
     files = {"a_DOT_cpp": client, "b_DOT_cpp": server}
     package = check_rules.make(tmp_path / "some_pkg", **files)
     found = [*waiting.RULE.findings(case(package))]
-    assert [one.message for one in found if one.severity == NOTE] == told
+    assert [one.message for one in found if one.severity == NOTE] == expected
 
 
 def test_a_target_that_is_waited_for_and_does_not_exist_is_found_where_cmake_stops(tmp_path):

@@ -32,6 +32,7 @@ from mrp_check.contract import defects, resources
 
 TUTORIAL = "mrp"
 CORRECT = resources.folder("correct")
+STYLES = [TUTORIAL, *sorted(path.stem for path in CORRECT.glob("*.patch"))]
 
 _FIELDS = ("SPDX-License-Identifier", "Style", "Base", "Without", "CRLF", "Spec", "Warns")
 

@@ -28,15 +28,15 @@ def _findings(case: Case) -> Iterator[Finding]:
         if not uses.is_test(file):
             yield from _first_of_each(file, _in_cpp(package.text(file)))
     for file in package.of_kind("launch"):
-        text = _XML_COMMENT.sub(_blank, package.text(file))
+        text = _XML_COMMENT.sub(uses.blank, package.text(file))
         yield from _first_of_each(file, _in_text(text, 0, text))
 
 
 def _first_of_each(file: str, found: Iterable[tuple[str, int]]) -> Iterator[Finding]:
-    told: set[str] = set()
+    named: set[str] = set()
     for path, line in found:
-        if path not in told:
-            told.add(path)
+        if path not in named:
+            named.add(path)
             yield Finding(
                 "starts",
                 f"{file} names {path}, a path in somebody's home folder: on no other computer is"
@@ -68,10 +68,6 @@ def _in_cpp(text: str) -> Iterator[tuple[str, int]]:
 def _in_text(part: str, start: int, text: str) -> Iterator[tuple[str, int]]:
     for match in _HOME.finditer(part):
         yield match.group(), text.count("\n", 0, start + match.start()) + 1
-
-
-def _blank(match: re.Match[str]) -> str:
-    return re.sub(r"[^\n]", " ", match.group())
 
 
 RULE = Rule("static", 91, ("facts",), _findings, also=("starts",), only=ANY)

@@ -6,24 +6,17 @@ from __future__ import annotations
 from typing import Iterator
 
 from mrp_check.confined.places import Kind
-from mrp_check.contract.finding import WARNING, Finding
+from mrp_check.contract.finding import Finding
 from mrp_check.contract.requirements import ANY, Rule
-from mrp_check.rules.queue import says_none
+from mrp_check.rules.queue import no_queue, says_none
 from mrp_check.sources.node import Node, each_node
 
 
 def _of(node: Node) -> Iterator[Finding]:
     for place in node.places(Kind.PUBLISHER) if node.is_python else ():
         if says_none(node, place):
-            yield node.finding(
-                "warnings",
-                "rospy.Publisher() is given no queue_size: it then sends each message before it"
-                " returns, and warns of it.",
-                place,
-                severity=WARNING,
-                expected="queue_size=10, or whatever the topic needs",
-                fix="Add queue_size=10.",
-                why="queue-size-missing",
+            yield no_queue(
+                node, place, "warnings", "queue_size=10, or whatever the topic needs", 10
             )
 
 

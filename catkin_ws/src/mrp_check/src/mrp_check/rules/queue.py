@@ -28,16 +28,7 @@ def _of(node: Node) -> Iterator[Finding]:
             if isinstance(queue, int) and queue is not True and queue != asked:
                 yield _other_queue(node, place, kind, queue, asked)
             elif node.is_python and kind is Kind.PUBLISHER and says_none(node, place):
-                yield node.finding(
-                    "queue",
-                    "rospy.Publisher() is given no queue_size: it then sends each message"
-                    " before it returns, and warns of it.",
-                    place,
-                    severity=WARNING,
-                    expected=f"queue_size={asked}",
-                    fix=f"Add queue_size={asked}.",
-                    why="queue-size-missing",
-                )
+                yield no_queue(node, place, "queue", f"queue_size={asked}", asked)
 
 
 _REFUSED = (True, Kind.SUBSCRIBER, 0)
@@ -67,6 +58,20 @@ def _other_queue(node: Node, place: Place, kind: Kind, queue: int, asked: int) -
         change=(f"queue_size={queue}", f"queue_size={asked}")
         if node.is_python
         else (f", {queue}", f", {asked}"),
+    )
+
+
+def no_queue(node: Node, place: Place, id_: str, expected: str, size: int) -> Finding:
+    """Return the Finding about a rospy.Publisher() without queue_size; size: what to give it"""
+    return node.finding(
+        id_,
+        "rospy.Publisher() is given no queue_size: it then sends each message before it returns,"
+        " and warns of it.",
+        place,
+        severity=WARNING,
+        expected=expected,
+        fix=f"Add queue_size={size}.",
+        why="queue-size-missing",
     )
 
 

@@ -110,7 +110,12 @@ def is_ros_package(name: str) -> bool:
 
 def without_comments(text: str) -> str:
     """Return a C++ source in which spaces stand for comments."""
-    return _COMMENT.sub(lambda m: re.sub(r"[^\n]", " ", m.group()), text)
+    return _COMMENT.sub(blank, text)
+
+
+def blank(match: re.Match[str]) -> str:
+    """Return spaces for what was matched, in as many lines."""
+    return re.sub(r"[^\n]", " ", match.group())
 
 
 def code(package: Package, file: str) -> str:
