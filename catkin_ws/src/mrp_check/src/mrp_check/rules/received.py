@@ -28,9 +28,10 @@ def _of(node: Node) -> Iterator[Finding]:
     lost = [value for value in sent if value not in heard]
     if not lost or heard - set(sent):
         yield from _repeated_finding(node, sent, logs, pattern)
+        yield from _slow_finding(node, role, logs, pattern)
         return
     wanted = sample(node.wanted.received_line or "", lost[0])
-    number = re.compile(rf"(?<!\d){lost[0]}(?!\d)")
+    number = re.compile(rf"(?<!\w){lost[0]}(?!\w)")  # not that of a name, such as /check_2
     near = [g for g in logs if number.search(g.text) and not pattern.search(g.text)]
     lines = [text for _, _, text in node.direct.lines] if node.direct else []
     printed = [text for text in lines if number.search(text) and not PREFIX.match(text)]
@@ -119,6 +120,27 @@ def _repeated_finding(
         expected="one line for each message, with its value",
         seen=few(values),
     )
+
+
+def _slow_finding(
+    node: Node, role: Subscribes, logs: Sequence[Log], pattern: re.Pattern[str]
+) -> Iterator[Finding]:
+    """Yield a Finding if a callback sleeps so long that its queue must overflow, had there been
+    more to hear. On a busy machine some values come late: so the least time between two counts."""
+    sleep = node.places.sleep_beside(node.name, Kind.LOG)
+    roles = [one for other in node.spec.nodes.values() for one in other.published]
+    arriving = sum(1 / r.period for r in roles if r.period and r.topic.name == role.topic.name)
+    times = [g.time for g in logs if {*_values([g], pattern)} & {*BURST}]
+    least = min((after - before for before, after in zip(times, times[1:])), default=0.0)
+    if sleep and least * arriving > 1:
+        yield node.finding(
+            "callbacks",
+            f"{node.name} was sent {len(BURST)} messages at once, and took {least:.1f} s for each"
+            " one: its callback sleeps. So more arrives than its queue holds.",
+            sleep,
+            expected=f"less than {1 / arriving:g} s, as often as messages arrive",
+            seen=f"at least {least:.1f} s between two of its lines",
+        )
 
 
 def _logged_place(node: Node, logs: Sequence[Log], pattern: re.Pattern[str]) -> Where:
