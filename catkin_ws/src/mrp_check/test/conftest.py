@@ -27,7 +27,8 @@ def programs(monkeypatch):
     names, run = [], confine.run
 
     def spied(command, *arguments, **options):
-        program = command[1] if command[0] == "/usr/bin/python3" else command[0]
+        words = command[4:] if command[:2] == ["bash", "-c"] else command  # what bash executes
+        program = words[1] if words[0] == "/usr/bin/python3" else words[0]
         names.append(os.path.basename(program))
         return run(command, *arguments, **options)
 

@@ -73,7 +73,8 @@ class AnyCase(Case):
 
     @functools.cached_property
     def observed(self) -> observing.Observed:
-        return unasked.observe(self, self.spec, self.launches, self.facts, self.enough)
+        known = self.spec, self.launches, self.facts
+        return unasked.observe(self.sessions, *known, self.enough)
 
 
 def _make_startable(path: pathlib.Path) -> None:

@@ -19,6 +19,7 @@ from mrp_check.contract.words import last_part
 from mrp_check.running import observing
 from mrp_check.running.node import Node
 from mrp_check.running.places import Places
+from mrp_check.running.sessions import Sessions
 from mrp_check.sources import node as sources_node
 from mrp_check.sources import reading
 from mrp_check.sources.cpp_read import CppReader
@@ -49,6 +50,11 @@ class Case(Workspace):
         super().__init__(package, folder, timeout, progress)
         self._spec = spec
         self.catkin = Catkin(self)
+        self.sessions = Sessions(self)
+
+    def close(self) -> None:
+        self.sessions.end()
+        super().close()
 
     @functools.cached_property
     def spec(self) -> Spec:
@@ -131,7 +137,7 @@ class Case(Workspace):
     @functools.cached_property
     def observed(self) -> observing.Observed:
         """What was seen when the nodes ran."""
-        return observing.observe(self, self.spec, self.launch, self.facts)
+        return observing.observe(self.sessions, self.spec, self.launch, self.facts)
 
     @functools.cached_property
     def places(self) -> Places:

@@ -81,6 +81,8 @@ class _Examination:
         self.reasons: list[str] = []
         self.lost: dict[str, Exception] = {}
         needs = needs_of(ids, rules)
+        if "nodes" in needs:
+            case.sessions.begin()
         if "facts" in needs:
             # This is done while CMake configures.
             _ = case.headers

@@ -27,6 +27,8 @@ TOOLS = {
     "make": "make",
     "roslaunch": "python3-roslaunch",
 }
+# An executable of an earlier build must not stand in for one that cannot be built now.
+_ANEW = 'find "$0/devel/lib" -type f -newer "$0/build/Makefile" -delete; exec "$@"'
 _KEEP_GOING = ("--no-print-directory", "-k", "-j2")
 
 
@@ -139,12 +141,11 @@ class Catkin:
             step = Step(*workspace.made)
             workspace.keep(self.configured, step)
             return step
-        if workspace.compiles_again:
-            # An executable of an earlier build must not stand in for one that cannot be built now.
-            made = ["find", "devel/lib", "-type", "f", "-newer", "build/Makefile", "-delete"]
-            workspace.run("env", f"--chdir={self.folder}", *made)
         # As catkin_make would, which took its time to find out that CMake need not run again.
-        result = self._run("make", f"--directory={self.folder / 'build'}", *_KEEP_GOING)
+        make = ["make", f"--directory={self.folder / 'build'}", *_KEEP_GOING]
+        if workspace.compiles_again:
+            make = ["bash", "-c", _ANEW, str(self.folder), *make]
+        result = self._run(*make)
         step = self._step(result)
         if result.ended_by is None:
             workspace.keep(self.configured, step)

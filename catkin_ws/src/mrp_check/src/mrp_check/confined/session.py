@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Runs a package's nodes under observation, and prints what was seen. Runs confined.
 
-Usage: python3 -m mrp_check.confined.session KIND PLAN    (of plans.py, and its class)
+Usage: python3 -m mrp_check.confined.session KIND FILE    (the class of a plan in plans.py, and
+where the plan will be; it waits until the file is there, and ends if that is empty)
 
 The nodes run apart from it, as apart.py says. Nothing of the package is run, read or imported here:
 it hears of the nodes through ROS, their output and /proc. It prints a result of seen.py.
@@ -12,14 +13,16 @@ import os
 import shutil
 import sys
 import tempfile
+import time
 
 from mrp_check.confined import alone, apart, crossing, launched, variables, warden
+from mrp_check.confined.activity import TICK
 from mrp_check.confined.observe import Observer
 from mrp_check.confined.plans import DirectPlan, LaunchPlan
 
 
 def main() -> None:
-    kind, plan = sys.argv[1:]
+    kind, file = sys.argv[1:]
     # Nothing but the result is printed.
     answer = os.fdopen(os.dup(1), "w")
     os.dup2(2, 1)
@@ -35,6 +38,12 @@ def main() -> None:
         os.environ.update(dict.fromkeys(variables.FOLDERS, folder))
         with Observer() as observer:
             result: object
+            while not os.path.exists(file):
+                time.sleep(TICK)
+            with open(file) as given:
+                plan = given.read()
+            if not plan:
+                os._exit(0)
             if kind == LaunchPlan.__name__:
                 result = launched.run(crossing.from_json(LaunchPlan, plan), observer, starter)
             else:

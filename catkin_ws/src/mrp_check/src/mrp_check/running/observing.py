@@ -11,27 +11,18 @@ from __future__ import annotations
 import dataclasses
 import os
 import pathlib
-from typing import TypeVar
 
-from mrp_check import confine, sandbox
-from mrp_check.confined import crossing, messages, variables
+from mrp_check.confined import messages, variables
 from mrp_check.confined.launch_dump import Started
-from mrp_check.confined.plans import DirectPlan, LaunchPlan
 from mrp_check.confined.seen import Alone, DirectResult, LaunchResult
-from mrp_check.contract.errors import CannotCheck
 from mrp_check.contract.resources import SHARES
 from mrp_check.contract.spec import Node, Spec
 from mrp_check.contract.words import last_part
 from mrp_check.running.planning import Planner
+from mrp_check.running.sessions import Sessions, too_busy
 from mrp_check.sources.facts import Facts
 from mrp_check.student.launch import Launch
-from mrp_check.student.workspace import NOETIC, Workspace, search_path, sourced
-
-_SESSION = "mrp_check.confined.session"  # not imported: it needs rospy, which takes its time
-_SPARE_SECONDS = 60  # that one run may take in addition to its plan
-_MOST_SEEN = 64 * 2**20  # bytes of a run's result
-
-T = TypeVar("T")
+from mrp_check.student.workspace import NOETIC, Workspace
 
 # Prints the environment that these files make, as far as there are any.
 _SOURCED = (
@@ -84,12 +75,12 @@ class Observed:
         return self.direct.nodes.get(key) if self.direct and key else None
 
 
-def observe(workspace: Workspace, spec: Spec, launch: Launch | None, facts: Facts) -> Observed:
+def observe(sessions: Sessions, spec: Spec, launch: Launch | None, facts: Facts) -> Observed:
     """Run the nodes, and return what was seen. Raises CannotCheck.
 
     launch: what roslaunch makes of the package's launch file
     """
-    result, file = Observed(), None
+    result, file, workspace = Observed(), None, sessions.workspace
     if launch and not launch.error:
         result.started = {one.name: one for one in launch.nodes if one.name in spec.nodes}
     if launch and result.started:
@@ -99,12 +90,13 @@ def observe(workspace: Workspace, spec: Spec, launch: Launch | None, facts: Fact
         result.problems.append("none of the nodes has an executable to be run")
         return result
     under, problems = planner.launch(file), result.problems
-    launched = workspace.submit(session, workspace, under, LaunchResult, problems)
-    direct = workspace.submit(session, workspace, planner.direct(), DirectResult, problems)
-    result.launch, result.direct = launched.result(), direct.result()
+    # What lasts longest begins first.
+    direct = workspace.submit(sessions.result, planner.direct(), DirectResult, problems)
+    result.launch = sessions.result(under, LaunchResult, problems)
+    result.direct = direct.result()
     if result.launch and result.launch.ending == "most":
         # Not the package's fault: one that never comes up is idle, or uses up its time.
-        raise _too_busy(under.common.most)
+        raise too_busy(under.common.most)
     return result
 
 
@@ -159,50 +151,3 @@ def _environment(workspace: Workspace) -> dict[str, str]:
     pairs = dict(entry.split("=", 1) for entry in done.output.split("\0") if "=" in entry)
     own = {variables.PACKAGES: workspace.ros_packages, variables.PYTHONPATH: ""}
     return {**own, **pairs, **variables.AT_ONCE}
-
-
-def session(
-    workspace: Workspace, plan: LaunchPlan | DirectPlan, kind: type[T], problems: list[str]
-) -> T | None:
-    """Have session.py carry out a plan; return the result, which is of that kind.
-
-    Returns None if the package kept it from giving a result; `problems` then has the reason.
-    Raises CannotCheck.
-    """
-    common, own = plan.common, str(sandbox.PACKAGE.parent)
-    command = ["/usr/bin/python3", "-m", _SESSION, type(plan).__name__, crossing.to_json(plan)]
-    seconds = common.most + common.stop_seconds + _SPARE_SECONDS
-    env = variables.environment(common.writable[0], PYTHONPATH=own, PATH=search_path())
-    limits = confine.Limits(time=seconds, output=_MOST_SEEN)
-    try:
-        done = confine.run(
-            sourced(command),
-            workspace.folder,
-            limits,
-            env,
-            readable=[workspace.given],
-            observes=True,
-        )
-    except confine.ConfineError as error:
-        problems.append(f"{error}")
-        return None
-    if done.ended_by == "time":
-        raise _too_busy(common.most)
-    if done.code == 0:
-        try:
-            return crossing.from_json(kind, done.output)
-        except crossing.CrossingError as error:
-            raise CannotCheck(f"What the observer says cannot be read: {error}") from None
-    said = (done.errors.strip().splitlines() or [f"it ended with {done.code}"])[-1]
-    why = done.limit_text(limits)
-    if not why and "Traceback" in done.errors:
-        raise CannotCheck(f"The observer itself failed: {said}. Please report it.")
-    problems.append(f"the nodes could not be observed: {why or said}")
-    return None
-
-
-def _too_busy(seconds: float) -> CannotCheck:
-    return CannotCheck(
-        f"The nodes did not come up within {seconds:.0f} s, though they were at work: this machine"
-        " is too busy. Try again with less at the same time."
-    )

@@ -17,6 +17,7 @@ from mrp_check.confined.seen import DirectResult, LaunchResult
 from mrp_check.contract.spec import Spec
 from mrp_check.running import observing
 from mrp_check.running.observing import Launched, Observed
+from mrp_check.running.sessions import Sessions
 from mrp_check.sources import asked
 from mrp_check.sources.facts import Facts
 from mrp_check.student.launch import Launch
@@ -27,13 +28,13 @@ _MOST = 6  # launch files that are run
 
 
 def observe(
-    workspace: Workspace, spec: Spec, launches: list[Launch], facts: Facts, enough: int
+    sessions: Sessions, spec: Spec, launches: list[Launch], facts: Facts, enough: int
 ) -> Observed:
     """Run the nodes, and return what was seen. Raises CannotCheck.
 
     enough: messages of each publisher
     """
-    result = Observed()
+    result, workspace = Observed(), sessions.workspace
     own = {launch.file: _own(workspace, spec, launch) for launch in _outermost(launches)}
     for launch in launches:
         for started in [] if launch.error else launch.nodes:
@@ -48,7 +49,7 @@ def observe(
     for key, one in direct.nodes.items():
         direct.nodes[key] = dataclasses.replace(one, publishes=enough)
     problems = result.problems
-    ran = workspace.submit(observing.session, workspace, direct, DirectResult, problems)
+    ran = workspace.submit(sessions.result, direct, DirectResult, problems)
     files = {file: nodes for file, nodes in own.items() if nodes and file}
     runs = [(file, workspace.package_folder / file, files[file]) for file in list(files)[:_MOST]]
     if len(result.executables) > 1 and result.executables.keys() - result.started.keys():
@@ -57,7 +58,7 @@ def observe(
         runs.append(("", planner.write_launch_file(named), made))
     for file, path, nodes in runs:
         plan = planner.of_file(path, _SECONDS, _watched(workspace, facts, nodes), enough)
-        seen = observing.session(workspace, plan, LaunchResult, problems)
+        seen = sessions.result(plan, LaunchResult, problems)
         if seen:
             result.launches.append(Launched(file, nodes, seen))
     result.direct = ran.result()
