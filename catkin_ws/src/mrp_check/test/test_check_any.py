@@ -71,7 +71,7 @@ DOUBTED = [
 
 
 @proves(
-    "In four trials, somebody listed the defects of public packages before the checker saw them.",
+    "In five trials, somebody listed the defects of public packages before the checker saw them.",
     "Each trial was on other packages, as the checker was improved after each.",
     "Three more labels of the third trial and two of the fourth were wrong, and are not counted:",
 )
@@ -85,7 +85,7 @@ def test_trials_on_packages_by_strangers():
     trials = [*csv.reader(recorded.read_text().splitlines())][1:]
     tried = []
     wrong = []
-    names = "", "_later", "_third", "_fourth"
+    names = "", "_later", "_third", "_fourth", "_fifth"
     for said, name in zip(trials, names, strict=True):
         text = pathlib.Path(__file__).with_name(f"strangers{name}.csv").read_text()
         rows = [*csv.DictReader(text.splitlines())]
@@ -99,7 +99,7 @@ def test_trials_on_packages_by_strangers():
         assert not packages & {one for others in tried for one in others}
         tried.append(packages)
         wrong.append(found.count("none"))
-    assert wrong == [0, 0, 3, 2]
+    assert wrong == [0, 0, 3, 2, 0]
 
 
 def checked(folder):
