@@ -160,18 +160,19 @@ catkin_package()
 include_directories(${catkin_INCLUDE_DIRS})
 add_executable(talker src/talker.cpp)
 target_link_libraries(talker ${catkin_LIBRARIES})
-add_executable(listener src/listener.cpp)
+add_executable(listener src/listener)
 target_link_libraries(listener ${catkin_LIBRARIES})
 catkin_install_python(PROGRAMS scripts/talker.py scripts/listener.py
   DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
+catkin_package()
 """
 
 
 def correct(folder):
     """Make talkers and listeners in both languages, as the wiki has them, and no launch file.
 
-    With `genmsg`, scripts that only catkin_install_python() starts, a node that returns 3 in the
-    end, and what an editor has left.
+    With `genmsg`, scripts that only catkin_install_python() starts, a source without its ending,
+    catkin_package() twice, a node that returns 3 in the end, and what an editor has left.
     """
     manifest = check_rules.MANIFEST.replace(
         "<depend>rospy</depend>",

@@ -152,3 +152,46 @@ def test_catkin_simple_finds_catkin_and_describes_the_package(tmp_path):
     assert not check_rules.file_findings(cmake_rule, package)
     (package.root / "CMakeLists.txt").write_text(text)
     assert len(check_rules.file_findings(cmake_rule, Package(package.root))) == 2
+
+
+def test_a_second_catkin_package_moves_no_executable(tmp_path):
+    target = "add_executable(some src/some.cpp)\n"
+    package = check_rules.make(
+        tmp_path, CMakeLists_DOT_txt=check_rules.CMAKE + target + "catkin_package()\n"
+    )
+    assert not check_rules.file_findings(cmake_rule, package)
+    text = check_rules.CMAKE.replace("catkin_package(", f"{target}catkin_package(")
+    (tmp_path / "CMakeLists.txt").write_text(text)
+    (found,) = check_rules.file_findings(cmake_rule, Package(tmp_path))
+    assert found.message.startswith("catkin_package() comes after the target some")
+
+
+@pytest.mark.parametrize(
+    ("version", "is_there"),
+    [("2.8.3", True), ("3.19 FATAL_ERROR", True), ("3.20", False), ("3.10...3.25", False)],
+)
+def test_an_old_cmake_adds_the_ending_of_a_source(version, is_there, tmp_path):
+    text = check_rules.CMAKE.replace("VERSION 3.10", f"VERSION {version}")
+    package = check_rules.make(
+        tmp_path,
+        CMakeLists_DOT_txt=text + "add_executable(some src/some)\n",
+        src__some_DOT_cpp="",
+    )
+    target = check_rules.model_of(package).targets["some"]
+    assert target.sources == (["src/some.cpp"] if is_there else [])
+    assert bool(target.missing) is not is_there
+
+
+def test_a_package_of_which_debian_keeps_the_headers_apart_is_not_here(tmp_path, monkeypatch):
+    monkeypatch.setattr(compiler.uses, "SHARES", (tmp_path / "share",))
+    monkeypatch.setattr(compiler.uses, "debian_packages", lambda: {"libfar-srvs-dev"})
+    compiler.uses.is_ros_package.cache_clear()
+    (tmp_path / "share" / "far_srvs").mkdir(parents=True)
+    (tmp_path / "share" / "far_srvs" / "package.xml").touch()
+    package = check_rules.make(tmp_path / "some_pkg")
+    problem = compiler.Problem("src/a.cpp", 1, "far_srvs/Empty.h: No such file or directory", "")
+    assert compiler.absent(package, [problem]) == {"src/a.cpp": "far_srvs"}
+    (tmp_path / "include" / "far_srvs").mkdir(parents=True)
+    (tmp_path / "include" / "far_srvs" / "Trigger.h").touch()
+    assert compiler.absent(package, [problem]) == {}
+    compiler.uses.is_ros_package.cache_clear()

@@ -324,6 +324,7 @@ def test_own_service_is_made_before_it_is_used(without, file, says, tmp_path):
         ("geometry_msgs", "cpp", {"libgeometry-msgs-dev"}, "(Debian package libgeometry-msgs-dev)"),
         ("map_msgs", "cpp", {"ros-map-msgs"}, "(Debian package ros-map-msgs)"),
         ("cv2", "python", {"python3-opencv"}, "(Debian package python3-opencv)"),
+        ("tkinter", "python", {"python3-tk"}, "(Debian package python3-tk)"),
         ("mrs_lib", "cpp", {"libtf-dev"}, "(not in Debian)"),
         ("mrs_lib", "cpp", set(), "(Debian package libmrs-lib-dev)"),
     ],

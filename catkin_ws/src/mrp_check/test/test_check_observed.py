@@ -23,8 +23,9 @@ from mrp_check.confined.seen import (
     Seen,
 )
 from mrp_check.contract.errors import CannotCheck
+from mrp_check.contract.finding import ERROR, NOTE
 from mrp_check.rules import REQUIREMENTS
-from mrp_check.running import behaviour, observing, planning
+from mrp_check.running import behaviour, observing, planning, starting
 from mrp_check.sources.facts import Facts
 from mrp_check.student.package import Package
 from mrp_testing.waiting import wait_until
@@ -270,3 +271,20 @@ with Observer():
 def test_the_observer_never_connects_twice_at_once_to_a_publisher():
     """rospy would leave one that says nothing, and the publisher would wait for it for good."""
     assert _said_by(_TOLD_TWICE) == "one after the other\n"
+
+
+@pytest.mark.parametrize(("module", "severity"), [("tkinter", NOTE), ("no_such_module", ERROR)])
+def test_what_a_library_imports_and_debian_keeps_apart_is_no_error(module, severity, tmp_path):
+    """turtle, which is here, imports tkinter: Debian has that in a package of its own."""
+    folder = make_package(tmp_path / "lab_pkg", {"right": ("", "")}, {})
+    observed = observing.Observed(executables={"publisher_right": folder})
+    case = observed_case(tmp_path, folder, observed)
+    place = f'  File "{case.package_folder}/scripts/publisher_right.py", line 2, in <module>'
+    error = f"ModuleNotFoundError: No module named '{module}'"
+    lines = [(0.1, "err", text) for text in ("Traceback (most recent call last):", place, error)]
+    alone = Alone(code=1, ended_after=0.1, lines=lines)
+    observed.direct = DirectResult({"publisher_right": alone})
+    (found,) = starting.start_findings(case.nodes["publisher_right"])
+    case.close()
+    assert (found.severity, found.line) == (severity, 2)
+    assert ("not on this machine" in found.message) == (severity == NOTE)

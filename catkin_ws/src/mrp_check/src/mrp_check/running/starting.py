@@ -12,6 +12,7 @@ from mrp_check.contract.finding import ERROR, NOTE, Finding, Where
 from mrp_check.running.places import Traceback
 from mrp_check.running.traces import Traces
 from mrp_check.running.words import code_text, last_words
+from mrp_check.sources import uses
 
 _EXPECTED = "a node that goes on until Ctrl-C"
 
@@ -64,12 +65,16 @@ def _traceback(node: Traces) -> Traceback | None:
 
 def _raised(node: Traces, place: Where, kind: str, text: str) -> Finding:
     module = re.match(r"No module named '(\w+)", text)
-    is_absent = module and module.group(1) in node.places.facts.absent(node.name)
+    name = module.group(1).lstrip("_") if module else ""
+    is_known = name in node.places.facts.absent(node.name)
+    # What one of Python's or Debian's modules imports is named by no source.
+    apart = not is_known and uses.is_of_debian(name)
     return node.finding(
         id_of_error(kind, text, "starts"),
-        f"{node.name} ends as soon as it is started: {kind}: {text}",
+        f"{node.name} ends as soon as it is started: {kind}: {text}"
+        + (f" {uses.absent(name, 'python')}" if apart else ""),
         place,
-        NOTE if is_absent else ERROR,
+        NOTE if is_known or apart else ERROR,
         expected=_EXPECTED,
         seen=f"{kind}: {text}",
     )

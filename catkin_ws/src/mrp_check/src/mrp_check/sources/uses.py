@@ -8,6 +8,7 @@ import functools
 import pathlib
 import re
 import subprocess
+import sys
 import typing
 from typing import Callable, Iterator
 
@@ -58,7 +59,12 @@ class Use(typing.NamedTuple):
 
 _ALL = 20000  # a Debian release has more packages; without its lists, apt knows the installed ones
 # Python modules whose Debian package is called otherwise.
-_DEBIAN = {"cv2": "python3-opencv", "PIL": "python3-pil", "OpenGL": "python3-opengl"}
+_DEBIAN = {
+    **{"cv2": "python3-opencv", "PIL": "python3-pil", "OpenGL": "python3-opengl"},
+    "tkinter": "python3-tk",
+}
+# Python's own modules: Debian keeps some of them in packages of their own.
+_OWN = getattr(sys, "stdlib_module_names", frozenset(("tkinter",)))
 
 
 def _guesses(name: str, language: str) -> list[str]:
@@ -88,7 +94,7 @@ def absent(name: str, language: str) -> str:
 
 def is_of_debian(module: str) -> bool:
     """Return whether Debian has a Python module of that name, on this machine or not."""
-    return f"python3-{module.lower().replace('_', '-')}" in debian_packages()
+    return module in _OWN or _guesses(module, "python")[0] in debian_packages()
 
 
 @functools.lru_cache(maxsize=None)
@@ -106,6 +112,11 @@ def debian_packages() -> set[str]:
 def is_ros_package(name: str) -> bool:
     """Return whether this machine has a ROS package of that name."""
     return any((pathlib.Path(share) / name / "package.xml").is_file() for share in SHARES)
+
+
+def _has_headers(folder: str) -> bool:
+    places = (pathlib.Path(share).parent / "include" / folder for share in SHARES)
+    return any(next(place.glob("*.h*"), None) for place in places)
 
 
 def without_comments(text: str) -> str:
@@ -143,10 +154,12 @@ def absent_header(package: Package, header: str) -> str | None:
     """Return the ROS package, or the library of Debian's, that has a header and is not on this
     machine; None if the header is the package's own, or the name of what has it is misspelt."""
     name = package_of_header(header)
-    if not name or name == package.name or is_ros_package(name):
+    if not name or name == package.name:
         return None
-    is_named = package.find_line("package.xml", f">{name}<")
     is_debian = _guesses(name, "cpp")[0] in debian_packages()
+    if is_ros_package(name):  # Debian may keep its headers in a package of their own
+        return name if is_debian and not _has_headers(header.split("/")[0]) else None
+    is_named = package.find_line("package.xml", f">{name}<")
     return name if is_named or is_debian or is_called_so(name) else None
 
 

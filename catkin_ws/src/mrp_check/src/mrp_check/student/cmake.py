@@ -143,6 +143,9 @@ _NO_SOURCES = set(
     ).split()
 )
 
+# In CMake's order (policy CMP0115).
+_ENDINGS = (".c", ".C", ".c++", ".cc", ".cpp", ".cxx", ".cu", ".mpp", ".m", ".M", ".mm")
+
 
 class Model:
     """What all calls of a package come to.
@@ -256,9 +259,9 @@ class Model:
             self.components.setdefault(name, call)
 
     def _catkin_package(self, call: Call) -> None:
-        self.catkin_package = self.catkin_package or call
-        if self.targets:
+        if self.targets and not self.catkin_package:  # a later call moves no executable
             self.late = next(iter(self.targets.values()))
+        self.catkin_package = self.catkin_package or call
         names = {
             *("INCLUDE_DIRS", "LIBRARIES", "CATKIN_DEPENDS", "DEPENDS", "CFG_EXTRAS"),
             *("EXPORTED_TARGETS", "SKIP_CMAKE_CONFIG_GENERATION"),
@@ -280,11 +283,19 @@ class Model:
         for source in sources:
             if "$" in source or source in _NO_SOURCES:
                 continue
-            path = self.path(source, call)
-            if path is None or not (self.folder / path).exists():
+            names = [source, *(source + ending for ending in self._endings())]
+            paths = (self.path(name, call) for name in names)
+            path = next((one for one in paths if one and (self.folder / one).is_file()), None)
+            if path is None:
                 target.missing.append((source, call.file, call.line))
             else:
                 target.sources.append(path)
+
+    def _endings(self) -> tuple[str, ...]:
+        """Return what CMake itself adds to the name of a source: nothing since version 3.20."""
+        asked = [c.arguments for c in self.calls if c.command == "cmake_minimum_required"]
+        newest = asked[0][1].split("...")[-1] if asked and len(asked[0]) > 1 else ""
+        return () if [*map(int, re.findall(r"\d+", newest))] >= [3, 20] else _ENDINGS
 
     def _add_library(self, call: Call) -> None:
         self._add_executable(call, is_library=True)
