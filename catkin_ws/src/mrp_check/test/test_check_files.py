@@ -265,6 +265,21 @@ def test_what_makes_messages(generator, severities, tmp_path):
 
 
 @pytest.mark.parametrize(
+    ("finds", "says"),
+    [
+        ("catkin REQUIRED COMPONENTS std_msgs", ["find_package(catkin ...) does not name"]),
+        ("catkin REQUIRED COMPONENTS message_generation std_msgs", []),
+        ("catkin_simple REQUIRED", []),
+    ],
+)
+def test_generate_messages_is_known_where_its_package_is_found(finds, says, tmp_path):
+    text_ = f"find_package({finds})\ngenerate_messages(DEPENDENCIES std_msgs)\ncatkin_package()\n"
+    package = check_rules.make(tmp_path, CMakeLists_DOT_txt=text_)
+    found = [finding.message for finding in file_findings(messages, package)]
+    assert [message[: len(word)] for message, word in zip(found, says, strict=True)] == says
+
+
+@pytest.mark.parametrize(
     ("folder", "says"),
     [("srv/", []), ("", ["looks for srv/Ask.srv, and the file lies at Ask.srv: CMake stops."])],
 )

@@ -285,3 +285,20 @@ def test_condition_before_publish(new, line, tmp_path):
     place = one.places.condition_of_publish("publisher_py_node")
     one.close()
     assert (text.splitlines()[place[1] - 1].strip().startswith(line)) if line else place is None
+
+
+@pytest.mark.parametrize(
+    ("code", "line"),
+    [
+        ("words = raw_input()", 3),
+        ("for number in xrange(3):\n    print(number)", 3),
+        ("if sys.version_info[0] < 3:\n    words = raw_input()", None),
+        ("words = raw_input() if six.PY2 else input()", None),
+        ("try:\n    words = raw_input()\nexcept NameError:\n    words = input()", None),
+        ("try:\n    input = raw_input\nexcept NameError:\n    pass", None),
+    ],
+)
+def test_a_name_of_python_2_is_found_where_nothing_asks_for_it(code, line, tmp_path):
+    found = check_rules.python_findings(tmp_path, f"import sys\nimport six\n{code}\n")
+    names = [one for one in found if one.message.startswith("Python 3 has no")]
+    assert [one.line for one in names] == ([line] if line else [])

@@ -31,10 +31,12 @@ def _findings(case: Case) -> Iterator[Finding]:
         for half, said in enumerate((service.request, service.response)):
             yield from _definition(package, path, said, half) if said else ()
     files = [path for path in package.of_kind(*_KINDS) if path.count("/") <= 1]
-    if not files and not model.message_files or not model.complete and model.catkin is None:
+    made = model.message_files or model.generate
+    if not files and not made or not model.complete and model.catkin is None:
         return
-    yield from _in_cmake(case, files)
-    if manifest:
+    if not _finds_all(model):
+        yield from _in_cmake(case, files)
+    if manifest and (files or model.message_files):
         yield from _in_manifest(package, manifest)
     yield from _order(package, model)
 
@@ -45,7 +47,8 @@ def _in_cmake(case: Case, files: list[str]) -> Iterator[Finding]:
     own = {*case.spec.messages, *(s.type.split("/")[1] for s in case.spec.services.values())}
     catkin_line, call = model.catkin.line if model.catkin else 1, model.add_message_files
     brings = {"message_generation", "genmsg"}  # the first is all of it; the second builds, too
-    if not brings & {*model.components} and files and model.catkin:
+    asks = files or model.generate
+    if asks and model.catkin and not brings & {*model.components}:
         yield _message_finding(
             "find_package(catkin ...) does not name message_generation, which makes code of the"
             " package's own messages.",
@@ -74,6 +77,11 @@ def _in_cmake(case: Case, files: list[str]) -> Iterator[Finding]:
             f"generate_messages(...) after {call.command}(...)",
             "Add generate_messages(DEPENDENCIES std_msgs).",
         )
+
+
+def _finds_all(model: Model) -> bool:
+    """Return whether catkin_simple finds what package.xml names, and makes the messages."""
+    return model.catkin is not None and model.catkin.arguments[0] == "catkin_simple"
 
 
 def _elsewhere(case: Case, path: str) -> str | None:

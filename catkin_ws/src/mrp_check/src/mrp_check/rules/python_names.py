@@ -21,8 +21,11 @@ from mrp_check.sources.python_rule import PythonRule, of_sources
 from mrp_check.sources.python_source import Source
 from mrp_check.student.package import Package
 
-# Names of Python 2, which old code mentions where Python 3 does not come by.
-_PYTHON2 = {"unicode", "xrange", "raw_input", "long", "basestring", "reduce", "unichr", "file"}
+# Names of Python 2 -> what Python 3 has for them.
+_PYTHON2 = {
+    **{"unicode": "str", "xrange": "range", "raw_input": "input", "long": "int"},
+    **{"basestring": "str", "reduce": "functools.reduce", "unichr": "chr", "file": "open"},
+}
 
 
 class Names(PythonRule):
@@ -131,10 +134,37 @@ class Names(PythonRule):
             if not isinstance(message, (messages.UndefinedName, messages.UndefinedLocal)):
                 continue
             name = message.message_args[0]
-            if name in _PYTHON2 or name in said or self.source.has_star:
+            if name in said or self.source.has_star:
                 continue
-            said.add(name)
-            yield self._undefined(name, message)
+            if name not in _PYTHON2:
+                said.add(name)
+                yield self._undefined(name, message)
+            elif not self._is_asked_for(name, message.lineno):
+                said.add(name)
+                yield self._of_python2(name, message.lineno)
+
+    def _is_asked_for(self, name: str, line: int) -> bool:
+        """Return whether old code asks, before it uses a name, whether Python has it."""
+        used = [n for n in self.source.nodes(ast.Name) if (n.id, n.lineno) == (name, line)]
+        for node in used:
+            if self.source.is_guarded(node, "NameError"):
+                return True
+            for parent in self.source.above(node):
+                asked = ast.walk(parent.test) if isinstance(parent, (ast.If, ast.IfExp)) else ()
+                words = (getattr(one, "attr", getattr(one, "id", "")) for one in asked)
+                if any(re.search(r"version|PY_?[23]|python[23]", word) for word in words):
+                    return True
+        return not used
+
+    def _of_python2(self, name: str, line: int) -> Finding:
+        return self.finding(
+            "python-names",
+            f"Python 3 has no {name}: it ends with a NameError when it comes here.",
+            line,
+            expected=_PYTHON2[name],
+            fix=f"Write {_PYTHON2[name]} for {name}.",
+            why="name-not-defined",
+        )
 
     def _undefined(self, name: str, message: messages.Message) -> Finding:
         if isinstance(message, messages.UndefinedLocal):
