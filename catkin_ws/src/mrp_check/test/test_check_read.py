@@ -9,7 +9,7 @@ from check_rules import MANIFEST
 from mrp_check import check
 from mrp_check.building import configuring
 from mrp_check.contract.finding import NOTE, WARNING, Finding
-from mrp_check.rules import unset, waiting
+from mrp_check.rules import arguments, unset, waiting
 from mrp_check.sources.facts import Facts
 from mrp_check.student.cmake import Model
 
@@ -41,6 +41,34 @@ def test_a_number_without_a_value_is_found_where_a_parameter_is_read_into_it(tex
     package = check_rules.make(tmp_path / "some_pkg", src__a_DOT_cpp=text)
     found = [(one.severity, one.line) for one in unset.RULE.findings(case(package))]
     assert found == ([(WARNING, line)] if line else [])
+
+
+def test_a_parameter_that_a_launch_file_sets_under_a_name_like_it_is_named(tmp_path):
+    text = MAIN.format('int a; n.getParam("print_rate", a);')
+    known = case(check_rules.make(tmp_path / "some_pkg", src__a_DOT_cpp=text))
+    known.launch = types.SimpleNamespace(params={"/a/print_rat": 2})
+    (found,) = unset.RULE.findings(known)
+    assert found.message.endswith("A launch file sets print_rat.")
+
+
+@pytest.mark.parametrize(
+    ("code", "line", "says"),
+    [
+        ("std::string name = argv[1];\n  if (argc == 2) {}", 4, "look at argc first"),
+        ("if (argc != 3)\n  {\n    return 1;\n  }\n  a = atoi(argv[3]);", 8, "argc == 3 alone"),
+        ("if (argc != 3) return 1;\n  a = atoi(argv[2]);", None, ""),
+        ("if (argc < 2) {}\n  a = atoi(argv[1]);", None, ""),
+        ("if (argv[1] == nullptr) {}\n  a = atoi(argv[1]);", None, ""),
+        ("read(argc, argv);\n  a = atoi(argv[1]);", None, ""),
+        ("// a = argv[1];", None, ""),
+    ],
+)
+def test_an_argument_is_read_where_it_may_be_missing(code, line, says, tmp_path):
+    head = 'int main(int argc, char** argv)\n{\n  ros::init(argc, argv, "a");\n  '
+    package = check_rules.make(tmp_path / "some_pkg", src__a_DOT_cpp=f"{head}{code}\n}}\n")
+    found = [*arguments.RULE.findings(case(package))]
+    assert [one.line for one in found] == ([line] if line else [])
+    assert all(says in one.message and one.severity == WARNING for one in found)
 
 
 @pytest.mark.parametrize(

@@ -50,8 +50,8 @@ def _in_cmake(case: Case, files: list[str]) -> Iterator[Finding]:
     asks = files or model.generate
     if asks and model.catkin and not brings & {*model.components}:
         yield _message_finding(
-            "find_package(catkin ...) does not name message_generation, which makes code of the"
-            " package's own messages.",
+            "find_package(catkin ...) does not name message_generation, which brings"
+            " generate_messages() and makes code of the package's own messages.",
             catkin_line,
             "find_package(catkin REQUIRED COMPONENTS message_generation ...)",
             "Add message_generation to COMPONENTS.",

@@ -9,6 +9,7 @@ from typing import Iterator
 from mrp_check.case import Case
 from mrp_check.contract.finding import WARNING, Finding
 from mrp_check.contract.requirements import ANY, Rule
+from mrp_check.contract.words import last_part, nearest
 from mrp_check.sources import uses
 
 # A whole statement: what the call returns is not looked at.
@@ -19,22 +20,25 @@ _NUMBER = r"\b(?:int|double|float|bool|long|short|unsigned|size_t|u?int\d+_t)\s+
 
 
 def _findings(case: Case) -> Iterator[Finding]:
+    params = {last_part(name) for name in (case.launch.params if case.launch else {})}
     for node, files in case.facts.sources.items():
         for file in files:
             if case.package.kind(file) in ("cpp", "header"):
-                yield from _of(node, file, uses.code(case.package, file))
+                yield from _of(node, file, uses.code(case.package, file), params)
 
 
-def _of(node: str, file: str, text: str) -> Iterator[Finding]:
+def _of(node: str, file: str, text: str, params: set[str]) -> Iterator[Finding]:
     for match in _READ.finditer(text):
         name, variable = match.groups()
         is_asked = re.search(rf'hasParam\s*\(\s*"{re.escape(name)}"', text)
         if is_asked or _has_value(text, variable, match.start()):
             continue
+        near = nearest(last_part(name), params, 0.8)
         yield Finding(
             "starts",
             f"Where the parameter {name} is not set, {variable} has no value: getParam() leaves it"
-            " as it is, and it may be any number.",
+            " as it is, and it may be any number."
+            + (f" A launch file sets {near}." if near and near != last_part(name) else ""),
             file,
             text.count("\n", 0, match.start(1)) + 1,
             WARNING,

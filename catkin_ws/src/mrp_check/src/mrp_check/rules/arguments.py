@@ -1,0 +1,63 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A C++ program looks whether an argument was given before it reads it."""
+
+from __future__ import annotations
+
+import re
+from typing import Iterator
+
+from mrp_check.case import Case
+from mrp_check.contract.finding import WARNING, Finding
+from mrp_check.contract.requirements import ANY, Rule
+from mrp_check.sources import uses
+
+_READ = re.compile(r"\bargv\s*\[\s*([1-9])\s*\]")
+# The parameter of main(), and what ros::init() takes out of it, say nothing of how many there are.
+_TAKEN = re.compile(r"\bint\s+argc\b|\bros::init\s*\(\s*argc\b")
+_COUNTED = re.compile(
+    r"\bargc\b|\bif\s*\(\s*!?\s*argv\b|\bargv\s*\[\s*\d\s*\]\s*[!=]=\s*(?:NULL|nullptr|0)\b"
+)
+# Only one count goes on past this.
+_ONLY = re.compile(
+    r"\bif\s*\(\s*argc\s*!=\s*(\d+)\s*\)\s*(?:\{[^{}]*?)?\b(?:return|exit)\b[^;{}]*;"
+)
+
+
+def _findings(case: Case) -> Iterator[Finding]:
+    for node, files in case.facts.sources.items():
+        for file in files:
+            if case.package.kind(file) == "cpp":
+                code = _TAKEN.sub(uses.blank, uses.code(case.package, file))
+                yield from _of(node, file, code)
+
+
+def _of(node: str, file: str, code: str) -> Iterator[Finding]:
+    only = _ONLY.search(code)
+    for read in _READ.finditer(code):
+        line = code.count("\n", 0, read.start()) + 1
+        number, lines = int(read[1]), code.split("\n")
+        before = "\n".join(lines[:line])
+        if only and only.end() < read.start() and number >= int(only[1]):
+            goes_on = f"it goes on with argc == {only[1]} alone, and then there is no argv[{number}]"
+            fix = f"Ask for argc != {number + 1}."
+        elif not only and not _COUNTED.search(before):
+            goes_on = f"it does not look at argc first: where no argument is given, argv[{number}]"
+            goes_on += " is no text"
+            fix = f"Read it only if argc > {number}."
+        else:
+            continue
+        yield Finding(
+            "starts",
+            f"{node} reads argv[{number}], and {goes_on}. The program then most likely dies.",
+            file,
+            line,
+            WARNING,
+            expected=f"argc > {number} wherever argv[{number}] is read",
+            seen=lines[line - 1].strip(),
+            fix=fix,
+            node=node,
+        )
+        return
+
+
+RULE = Rule("static", 93, ("facts",), _findings, also=("starts",), only=ANY)
