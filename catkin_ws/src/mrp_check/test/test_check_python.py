@@ -8,7 +8,7 @@ import check_rules
 import pytest
 from check_rules import told
 from mrp_check.confined.places import Kind, Place
-from mrp_check.sources import facts, uses
+from mrp_check.sources import facts, python_read, uses
 
 pytestmark = pytest.mark.quick
 
@@ -302,3 +302,19 @@ def test_a_name_of_python_2_is_found_where_nothing_asks_for_it(code, line, tmp_p
     found = check_rules.python_findings(tmp_path, f"import sys\nimport six\n{code}\n")
     names = [one for one in found if one.message.startswith("Python 3 has no")]
     assert [one.line for one in names] == ([line] if line else [])
+
+
+@pytest.mark.parametrize(
+    ("code", "lines", "is_read"),
+    [
+        ("print 'a'  # b\nprint 'c',\n", [], True),
+        ("print 'a'\ntry:\n    pass\nexcept IOError, error:\n    print error\n", [4], True),
+        ("if 1:\n    if 2:\n        a = 1\n\tprint 'a'\n", [4], True),
+        ("print 'a'\nif 2 = 3:\n    print 'b'\n", [2], True),
+        ("print 'a'\nb = (\n", [2], False),
+    ],
+)
+def test_what_else_is_wrong_in_a_file_that_python_cannot_read(code, lines, is_read, tmp_path):
+    package = check_rules.make(tmp_path, src__odd_DOT_py=code)
+    source, found = python_read.further(package, "src/odd.py")
+    assert ([one.line for one in found], source is not None) == (lines, is_read)

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import re
+from typing import Callable, Sequence
 
 from mrp_check.contract.finding import Finding
 from mrp_check.sources.python_source import Source
@@ -35,6 +36,45 @@ _WHY = (
     (r"multiple exception types", "python2-except"),
     (r"", "python-syntax"),
 )
+# What Python says -> how the same is written in Python 3, in as many lines.
+_IN_PYTHON3: Sequence[tuple[str, Callable[[str], str]]] = (
+    (r"call to 'print'", lambda text: _PRINT.sub(_printed, text)),
+    (r"multiple exception types|^invalid syntax$", lambda text: _EXCEPT.sub(r"\1 as \2:", text)),
+    (r"Maybe you meant '=='", lambda text: _EQUAL.sub(r"\1==", text)),
+    (r"inconsistent use of tabs|unindent does not match", lambda text: text.expandtabs(8)),
+)
+_PRINT = re.compile(r"(^[ \t]*|[:;][ \t]+)print[ \t]+(?![=(])([^\n]*)", re.MULTILINE)
+_EXCEPT = re.compile(
+    r"^([ \t]*except[ \t]+(?:[\w.]+|\([^()]*\)))[ \t]*,[ \t]*(\w+)[ \t]*:", re.MULTILINE
+)
+_EQUAL = re.compile(r"^([ \t]*(?:if|elif|while)\b[^=\n]*[^=!<>\n])=(?!=)", re.MULTILINE)
+_NO_COMMENT = re.compile(r"(?:[^'\"#]|'(?:[^'\\]|\\.)*'|\"(?:[^\"\\]|\\.)*\")*")
+
+
+def _printed(statement: re.Match[str]) -> str:
+    before, rest = statement.groups()
+    code = _NO_COMMENT.match(rest)
+    end = code.end() if code else len(rest)
+    return f"{before}print({rest[:end].rstrip()})  {rest[end:]}"
+
+
+def further(package: Package, file: str) -> tuple[Source | None, list[Finding]]:
+    """Return (the Source, what else Python says) of a file that Python cannot read, as if what
+    Python says of each of its lines had been corrected; None if only its author can do that."""
+    text, said, problems = package.text(file), "", []
+    while True:
+        try:
+            return Source(file, text), problems
+        except SyntaxError as error:
+            if said and error.msg != said:
+                problems.append(_syntax(package, file, error))
+            said = error.msg or "invalid syntax"
+            mend = next((mend for shape, mend in _IN_PYTHON3 if re.search(shape, said)), str)
+            text, before = mend(text), text
+            if text == before:
+                return None, problems
+        except (ValueError, RecursionError, MemoryError):
+            return None, problems
 
 
 def read(package: Package, file: str) -> tuple[Source | None, Finding | None]:
