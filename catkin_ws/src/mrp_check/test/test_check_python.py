@@ -311,7 +311,9 @@ def test_a_name_of_python_2_is_found_where_nothing_asks_for_it(code, line, tmp_p
         ("print 'a'\ntry:\n    pass\nexcept IOError, error:\n    print error\n", [4], True),
         ("if 1:\n    if 2:\n        a = 1\n\tprint 'a'\n", [4], True),
         ("print 'a'\nif 2 = 3:\n    print 'b'\n", [2], True),
-        ("print 'a'\nb = (\n", [2], False),
+        ("print 'a'\nb = 'c: print d'\n", [], True),
+        # It may come of how the lines were corrected.
+        ("print 'a'\nb = (\n", [], False),
     ],
 )
 def test_what_else_is_wrong_in_a_file_that_python_cannot_read(code, lines, is_read, tmp_path):

@@ -43,7 +43,7 @@ _IN_PYTHON3: Sequence[tuple[str, Callable[[str], str]]] = (
     (r"Maybe you meant '=='", lambda text: _EQUAL.sub(r"\1==", text)),
     (r"inconsistent use of tabs|unindent does not match", lambda text: text.expandtabs(8)),
 )
-_PRINT = re.compile(r"(^[ \t]*|[:;][ \t]+)print[ \t]+(?![=(])([^\n]*)", re.MULTILINE)
+_PRINT = re.compile(r"(^[ \t]*|^[^'\"#\n]*[:;][ \t]+)print[ \t]+(?![=(])([^\n]*)", re.MULTILINE)
 _EXCEPT = re.compile(
     r"^([ \t]*except[ \t]+(?:[\w.]+|\([^()]*\)))[ \t]*,[ \t]*(\w+)[ \t]*:", re.MULTILINE
 )
@@ -66,13 +66,14 @@ def further(package: Package, file: str) -> tuple[Source | None, list[Finding]]:
         try:
             return Source(file, text), problems
         except SyntaxError as error:
-            if said and error.msg != said:
-                problems.append(_syntax(package, file, error))
-            said = error.msg or "invalid syntax"
+            before, said = said, error.msg or "invalid syntax"
             mend = next((mend for shape, mend in _IN_PYTHON3 if re.search(shape, said)), str)
-            text, before = mend(text), text
-            if text == before:
+            mended = mend(text)
+            if mended == text:
                 return None, problems
+            if before not in ("", said):
+                problems.append(_syntax(package, file, error))
+            text = mended
         except (ValueError, RecursionError, MemoryError):
             return None, problems
 
