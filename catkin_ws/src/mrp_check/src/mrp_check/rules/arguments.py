@@ -38,7 +38,7 @@ def _of(node: str, file: str, code: str) -> Iterator[Finding]:
         number, lines = int(read[1]), code.split("\n")
         before = "\n".join(lines[:line])
         if only and only.end() < read.start() and number >= int(only[1]):
-            goes_on = f"it goes on with argc == {only[1]} alone, and then there is no argv[{number}]"
+            goes_on = f"it goes on with argc == {only[1]} alone: then there is no argv[{number}]"
             fix = f"Ask for argc != {number + 1}."
         elif not only and not _COUNTED.search(before):
             goes_on = f"it does not look at argc first: where no argument is given, argv[{number}]"

@@ -36,6 +36,12 @@ _WHY = (
     (r"multiple exception types", "python2-except"),
     (r"", "python-syntax"),
 )
+_PRINT = re.compile(r"(^[ \t]*|^[^'\"#\n]*[:;][ \t]+)print[ \t]+(?![=(])([^\n]*)", re.MULTILINE)
+_EXCEPT = re.compile(
+    r"^([ \t]*except[ \t]+(?:[\w.]+|\([^()]*\)))[ \t]*,[ \t]*(\w+)[ \t]*:", re.MULTILINE
+)
+_EQUAL = re.compile(r"^([ \t]*(?:if|elif|while)\b[^=\n]*[^=!<>\n])=(?!=)", re.MULTILINE)
+_NO_COMMENT = re.compile(r"(?:[^'\"#]|'(?:[^'\\]|\\.)*'|\"(?:[^\"\\]|\\.)*\")*")
 # What Python says -> how the same is written in Python 3, in as many lines.
 _IN_PYTHON3: Sequence[tuple[str, Callable[[str], str]]] = (
     (r"call to 'print'", lambda text: _PRINT.sub(_printed, text)),
@@ -43,12 +49,6 @@ _IN_PYTHON3: Sequence[tuple[str, Callable[[str], str]]] = (
     (r"Maybe you meant '=='", lambda text: _EQUAL.sub(r"\1==", text)),
     (r"inconsistent use of tabs|unindent does not match", lambda text: text.expandtabs(8)),
 )
-_PRINT = re.compile(r"(^[ \t]*|^[^'\"#\n]*[:;][ \t]+)print[ \t]+(?![=(])([^\n]*)", re.MULTILINE)
-_EXCEPT = re.compile(
-    r"^([ \t]*except[ \t]+(?:[\w.]+|\([^()]*\)))[ \t]*,[ \t]*(\w+)[ \t]*:", re.MULTILINE
-)
-_EQUAL = re.compile(r"^([ \t]*(?:if|elif|while)\b[^=\n]*[^=!<>\n])=(?!=)", re.MULTILINE)
-_NO_COMMENT = re.compile(r"(?:[^'\"#]|'(?:[^'\\]|\\.)*'|\"(?:[^\"\\]|\\.)*\")*")
 
 
 def _printed(statement: re.Match[str]) -> str:
@@ -61,7 +61,8 @@ def _printed(statement: re.Match[str]) -> str:
 def further(package: Package, file: str) -> tuple[Source | None, list[Finding]]:
     """Return (the Source, what else Python says) of a file that Python cannot read, as if what
     Python says of each of its lines had been corrected; None if only its author can do that."""
-    text, said, problems = package.text(file), "", []
+    text, said = package.text(file), ""
+    problems: list[Finding] = []
     while True:
         try:
             return Source(file, text), problems
