@@ -68,9 +68,7 @@ class Sessions:
             begun.give("")
         self._pool.shutdown(wait=True)
 
-    def result(
-        self, plan: LaunchPlan | DirectPlan, kind: type[T], problems: list[str]
-    ) -> T | None:
+    def result(self, plan: LaunchPlan | DirectPlan, kind: type[T], problems: list[str]) -> T | None:
         """Have a plan carried out; return the result, which is of that kind.
 
         Returns None if the package kept it from giving a result; `problems` then has the reason.
