@@ -101,9 +101,9 @@ def file_findings(rule, package, **known):
     return [*rule.RULE.findings(types.SimpleNamespace(package=package, **given))]
 
 
-def python_findings(folder, source):
+def python_findings(folder, source, **others):
     """Return the findings of the Python rules about a source, that of a file src/odd.py."""
-    package = make(folder, src__odd_DOT_py=source)
+    package = make(folder, src__odd_DOT_py=source, **others)
     read, problem = python_read.read(package, "src/odd.py")
     if problem:
         return [problem]

@@ -305,6 +305,23 @@ def test_a_name_of_python_2_is_found_where_nothing_asks_for_it(code, line, tmp_p
 
 
 @pytest.mark.parametrize(
+    ("imports", "names"),
+    [
+        ("from std_msgs.msg import *\nfrom math import *", ["AskRequest", "Tell"]),
+        ("from some_pkg.srv import *\nfrom some_pkg.msg import *", ["String", "sin"]),
+        ("from math import *\nfrom no_package.msg import *", []),
+        ("from .math import *", []),
+    ],
+)
+def test_what_import_star_brings_is_known_of_messages_and_of_python(imports, names, tmp_path):
+    package = {"msg__Tell_DOT_msg": "string text\n", "srv__Ask_DOT_srv": "---\n"}
+    code = f"{imports}\nprint(AskRequest, Tell, String, sin)\n"
+    found = check_rules.python_findings(tmp_path, code, **package)
+    said = [one.message for one in found if one.message.startswith("Nothing is called")]
+    assert sorted(text.split()[3].rstrip(":") for text in said) == names
+
+
+@pytest.mark.parametrize(
     ("code", "lines", "is_read"),
     [
         ("print 'a'  # b\nprint 'c',\n", [], True),

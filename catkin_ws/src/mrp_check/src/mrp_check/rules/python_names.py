@@ -129,12 +129,17 @@ class Names(PythonRule):
             found = checker.Checker(self.source.tree, self.file).messages
         except RecursionError:
             return
-        said = set()
+        said, name_of = set(), self.package.name
+        if {*self.source.stars} - {f"{name_of}.msg", f"{name_of}.srv"}:
+            return  # it may have any name
+        kinds = messages.UndefinedName, messages.UndefinedLocal, messages.ImportStarUsage
+        paths = self.package.of_kind("message", "service", "action") if self.source.stars else ()
+        known = {*self.source.imports, *(name for path in paths for name in uses.generated(path))}
         for message in sorted(found, key=lambda message: message.lineno):
-            if not isinstance(message, (messages.UndefinedName, messages.UndefinedLocal)):
+            if not isinstance(message, kinds):
                 continue
             name = message.message_args[0]
-            if name in said or self.source.has_star:
+            if name in said or isinstance(message, messages.ImportStarUsage) and name in known:
                 continue
             if name not in _PYTHON2:
                 said.add(name)

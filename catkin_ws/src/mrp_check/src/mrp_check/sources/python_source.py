@@ -26,6 +26,8 @@ _OPERATORS: dict[type[ast.operator], Callable[[Any, Any], object]] = {
     ast.Pow: operator.pow,
     ast.LShift: operator.lshift,
 }
+# Python's modules of which beginners take all names.
+_PLAIN = {"math", "numpy", "random", "socket", "struct", "threading", "time", "tkinter", "turtle"}
 _FUNCTIONS = (ast.FunctionDef, ast.AsyncFunctionDef, ast.Lambda)
 
 T = TypeVar("T", bound=ast.AST)
@@ -42,7 +44,7 @@ class Source:
     file: relative to the package
     tree: its syntax tree
     imports: local name -> dotted name of what it stands for ("rospy", "std_msgs.msg.UInt32")
-    has_star: whether it has `from ... import *`
+    stars: modules of which it takes all names with `from ... import *`, and nobody knows which
     parents: each node's parent in the tree
     absent: module that it imports and this machine has not -> a sentence that says so
     told: (line, severity) -> the first Finding about it
@@ -63,7 +65,7 @@ class Source:
                 self.parents[child] = node
         self.imports: dict[str, str] = {}
         self.import_nodes: list[ast.Import | ast.ImportFrom] = []
-        self.has_star = False
+        self.stars: list[str] = []
         self._stored: dict[Variable, list[Stored]] = {}
         for node in ast.walk(self.tree):
             self._see(node)
@@ -76,11 +78,11 @@ class Source:
                 self.imports[name] = alias.name if alias.asname else name
         elif isinstance(node, ast.ImportFrom):
             self.import_nodes.append(node)
+            module = "." * node.level + (node.module or "")
             for alias in node.names:
                 if alias.name == "*":
-                    self._see_star(node.module or "")
+                    self._see_star(module)
                 else:
-                    module = "." * node.level + (node.module or "")
                     self.imports[alias.asname or alias.name] = f"{module}.{alias.name}"
         elif isinstance(node, (ast.Assign, ast.AnnAssign, ast.NamedExpr)):
             targets = node.targets if isinstance(node, ast.Assign) else [node.target]
@@ -105,13 +107,13 @@ class Source:
                 self._stored.setdefault((self.function(node), name), []).append(node)
 
     def _see_star(self, module: str) -> None:
-        """Take the names of `from MODULE import *`, if MODULE is one of ROS's own."""
-        self.has_star = True
-        if not uses.is_ros_package(module.split(".")[0]):
-            return
+        """Take the names of `from MODULE import *`, if MODULE is ROS's own, or Python's."""
         try:
+            if module not in _PLAIN and not uses.is_ros_package(module.split(".")[0]):
+                raise ImportError
             found = importlib.import_module(module)
         except Exception:  # the rules about imports say what is wrong with it
+            self.stars.append(module)
             return
         for name in getattr(found, "__all__", [n for n in dir(found) if not n.startswith("_")]):
             self.imports.setdefault(name, f"{module}.{name}")
