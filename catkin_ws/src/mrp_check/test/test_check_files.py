@@ -109,6 +109,23 @@ def test_missing_dependency_that_is_not_here_either(tmp_path):
     assert file_findings(dependencies, package) == []
 
 
+@pytest.mark.parametrize(
+    ("files", "name"),
+    [
+        ({"launch__a_DOT_launch": '<launch>\n<node pkg="turtlesim" name="a" type="b"/>'}, "turtle"),
+        ({"launch__a_DOT_launch": '<include file="$(find roslib)/a.launch"/>'}, "roslib"),
+        ({"launch__a_DOT_launch": '<!-- <node pkg="turtlesim"/> -->\n$(find some_pkg)'}, None),
+        ({"src__b_DOT_py": "import genpy\nprint 'a'\n"}, "genpy"),
+    ],
+)
+def test_a_dependency_of_a_launch_file_or_of_python_2_is_named(files, name, tmp_path):
+    package = check_rules.make(tmp_path, **files)
+    without = dataclasses.replace(check_rules.PUB_SUB, is_contract=False)
+    found = file_findings(dependencies, package, spec=without)
+    said = [one.message for one in found if one.severity == "warning"]
+    assert len(said) == bool(name) and all(f"does not name {name}" in text for text in said)
+
+
 def test_misspelt_dependency_is_its_own_lines_fault(tmp_path):
     text_ = MANIFEST.replace("<depend>rospy", "<depend>rosppy")
     (finding,) = dependency_findings(tmp_path, text_)

@@ -27,10 +27,11 @@ def _findings(case: Case) -> Iterator[Finding]:
     # other is the fault of the line that uses it.
     own = {"roscpp", "rospy"} | {topic.type.split("/")[0] for topic in case.spec.topics.values()}
     if not case.spec.is_contract:
+        used = {**uses.of_launch(package), **used}
         own.update(used)
     for name, use in sorted(used.items()):
         in_manifest = manifest is None or name in _all(manifest, tests=not use.firm)
-        in_cmake = model.catkin is None or name in model.components
+        in_cmake = model.catkin is None or name in model.components or use.language == "launch"
         if in_manifest and manifest is not None:
             yield from _kind(package, name, use, manifest)
         if not in_manifest and not in_cmake and name not in own:
@@ -69,7 +70,7 @@ def _kind(package: Package, name: str, use: Use, manifest: Manifest) -> Iterator
     known = declared(manifest)
     if use.language == "cpp" and name not in known["build"]:
         when = "when it is built"
-    elif use.language == "python" and name not in known["exec"]:
+    elif use.language != "cpp" and name not in known["exec"]:
         when = "when it runs"
     else:
         return

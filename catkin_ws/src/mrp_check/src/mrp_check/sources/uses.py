@@ -20,6 +20,9 @@ from mrp_check.student.package import Package
 # Headers whose folder is not called like the package that has them.
 _HEADERS = {"ros/package.h": "roslib", "ros/package.hpp": "roslib"}
 _INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*[<"]([\w./+-]+)[>"]', re.MULTILINE)
+_IMPORT = re.compile(r"^[ \t]*(?:from|import)[ \t]+([A-Za-z_][\w.]*)", re.MULTILINE)
+_LAUNCHED = re.compile(r'\bpkg\s*=\s*"([A-Za-z]\w*)"|\$\(find\s+([A-Za-z]\w*)\s*\)')
+_XML_COMMENT = re.compile(r"<!--.*?-->", re.DOTALL)
 _PYTHON_COMMENT = re.compile(r"^[ \t]*#[^\n]*", re.MULTILINE)
 _COMMENT = re.compile(r"/\*.*?\*/|//[^\n]*", re.DOTALL)
 
@@ -202,15 +205,31 @@ def of(
     for file in package.of_kind("python"):
         if is_test(file) or file == "setup.py":
             continue
-        for name, line in _imports(package.tree(file)):
+        for name, line in _imports(package, file):
             name = name.split(".")[0]
             if is_known(name):
                 _add(found, package, name, Use(file, line, "python", True))
     return found
 
 
-def _imports(tree: ast.AST) -> Iterator[tuple[str, int]]:
+def of_launch(package: Package) -> dict[str, Use]:
+    """Return name -> Use of the packages that the launch files name; tests are left out."""
+    found: dict[str, Use] = {}
+    for file in package.of_kind("launch"):
+        text = _XML_COMMENT.sub(blank, package.text(file))
+        for match in _LAUNCHED.finditer("" if is_test(file) else text):
+            line = text.count("\n", 0, match.start()) + 1
+            _add(found, package, match[1] or match[2], Use(file, line, "launch", False))
+    return found
+
+
+def _imports(package: Package, file: str) -> Iterator[tuple[str, int]]:
     """Yield (module, line) of each import that names it in full."""
+    tree = package.tree(file)
+    if not tree.body:  # such as of Python 2
+        text = code(package, file)
+        for match in _IMPORT.finditer(text):
+            yield match[1], text.count("\n", 0, match.start(1)) + 1
     for node in ast.walk(tree):
         if isinstance(node, ast.Import):
             yield from ((alias.name, node.lineno) for alias in node.names)
@@ -221,6 +240,7 @@ def _imports(tree: ast.AST) -> Iterator[tuple[str, int]]:
 def _add(found: dict[str, Use], package: Package, name: str, use: Use) -> None:
     if name == package.name or not name:
         return
-    use = use._replace(firm=name not in _LOOSE or use.language == "cpp" and name == "roslib")
+    is_loose = name in _LOOSE and not (use.language == "cpp" and name == "roslib")
+    use = use._replace(firm=use.firm and not is_loose)
     if name not in found or found[name].language == "python" and use.language == "cpp":
         found[name] = use
