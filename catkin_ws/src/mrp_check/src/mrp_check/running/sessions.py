@@ -23,7 +23,7 @@ T = TypeVar("T")
 
 
 class _Begun(NamedTuple):
-    """A process, and the file for which it waits: that of its plan, or an empty one that ends it."""
+    """A process, and the file that it waits for: that of its plan, or an empty one, to end it."""
 
     plan: pathlib.Path
     result: concurrent.futures.Future[confine.Result]
