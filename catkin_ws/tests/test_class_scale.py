@@ -41,7 +41,6 @@ def test_class_has_correct_packages_and_broken_ones(tmp_path, monkeypatch):
 def test_recorded_marks_are_the_same():
     rows = list(csv.DictReader(RECORDED.read_text().splitlines()))
     assert [row["workers"] for row in rows] == ["1", "2", "4"]
-    assert len({row["submissions"] for row in rows}) == 1
     assert {row["marks"] for row in rows} == {"the same"}
     assert rows[0]["efficiency"] == "1.00"
 

@@ -4,6 +4,7 @@
 
 Usage: class_scale.py SUBMISSIONS [TABLE]    (in a shell with the workspace's setup.bash)
 
+SUBMISSIONS is a number, or three of them, such as 60,200,60: one for 1, 2 and 4 workers.
 Every third submission is a correct package, and each other one has one defect: they are those that
 judge the checker, always in the same order. What else runs shows in the figures: end it before.
 TABLE, a CSV file, is written for the page.
@@ -155,16 +156,19 @@ def at_many(points):
     return begin + slope * _MANY
 
 
-def main(count, table=None):
+def main(submissions, table=None):
+    counts = [*map(int, submissions.split(","))]
+    counts = counts * len(_WORKERS) if len(counts) == 1 else counts
     rows, first = [], None
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         folder.chmod(0o711)
-        make_class(folder / "class", count)
         cpp_headers.make(folder / "ros.pch")  # a machine does that once
-        for workers in _WORKERS:
+        for workers, count in zip(_WORKERS, counts, strict=True):
+            shutil.rmtree(folder / "class", ignore_errors=True)
+            make_class(folder / "class", count)
             seconds, processor, ends, memory, marks = measured(folder, workers)
-            first = first or (seconds, marks)
+            first = first or (seconds / count, marks)
             moved = [a["submission"] for a, b in zip(first[1], marks) if a != b]
             hours = at_many(ends) / 3600
             rows.append(
@@ -173,7 +177,7 @@ def main(count, table=None):
                     "submissions": count,
                     "seconds": f"{seconds:.0f}",
                     "processor seconds": f"{processor:.0f}",
-                    "efficiency": f"{first[0] / seconds / workers:.2f}",
+                    "efficiency": f"{first[0] * count / seconds / workers:.2f}",
                     "MB of the scheduler": f"{memory.peaks['scheduler']:.0f}",
                     "MB of a worker": f"{memory.peaks['worker']:.0f}",
                     "marks": "the same" if not moved else f"{len(moved)} moved",
@@ -193,6 +197,6 @@ def main(count, table=None):
 
 
 if __name__ == "__main__":
-    if len(sys.argv) not in (2, 3) or not sys.argv[1].isdigit():
+    if len(sys.argv) not in (2, 3) or not re.fullmatch(r"\d+(,\d+,\d+)?", sys.argv[1]):
         sys.exit(__doc__)
-    main(int(sys.argv[1]), *sys.argv[2:])
+    main(*sys.argv[1:])
