@@ -20,7 +20,7 @@ from mrp_check.contract.verdict import Report
 from mrp_check.learning import exercise as exercises
 from mrp_check.student.package import BACKUP, Package, is_of_tools
 
-INTERVAL = 0.1  # seconds between two calls of look()
+INTERVAL = 0.05  # seconds between two calls of look()
 
 _Stamp = Tuple[Tuple[object, ...], ...]
 
