@@ -3,6 +3,7 @@
 
 import dataclasses
 import re
+import types
 
 import check_rules
 import pytest
@@ -225,6 +226,16 @@ def test_first_line(first, cmake_text, expected, tmp_path):
     package = check_rules.make(tmp_path, src__odd_DOT_py=source, CMakeLists_DOT_txt=text_)
     found = file_findings(scripts, package, started={"src/odd.py": None})
     assert told(found) == expected
+
+
+@pytest.mark.parametrize(("is_relayed", "severity"), [(True, "warning"), (False, "error")])
+def test_without_a_contract_a_relayed_script_needs_no_first_line(is_relayed, severity, tmp_path):
+    text_ = CMAKE if is_relayed else CMAKE.replace("catkin_install_python", "# ")
+    source = NODE[NODE.index("\n") + 1 :]
+    package = check_rules.make(tmp_path, src__odd_DOT_py=source, CMakeLists_DOT_txt=text_)
+    spec = types.SimpleNamespace(is_contract=False, nodes={})
+    (finding,) = file_findings(scripts, package, started={"src/odd.py": None}, spec=spec)
+    assert (finding.severity, finding.line) == (severity, 1)
 
 
 @pytest.mark.parametrize(("by", "severity"), [("catkin_install_python", "note"), ("# ", "error")])

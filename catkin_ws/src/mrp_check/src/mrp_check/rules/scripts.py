@@ -49,7 +49,11 @@ def _findings(case: Case) -> Iterator[Finding]:
         shebang = package.shebang(path) or ""
         is_node = path in case.started or path in nodes or path in {s.path for s in model.scripts}
         if is_node or shebang and _is_node(package, path):
-            yield from _of(package, model, path, shebang, path in relayed)
+            # What catkin_install_python() puts beside it starts it; once installed, nothing does.
+            runs = path in relayed and not shebang and not case.spec.is_contract
+            for finding in _of(package, model, path, shebang, path in relayed):
+                is_less = runs and finding.severity == ERROR
+                yield dataclasses.replace(finding, severity=WARNING) if is_less else finding
             yield from _shadowing(path)
         elif not case.spec.is_contract and executables.is_tool(package, path):
             for finding in _of(package, model, path, shebang, path in relayed):
