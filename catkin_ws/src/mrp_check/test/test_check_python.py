@@ -8,7 +8,7 @@ import check_rules
 import pytest
 from check_rules import told
 from mrp_check.confined.places import Kind, Place
-from mrp_check.sources import facts, python_read, uses
+from mrp_check.sources import executables, facts, node, python_facts, python_read, uses
 
 pytestmark = pytest.mark.quick
 
@@ -337,3 +337,23 @@ def test_what_else_is_wrong_in_a_file_that_python_cannot_read(code, lines, is_re
     package = check_rules.make(tmp_path, src__odd_DOT_py=code)
     source, found = python_read.further(package, "src/odd.py")
     assert ([one.line for one in found], source is not None) == (lines, is_read)
+
+
+@pytest.mark.parametrize(
+    ("call", "found"),
+    [
+        ("rospy.ServiceProxy('add', Add)", []),
+        ("rospy.Publisher('add', Add, queue_size=1)", [("node-start", 1)]),
+    ],
+    ids=range(2),
+)
+def test_only_a_client_of_a_service_needs_no_init_node(call, found, tmp_path):
+    text = f"#!/usr/bin/python3\nimport rospy\nadd = {call}\n"
+    package = check_rules.make(tmp_path, src__odd_DOT_py=text)
+    model = check_rules.model_of(package)
+    read, _ = python_read.read(package, "src/odd.py")
+    known = facts.Facts(places=python_facts.places(read), sources={"odd.py": ["src/odd.py"]})
+    spec = executables.spec(package, model)
+    (one,) = node.nodes(package, spec, model, None, known)
+    case = types.SimpleNamespace(coded=[one])
+    assert [f.id for f in check_rules.node_start.RULE.findings(case)] == [id_ for id_, _ in found]

@@ -15,11 +15,17 @@ from mrp_check.sources.node import Node, each_node
 def _of(node: Node) -> Iterator[Finding]:
     inits = node.places(Kind.INIT)
     if not inits:
-        yield _no_init(node)
+        yield from () if _only_asks(node) else (_no_init(node),)
         return
     yield from _at_file_scope(node)
     if len(inits) == 1:
         yield from _too_early(node, inits[0])
+
+
+def _only_asks(node: Node) -> bool:
+    """Return whether a program is a client of a service, and no node: rospy lets it ask."""
+    is_node = node.spec.is_contract or node.places(Kind.PUBLISHER, Kind.SUBSCRIBER, Kind.TIMER)
+    return not is_node and bool(node.package.first_match(node.files, r"\bServiceProxy\s*\("))
 
 
 def _no_init(node: Node) -> Finding:
