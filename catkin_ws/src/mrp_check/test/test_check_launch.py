@@ -2,10 +2,12 @@
 """The checker's rules about the launch file, as roslaunch's own reader reads it."""
 
 import re
+import types
 
 import check_rules
 import pytest
 from check_rules import PUB_SUB, told
+from mrp_check.confined import launch_dump
 from mrp_check.rules import launch_file, launch_group, launch_nodes, launch_output, launch_remap
 from mrp_check.student import launch as launching
 
@@ -164,3 +166,23 @@ def test_line_of_an_included_file(tmp_path):
     text = LAUNCH.replace("".join(NODES), include)
     (finding,) = findings(tmp_path, text, launch__nodes_DOT_launch=inner + "</launch>\n")
     assert (finding.id, finding.file, finding.line) == ("launch-nodes", "launch/nodes.launch", 5)
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize(
+    ("package", "type_", "found"),
+    [
+        ("some_pkg", "odd.py", []),
+        ("nowhere_pkg", "odd.py", [("launch-nodes", "note"), ("package-name", "warning")]),
+        ("nowhere_pkg", "more.py", [("launch-nodes", "note")]),
+        ("roscpp", "odd.py", []),
+    ],
+    ids=range(4),
+)
+def test_a_node_of_this_package_that_another_one_is_asked_for(package, type_, found, tmp_path):
+    made = check_rules.make(tmp_path, src__odd_DOT_py="#!/usr/bin/env python\n")
+    node = launch_dump.Started(package, type_, "odd", "/", "log", [], [], "", "", "a.launch", 1)
+    launch = types.SimpleNamespace(error=None, file="a.launch", nodes=[node])
+    spec = types.SimpleNamespace(is_contract=False, nodes={})
+    told_ = check_rules.file_findings(launch_nodes, made, launch=launch, spec=spec)
+    assert [(finding.id, finding.severity) for finding in told_] == found

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import os
 import shutil
 from typing import Iterator
@@ -11,7 +12,7 @@ from mrp_check import evidence
 from mrp_check.building.catkin import search_path
 from mrp_check.case import Case
 from mrp_check.confined.launch_dump import Started
-from mrp_check.contract.finding import NOTE, Finding
+from mrp_check.contract.finding import NOTE, WARNING, Finding
 from mrp_check.contract.requirements import Requirement, Rule
 from mrp_check.contract.words import last_part, nearest
 from mrp_check.sources import uses
@@ -42,16 +43,22 @@ def _findings(case: Case) -> Iterator[Finding]:
             finding.node = None if case.spec.is_contract else node.type
             yield finding
     if not case.spec.is_contract:
-        yield from _elsewhere(case.package.name, launch)
+        yield from _elsewhere(case, launch)
 
 
-def _elsewhere(own: str, launch: Launch) -> Iterator[Finding]:
+def _elsewhere(case: Case, launch: Launch) -> Iterator[Finding]:
     """Yield a note for each package that the launch file starts nodes of, and each program that it
-    starts them by, that is not here."""
+    starts them by, that is not here; and a warning where this package has such a node."""
+    own = _executables(case.package, case.model)
     for name, node in {node.package: node for node in launch.nodes}.items():
-        if name != own and not uses.is_ros_package(name):
+        if name != case.package.name and not uses.is_ros_package(name):
             said = uses.absent(name, "cpp")
             yield Finding("launch-nodes", said, node.file, node.line, NOTE)
+    for node in launch.nodes:
+        is_here = node.package == case.package.name or uses.is_ros_package(node.package)
+        if node.type in own and not is_here:
+            found = _other_package(case.package, case.model, node, None)
+            yield dataclasses.replace(found, severity=WARNING)
     for node in launch.nodes:
         program = node.prefix.split()[0] if node.prefix else None
         if program and not shutil.which(program, path=search_path()):
