@@ -7,6 +7,7 @@ import types
 import check_rules
 import pytest
 from check_rules import told
+from mrp_check import judging
 from mrp_check.confined.places import Kind, Place
 from mrp_check.sources import executables, facts, node, python_facts, python_read, uses
 
@@ -357,3 +358,12 @@ def test_only_a_client_of_a_service_needs_no_init_node(call, found, tmp_path):
     (one,) = node.nodes(package, spec, model, None, known)
     case = types.SimpleNamespace(coded=[one])
     assert [f.id for f in check_rules.node_start.RULE.findings(case)] == [id_ for id_, _ in found]
+
+
+@pytest.mark.parametrize(("between", "misses"), [(6, True), (20, False)])
+def test_a_program_that_counts_its_arguments_may_read_them_before_it_ends(between, misses, tmp_path):
+    text = "import sys\nif len(sys.argv) == 4:\n" + "    a = 1\n" * between + "sys.exit(1)\n"
+    package = check_rules.make(tmp_path, src__odd_DOT_py="# first\n" * 30 + text)
+    node_ = types.SimpleNamespace(package=package, direct=types.SimpleNamespace(code=1))
+    found = types.SimpleNamespace(file="src/odd.py", line=1)
+    assert judging._misses_arguments(node_, found) == misses

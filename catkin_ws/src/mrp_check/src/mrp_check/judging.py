@@ -185,7 +185,7 @@ def _misses_arguments(node: Node, finding: Finding) -> bool:
         return True
     code = node.direct.code if node.direct else 0
     counting = [number for number, text in enumerate(lines) if _COUNTS.search(text)]
-    return bool(code) and any(any(map(_ENDS.search, lines[n : n + _FEW])) for n in counting)
+    return bool(code) and any(any(map(_ENDS.search, lines[n : n + 2 * _FEW])) for n in counting)
 
 
 def _source(node: Node, finding: Finding) -> str:
