@@ -244,6 +244,37 @@ def test_what_answers_a_service_returns_a_response(body, severities, tmp_path):
 
 
 @pytest.mark.parametrize(
+    ("function", "use", "lines"),
+    [
+        ("rospy.spin()", "a = make()\na.start()", [7]),
+        ("rospy.spin()", "make().start()", [6]),
+        ("return 1", "a = make()\na.start()", []),
+        ("yield 1", "a = make()\na.start()", []),
+        ("raise ValueError", "a = make()\na.start()", []),
+        ("rospy.spin()", "a = 1\na = make()\na.start()", []),
+        ("rospy.spin()", "try:\n    make().start()\nexcept AttributeError:\n    pass", []),
+    ],
+    ids=range(7),
+)
+def test_what_a_function_returns_is_used_where_it_returns_something(function, use, lines, tmp_path):
+    text = f"import rospy\n\n\ndef make():\n    {function}\n{use}\n"
+    found = check_rules.python_findings(tmp_path, text)
+    assert told(found) == [("python-names", line) for line in lines]
+
+
+@pytest.mark.parametrize(
+    ("function", "found"),
+    [("def run(self, goal):", [("callbacks", 5)]), ("def run(goal):", []), ("def run(*a):", [])],
+    ids=range(3),
+)
+def test_what_an_action_server_calls_takes_the_goal(function, found, tmp_path):
+    head = "import rospy\nimport actionlib  # not everywhere\n\n\n"
+    server = "actionlib.SimpleActionServer('a', None, execute_cb=run, auto_start=False)"
+    text = f"{head}{function}\n    pass\n\n\nserver = {server}\n"
+    assert told(check_rules.python_findings(tmp_path, text)) == found
+
+
+@pytest.mark.parametrize(
     ("loop", "found"), [("ros::ok", [("exit", 2)]), ("ros::ok()", []), ("n() /* ros::ok */", [])]
 )
 def test_a_loop_that_names_ok_without_brackets(loop, found, tmp_path):

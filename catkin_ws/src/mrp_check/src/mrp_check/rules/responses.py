@@ -24,7 +24,7 @@ class Responses(PythonRule):
                     yield from self._of(handler)
 
     def _of(self, handler: ast.FunctionDef) -> Iterator[Finding]:
-        if not _falls_through(handler.body):
+        if not falls_through(handler.body):
             return
         name, last = handler.name, handler.body[-1]
         if not any(self._is_response(node, handler) for node in ast.walk(handler)):
@@ -54,21 +54,21 @@ class Responses(PythonRule):
         return node.value is not None and getattr(node.value, "value", "") is not None
 
 
-def _falls_through(body: list[ast.stmt]) -> bool:
+def falls_through(body: list[ast.stmt]) -> bool:
     """Return whether these statements can come to their end, as far as their form says it."""
     last = body[-1] if body else None
     if isinstance(last, (ast.Return, ast.Raise)):
         return isinstance(last, ast.Return) and last.value is None
     if isinstance(last, ast.If):
-        return _falls_through(last.body) or _falls_through(last.orelse)
+        return falls_through(last.body) or falls_through(last.orelse)
     if isinstance(last, ast.While):
         is_endless = isinstance(last.test, ast.Constant) and bool(last.test.value)
         return not is_endless or any(isinstance(node, ast.Break) for node in ast.walk(last))
     if isinstance(last, ast.With):
-        return _falls_through(last.body)
+        return falls_through(last.body)
     if isinstance(last, ast.Try) and not last.finalbody:
         parts = [last.orelse or last.body, *(handler.body for handler in last.handlers)]
-        return any(map(_falls_through, parts))
+        return any(map(falls_through, parts))
     return not isinstance(last, ast.Try)
 
 

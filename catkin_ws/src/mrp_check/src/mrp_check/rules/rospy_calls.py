@@ -24,6 +24,10 @@ class Calls(PythonRule):
             name = self.source.dotted(node.func)
             if name and name.startswith("rospy.") and not self.is_own("rospy"):
                 yield from self._call(node, name)
+            elif name == "actionlib.SimpleActionServer":
+                execute = argument(node, 2, "execute_cb")
+                if execute is not None:
+                    yield from self._callback(execute, 1, name, "a goal")
 
     def _call(self, node: ast.Call, name: str) -> Iterator[Finding]:
         function, missing = resolve(name)
@@ -143,7 +147,7 @@ class Calls(PythonRule):
         """Yield a finding if what is handed over as a callback cannot be called with `count`."""
         if isinstance(callback, ast.Call):
             called = self.source.definition(callback.func)
-            if isinstance(called, ast.FunctionDef) and not _returns(called):
+            if isinstance(called, ast.FunctionDef) and not returns(called):
                 yield self._called_at_once(callback, called, taker)
             return
         if isinstance(self.source.value(callback), (str, int, float)):
@@ -216,7 +220,7 @@ def _count(number: int) -> str:
     return {0: "no argument", 1: "one argument"}.get(number, f"{number} arguments")
 
 
-def _returns(function: ast.FunctionDef) -> bool:
+def returns(function: ast.FunctionDef) -> bool:
     """Return whether a function returns or yields anything."""
     return any(
         isinstance(n, ast.Return)
