@@ -392,7 +392,7 @@ def test_only_a_client_of_a_service_needs_no_init_node(call, found, tmp_path):
 
 
 @pytest.mark.parametrize(("between", "misses"), [(6, True), (20, False)])
-def test_a_program_that_counts_its_arguments_may_read_them_before_it_ends(between, misses, tmp_path):
+def test_who_counts_arguments_may_read_them_before_it_ends(between, misses, tmp_path):
     text = "import sys\nif len(sys.argv) == 4:\n" + "    a = 1\n" * between + "sys.exit(1)\n"
     package = check_rules.make(tmp_path, src__odd_DOT_py="# first\n" * 30 + text)
     node_ = types.SimpleNamespace(package=package, direct=types.SimpleNamespace(code=1))

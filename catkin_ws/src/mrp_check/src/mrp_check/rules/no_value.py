@@ -39,8 +39,9 @@ class NoValue(PythonRule):
         if not isinstance(call, ast.Call) or not isinstance(call.func, ast.Name):
             return None
         function = self.source.definition(call.func)
-        is_plain = isinstance(function, ast.FunctionDef) and not returns(function)
-        return function if is_plain and falls_through(function.body) else None
+        if not isinstance(function, ast.FunctionDef) or function.decorator_list:
+            return None
+        return None if returns(function) or not falls_through(function.body) else function
 
 
 RULE = Rule("static", 29, ("facts",), of_sources(NoValue), also=("python-names",))
