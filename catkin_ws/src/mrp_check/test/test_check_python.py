@@ -397,4 +397,4 @@ def test_who_counts_arguments_may_read_them_before_it_ends(between, misses, tmp_
     package = check_rules.make(tmp_path, src__odd_DOT_py="# first\n" * 30 + text)
     node_ = types.SimpleNamespace(package=package, direct=types.SimpleNamespace(code=1))
     found = types.SimpleNamespace(file="src/odd.py", line=1)
-    assert judging._misses_arguments(node_, found) == misses
+    assert judging.misses_arguments(node_, found) == misses

@@ -150,7 +150,7 @@ def _of_start(node: Node, finding: Finding) -> None:
             finding.severity = WARNING if what == "a parameter" else NOTE
             finding.message = f"{node.name} waits for {what}: {said.strip()[:200]}"
             return
-    if not any("Error:" in line for line in lines) and _misses_arguments(node, finding):
+    if not any("Error:" in line for line in lines) and misses_arguments(node, finding):
         finding.severity = NOTE
         finding.message = f"{node.name} waits for arguments on its command line."
         return
@@ -174,7 +174,7 @@ def _early_call(node: Node, lines: list[str]) -> Line | None:
     return asked.unwaited(node.package, node.places.sources(node.name))
 
 
-def _misses_arguments(node: Node, finding: Finding) -> bool:
+def misses_arguments(node: Node, finding: Finding) -> bool:
     """Return whether a program counts its arguments beside where it ended; or, where that place
     is not known, beside any line that ends it."""
     if not finding.file or not finding.line:
