@@ -73,8 +73,7 @@ class AnyCase(Case):
 
     @functools.cached_property
     def observed(self) -> observing.Observed:
-        known = self.spec, self.launches, self.facts
-        return unasked.observe(self.sessions, *known, self.enough)
+        return unasked.observe(self.sessions, self.spec, self.launches, self.facts, self.enough)
 
 
 def _make_startable(path: pathlib.Path) -> None:

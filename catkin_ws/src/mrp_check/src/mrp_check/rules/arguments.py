@@ -32,10 +32,10 @@ def _findings(case: Case) -> Iterator[Finding]:
 
 
 def _of(node: str, file: str, code: str) -> Iterator[Finding]:
-    only = _ONLY.search(code)
+    only, lines = _ONLY.search(code), code.split("\n")
     for read in _READ.finditer(code):
         line = code.count("\n", 0, read.start()) + 1
-        number, lines = int(read[1]), code.split("\n")
+        number = int(read[1])
         before = "\n".join(lines[:line])
         if only and only.end() < read.start() and number >= int(only[1]):
             goes_on = f"it goes on with argc == {only[1]} alone: then there is no argv[{number}]"

@@ -16,7 +16,6 @@ from mrp_check.sources.python_source import Source
 _HOME = re.compile(r"/(?:home|Users)/[\w.-]+/[^\s\"'<>;:]*")
 _CPP_TEXT = re.compile(r'"(?:[^"\\\n]|\\.)*"')
 _INCLUDE = re.compile(r"^[ \t]*#[ \t]*include[^\n]*", re.MULTILINE)
-_XML_COMMENT = re.compile(r"<!--.*?-->", re.DOTALL)
 
 
 def _findings(case: Case) -> Iterator[Finding]:
@@ -28,7 +27,7 @@ def _findings(case: Case) -> Iterator[Finding]:
         if not uses.is_test(file):
             yield from _first_of_each(file, _in_cpp(package.text(file)))
     for file in package.of_kind("launch"):
-        text = _XML_COMMENT.sub(uses.blank, package.text(file))
+        text = uses.code(package, file)
         yield from _first_of_each(file, _in_text(text, 0, text))
 
 

@@ -15,7 +15,7 @@ from mrp_check.contract.errors import CannotCheck
 from mrp_check.student.workspace import Workspace, search_path, sourced
 
 _SESSION = "mrp_check.confined.session"  # not imported: it needs rospy, which takes its time
-_SECONDS = 300  # that one may take beside the building and the running: then it hangs
+_SPARE_SECONDS = 300  # that one may take in addition to building and running
 _MOST_SEEN = 64 * 2**20  # bytes of a run's result
 _KINDS = (DirectPlan.__name__, LaunchPlan.__name__)
 
@@ -39,6 +39,9 @@ class Sessions:
 
     def __init__(self, workspace: Workspace) -> None:
         self.workspace = workspace
+        # Longer than the package may take to be built and to run: then one hangs.
+        seconds = 2 * workspace.timeout + _SPARE_SECONDS
+        self._limits = confine.Limits(time=seconds, output=_MOST_SEEN)
         self._pool = concurrent.futures.ThreadPoolExecutor()
         self._begun: dict[str, _Begun] = {}
 
@@ -56,7 +59,7 @@ class Sessions:
         return confine.run(
             sourced(["/usr/bin/python3", "-m", _SESSION, kind, str(plan)]),
             workspace.folder,
-            confine.Limits(time=2 * workspace.timeout + _SECONDS, output=_MOST_SEEN),
+            self._limits,
             variables.environment(workspace.folder, PYTHONPATH=own, PATH=search_path()),
             readable=[workspace.given],
             observes=True,
@@ -91,7 +94,7 @@ class Sessions:
             except crossing.CrossingError as error:
                 raise CannotCheck(f"What the observer says cannot be read: {error}") from None
         said = (done.errors.strip().splitlines() or [f"it ended with {done.code}"])[-1]
-        why = done.limit_text(confine.Limits())
+        why = done.limit_text(self._limits)
         if not why and "Traceback" in done.errors:
             raise CannotCheck(f"The observer itself failed: {said}. Please report it.")
         problems.append(f"the nodes could not be observed: {why or said}")

@@ -68,13 +68,13 @@ def further(package: Package, file: str) -> tuple[Source | None, list[Finding]]:
             return Source(file, text), problems
         except SyntaxError as error:
             before, said = said, error.msg or "invalid syntax"
-            mend = next((mend for shape, mend in _IN_PYTHON3 if re.search(shape, said)), str)
-            mended = mend(text)
-            if mended == text:
+            correct = next((one for shape, one in _IN_PYTHON3 if re.search(shape, said)), str)
+            corrected = correct(text)
+            if corrected == text:
                 return None, problems
             if before not in ("", said):
                 problems.append(_syntax(package, file, error))
-            text = mended
+            text = corrected
         except (ValueError, RecursionError, MemoryError):
             return None, problems
 

@@ -133,10 +133,11 @@ def blank(match: re.Match[str]) -> str:
 
 
 def code(package: Package, file: str) -> str:
-    """Return the text of a source, with spaces, or nothing, for its comments."""
-    text = package.text(file)
-    is_python = package.kind(file) == "python"
-    return _PYTHON_COMMENT.sub("", text) if is_python else without_comments(text)
+    """Return the text of a source or launch file, with spaces, or nothing, for its comments."""
+    text, kind = package.text(file), package.kind(file)
+    if kind == "python":
+        return _PYTHON_COMMENT.sub("", text)
+    return _XML_COMMENT.sub(blank, text) if kind == "launch" else without_comments(text)
 
 
 def includes(package: Package, file: str) -> Iterator[tuple[str, int]]:
@@ -216,7 +217,7 @@ def of_launch(package: Package) -> dict[str, Use]:
     """Return name -> Use of the packages that the launch files name; tests are left out."""
     found: dict[str, Use] = {}
     for file in package.of_kind("launch"):
-        text = _XML_COMMENT.sub(blank, package.text(file))
+        text = code(package, file)
         for match in _LAUNCHED.finditer("" if is_test(file) else text):
             line = text.count("\n", 0, match.start()) + 1
             _add(found, package, match[1] or match[2], Use(file, line, "launch", False))
