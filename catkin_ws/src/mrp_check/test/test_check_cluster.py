@@ -13,8 +13,6 @@ import subprocess
 import sys
 import uuid
 
-import dask
-import distributed  # noqa: F401 (its defaults)
 import psutil
 import pytest
 from check_rules import hand_in
@@ -202,6 +200,9 @@ def without_checks(folder):
 )
 def test_a_submission_that_kills_its_workers_is_named(tmp_path, monkeypatch):
     """Two may die here, so that it does not take long; Dask's own default is three more."""
+    import dask  # here: the quick tests read this file where Dask is not installed
+    import distributed  # noqa: F401 (its defaults)
+
     assert dask.config.get("distributed.scheduler.allowed-failures") == 3
     monkeypatch.setenv("DASK_DISTRIBUTED__SCHEDULER__ALLOWED_FAILURES", "1")
     for name in ("anna", "killer", "zoe"):
