@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """TCP ports of this machine: one that is free, who listens at one, and at which a process does."""
 
+import contextlib
 import os
 import pathlib
 import socket
@@ -22,7 +23,10 @@ def listening(port):
 
 def ports_of(pid):
     """Return the ports at which a process listens, sorted."""
-    files = [os.readlink(one) for one in pathlib.Path(f"/proc/{pid}/fd").iterdir()]
+    files = []
+    for one in pathlib.Path(f"/proc/{pid}/fd").iterdir():
+        with contextlib.suppress(FileNotFoundError):  # the process has closed it just now
+            files.append(os.readlink(one))
     return sorted({number for _, number, inode in _listeners() if f"socket:[{inode}]" in files})
 
 
