@@ -38,7 +38,9 @@ NO_WORKER = (
 
 @pytest.fixture(scope="module")
 def headers(tmp_path_factory):
-    return cpp_headers.make(tmp_path_factory.mktemp("headers") / "ros.pch")
+    folder = tmp_path_factory.mktemp("headers")
+    cpp_headers.make(folder / cpp_headers.NAME)
+    return folder
 
 
 @pytest.fixture(autouse=True)

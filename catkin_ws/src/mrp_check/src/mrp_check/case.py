@@ -64,7 +64,7 @@ class Case(Workspace):
     @functools.cached_property
     def headers(self) -> Future[pathlib.Path]:
         """The file of ROS's headers; it is read in the background from the first call on."""
-        return self.submit(cpp_headers.make, self.given / "ros.pch")
+        return self.submit(cpp_headers.make, self.given / cpp_headers.NAME)
 
     @functools.cached_property
     def manifest(self) -> tuple[Manifest | None, Finding | None]:

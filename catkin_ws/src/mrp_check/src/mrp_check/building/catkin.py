@@ -13,6 +13,7 @@ import shutil
 import typing
 
 from mrp_check import confine
+from mrp_check.building import headers
 from mrp_check.confined import variables, written
 from mrp_check.contract.errors import CannotCheck
 from mrp_check.student import cmake
@@ -82,8 +83,16 @@ class Catkin:
             os.makedirs(cache, exist_ok=True)  # within the confinement it could not be made
             if os.getuid() == 0:
                 os.chmod(cache, 0o777)  # each check is another user's then
-        writable = [cache] if cache else []
-        return self.workspace.run(*command, writable=writable, env=environment)
+        kept = headers.folder()
+        if kept:
+            environment[variables.HEADERS] = str(kept)
+            environment["CMAKE_CXX_COMPILER_LAUNCHER"] = ";".join(headers.LAUNCHER)
+        return self.workspace.run(
+            *command,
+            readable=[kept] if kept else [],
+            writable=[cache] if cache else [],
+            env=environment,
+        )
 
     def _step(self, result: confine.Result) -> Step:
         """Return the Step that came of a command. Raises CannotCheck if it took too long.
@@ -141,6 +150,9 @@ class Catkin:
             step = Step(*workspace.made)
             workspace.keep(self.configured, step)
             return step
+        flags = headers.missing(command for _, command in self.compile_commands().values())
+        if flags is not None:
+            workspace.submit(headers.make, flags)  # for what is built next
         # As catkin_make would, which took its time to find out that CMake need not run again.
         make = ["make", f"--directory={self.folder / 'build'}", *_KEEP_GOING]
         if workspace.compiles_again:

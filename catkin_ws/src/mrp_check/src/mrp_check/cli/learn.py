@@ -57,8 +57,9 @@ def learn(folder):
     """Follow the exercises: on the screen of a terminal, or in lines."""
     course = Course(folder)
     with scratch_folder() as scratch:
-        # What two exercises have in common is compiled once.
-        os.environ.setdefault(variables.CCACHE, str(scratch / "ccache"))
+        headers = scratch / "headers"
+        headers.mkdir(mode=0o755)
+        os.environ[variables.HEADERS] = str(headers)
         watched = Watched(course, scratch)
         try:
             if is_terminal():

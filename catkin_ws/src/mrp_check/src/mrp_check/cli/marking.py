@@ -120,10 +120,10 @@ def _environment(scratch):
     with _READING:  # the first check reads them for all that follow in this process
         if not _HEADERS:
             _HEADERS.append(tempfile.TemporaryDirectory(prefix="mrp_check_class_"))
-        headers = cpp_headers.make(pathlib.Path(_HEADERS[0].name) / "ros.pch")
-    env = {**os.environ, "TMPDIR": str(scratch)}
-    if headers.exists():
-        env[variables.HEADERS] = str(headers)
+            folder = pathlib.Path(_HEADERS[0].name)
+            folder.chmod(0o755)
+            cpp_headers.make(folder / cpp_headers.NAME)
+    env = {**os.environ, "TMPDIR": str(scratch), variables.HEADERS: _HEADERS[0].name}
     env["PYTHONPATH"] = os.pathsep.join([str(_HERE.parent), env.get("PYTHONPATH", "")])
     return env
 

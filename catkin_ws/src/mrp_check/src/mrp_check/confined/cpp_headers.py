@@ -21,6 +21,7 @@ if __name__ == "__main__":
 
 from mrp_check.confined import variables
 
+NAME = "ros.pch"  # of the file, in a folder that is given
 STANDARD = "-std=gnu++17"  # the default of g++ 12 and 14
 FOLDERS = ("/opt/ros/noetic/include", "/usr/include/xmlrpcpp")
 _SOURCE = ("ros.h", "#include <ros/ros.h>\n")
@@ -33,10 +34,11 @@ def make(path: pathlib.Path) -> pathlib.Path:
     """Put the headers into the file `path`, and return it. Without clang or ROS there is none."""
     if path.exists():
         return path  # an earlier check has made it
-    kept = pathlib.Path(os.environ.get(variables.HEADERS) or _in_cache())
-    if kept.exists():
-        shutil.copyfile(kept, path)
-        return path
+    kept, of_many = _in_cache(), os.environ.get(variables.HEADERS)
+    for earlier in (*([pathlib.Path(of_many, NAME)] if of_many else []), kept):
+        if earlier.exists():
+            shutil.copyfile(earlier, path)
+            return path
     subprocess.run(["/usr/bin/python3", __file__, str(path)], stderr=subprocess.DEVNULL)
     if path.exists():
         with contextlib.suppress(OSError):  # such as a home that is read-only: nothing is kept

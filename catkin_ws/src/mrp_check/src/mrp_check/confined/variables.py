@@ -5,8 +5,8 @@ import pathlib
 import typing
 
 # What may be set for the checker: a folder for ccache, with which what is equal in many packages is
-# compiled once (a package that means harm could put something wrong into it: it is for tests and
-# for one's own exercises); and the file in which a class keeps ROS's headers.
+# compiled once (a package that means harm could put something wrong into it: it is for tests); and
+# the folder in which a class or a course keeps ROS's headers, as clang and g++ have read them.
 CCACHE = "MRP_CHECK_CCACHE"
 HEADERS = "MRP_CHECK_HEADERS"
 

@@ -126,12 +126,14 @@ class Workspace:
         self,
         *command: str,
         seconds: float | None = None,
+        readable: Sequence[pathlib.Path] = (),
         writable: Sequence[str] = (),
         env: Mapping[str, str] | None = None,
     ) -> confine.Result:
         """Run a command, confined, with this machine's own ROS. Raises ConfineError.
 
         seconds: that it may take, if not all of the timeout
+        readable: folders that it may read, with the workspace
         writable: folders that it may write to, with the workspace
         env: variables that come on top
         """
@@ -140,7 +142,7 @@ class Workspace:
             self.folder,
             confine.Limits(time=seconds or self.timeout),
             {**variables.environment(self.folder), **(env or {})},
-            readable=[self.given],
+            readable=[self.given, *readable],
             writable=writable,
         )
 

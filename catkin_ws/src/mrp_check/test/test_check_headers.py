@@ -1,0 +1,125 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""ROS's headers as g++ has read them once for many: when they are used, and what must not differ."""
+
+import os
+
+import check_sets
+import pytest
+from mrp_check import check
+from mrp_check.building import headers
+from mrp_check.confined import gcc_headers, variables
+from mrp_check.contract import spec
+from mrp_check.student.package import Package
+from mrp_testing.proves import proves
+
+NODE = "src/publisher_cpp_node.cpp"
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize(
+    ("source", "begins"),
+    [
+        ("#include <ros/ros.h>\n", True),
+        ("// a /* b\n/* #define A\n */\n#include <cstdint>  // c\n# include <ros/ros.h>\n", True),
+        ("#include <cstdint>\n", False),
+        ("#define A 1\n#include <ros/ros.h>\n", False),
+        ("#include <curses.h>\n#include <ros/ros.h>\n", False),
+        ('#include "own.h"\n#include <ros/ros.h>\n', False),
+        ("#ifdef A\n#include <ros/ros.h>\n#endif\n", False),
+        ("int main() {}\n#include <ros/ros.h>\n", False),
+        ("/* " * 9999, False),
+    ],
+    ids=range(9),
+)
+def test_only_what_reads_the_same_after_ros_may_stand_before_it(source, begins):
+    assert gcc_headers.begins_with_ros(source.encode()) is begins
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize(
+    ("command", "flags"),
+    [
+        ("/usr/bin/c++ -DROS_PACKAGE_NAME=x -DA=1 -I/b -isystem /c -O2 -o d -c e", ["-DA=1", "-O2"]),
+        ("g++ -std=gnu++17 -Wall -MD -MT a -MF b -o c.o -c e.cpp", ["-std=gnu++17", "-Wall"]),
+        ("g++ -fplugin=own.so -o d -c e.cpp", None),
+        ("g++ -include own.h -o d -c e.cpp", None),
+        ("clang++ -o d -c e.cpp", None),
+        ("g++ -o d e.o", None),
+    ],
+    ids=range(6),
+)
+def test_flags_are_what_the_headers_depend_on(command, flags):
+    assert gcc_headers.flags(command.split()) == flags
+
+
+@pytest.fixture
+def kept(tmp_path, monkeypatch):
+    """The folder in which the headers are kept."""
+    folder = tmp_path / "headers"
+    folder.mkdir(mode=0o755)
+    monkeypatch.setenv(variables.HEADERS, str(folder))
+    return folder
+
+
+@pytest.fixture
+def compiled(tmp_path, open_folders):
+    """A function that compiles the tutorial's package after a change of its C++ publisher; it
+    returns what is found, the executable, and whether the compiler has read all of ROS's headers
+    for it."""
+    place, scratch = tmp_path / "package", tmp_path / "scratch"
+    check_sets.lay_out("mrp", place)
+    scratch.mkdir(mode=0o711)
+
+    def once(change=lambda text: text):
+        (place / NODE).write_text(change((place / NODE).read_text()))
+        report = check.check(
+            Package(place), spec.read(spec.find("pub_sub")), ("compile",), kept=scratch
+        )
+        said = [one.message for one in report.findings]
+        if said:
+            return said
+        (read,) = scratch.rglob("publisher_cpp_node.cpp.o.d")
+        (executable,) = scratch.rglob("devel/lib/mrp/publisher_cpp_node")
+        return said, executable.read_bytes(), "ros/node_handle.h" in read.read_text()
+
+    return once
+
+
+@pytest.mark.slow
+@proves(
+    "In a class and in make learn, the compiler reads ROS's headers once for each set of flags, and"
+    " not for each source."
+)
+def test_second_source_is_compiled_with_the_headers_of_the_first(kept, compiled):
+    assert compiled()[::2] == ([], True)
+    (made,) = kept.glob(f"*/{gcc_headers.NAME}.gch")
+    assert made.stat().st_uid == os.getuid()
+    said, executable, reads_all = compiled(lambda text: text + "\n// Once more.\n")
+    assert (said, reads_all) == ([], False)
+    assert b"ros.mrp\0" in executable  # what the messages of ROS_INFO() are called
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("change", "says"),
+    [
+        (lambda text: text.replace("#include <ros/ros.h>\n", ""), "ros.h> is missing"),
+        (lambda text: "#include <ros/ros.h>\nnot C++;\n" + text, "line 2 of"),
+    ],
+    ids=("not_included", "line"),
+)
+def test_what_is_wrong_is_found_as_ever(kept, compiled, change, says):
+    compiled()
+    assert list(kept.glob(f"*/{gcc_headers.NAME}.gch"))
+    (finding,) = compiled(change)
+    assert says in finding
+
+
+@pytest.mark.quick
+def test_headers_are_made_once_for_each_of_three_sets_of_flags(kept):
+    def asked(flag):
+        return headers.missing([["g++", flag, "-o", "a.o", "-c", "a.cpp"]])
+
+    assert [asked(flag) for flag in ("-O0", "-O0", "-O1")] == [["-O0"], None, ["-O1"]]
+    assert [asked(flag) for flag in ("-O2", "-O3")] == [["-O2"], None]
+    assert headers.missing([]) is None
