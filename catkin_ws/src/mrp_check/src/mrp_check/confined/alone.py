@@ -139,13 +139,19 @@ class _Node:
         self.sent_at = time.monotonic()
 
     def send_paced(self) -> None:
-        """Send the values that come one by one: each when the one before was logged, or did not
-        come for a while."""
+        """Send the values that come one by one: each when the one before was logged or relayed, or
+        was not for a while."""
         pending = self.plan.paced[max(len(self.sent) - len(self.plan.values), 0) :]
         if self.publisher is None or not self.sent or not pending:
             return
-        if self._has_logged(self.sent[-1]) or is_over(time.monotonic() - self.sent_at, _PACE):
+        if self._has_answered() or is_over(time.monotonic() - self.sent_at, _PACE):
             self._send_one(self.publisher, pending[0])
+
+    def _has_answered(self) -> bool:
+        """Return whether the node has done what it does with a message, with the last one."""
+        if self.plan.relays:
+            return self.observer.most_of(self.name() or "") >= len(self.sent)
+        return self._has_logged(self.sent[-1])
 
     def _has_logged(self, value: Optional[int]) -> bool:
         number = re.compile(rf"(?<!\d){value}(?!\d)")

@@ -20,9 +20,13 @@ _COMPILERS = ("c++", "g++")
 _TWO_WORDS = ("-o", "-MF", "-MT", "-MQ", "-isystem", "-I")
 _NO_PART = ("-c", "-I", "-M", "-DROS_PACKAGE_NAME=")
 _FLAG = re.compile(r"-(D\w+(=\d+)?|O\w*|W[\w=+-]+|f[\w-]+|g\w*|m[\w=-]+|pedantic|pthread|std=[\w+]+)")
-# What may stand before #include <ros/ros.h>: C++'s own headers, which are the same before and after.
-_BEFORE = re.compile(rb"\s+|//[^\n]*|/\*.*?\*/|#[ \t]*include[ \t]*<[a-z_]+>", re.DOTALL)
-_ROS = re.compile(rb"#[ \t]*include[ \t]*<ros/ros\.h>")
+# What may stand before #include <ros/ros.h>: C++'s own headers, and those in folders of installed
+# packages, which are the same before it and after.
+_BEFORE = re.compile(
+    rb"\s+|//[^\n]*|/\*.*?\*/|#[ \t]*include[ \t]*<(?:[a-z_]+|(?P<of_package>\w+/\w+\.h))>", re.DOTALL
+)
+_ROS = re.compile(rb"#[ \t]*include[ \t]*[<\"]ros/ros\.h[>\"]")
+_PLACES = ("/usr/include", "/opt/ros/noetic/include")
 
 
 def flags(command):
@@ -48,12 +52,20 @@ def folder_of(flags):
     return hashlib.sha256("\0".join(flags).encode()).hexdigest()[:16]
 
 
-def begins_with_ros(source):
-    """Return whether all that stands before <ros/ros.h> in a source is as well read after it."""
+def begins_with_ros(source, places=_PLACES):
+    """Return whether all that stands before <ros/ros.h> in a source is as well read after it.
+
+    places: folders of headers that others have written, or a tool
+    """
     at = 0
-    while found := _BEFORE.match(source, at):
-        at = found.end()
-    return bool(_ROS.match(source, at))
+    while not _ROS.match(source, at):
+        found = _BEFORE.match(source, at)
+        if not found:
+            return False
+        at, name = found.end(), (found["of_package"] or b"").decode()
+        if name and not any(os.path.exists(os.path.join(place, name)) for place in places):
+            return False
+    return True
 
 
 def with_headers(command, folder):
@@ -63,7 +75,9 @@ def with_headers(command, folder):
     if not header or not os.path.exists(f"{header}.gch"):
         return command
     with open(command[-1], "rb") as file:
-        if not begins_with_ros(file.read()):
+        # Beside what is installed: what catkin makes of the package's own messages.
+        own = [word[2:] for word in command if re.fullmatch(r"-I.*/devel/include", word)]
+        if not begins_with_ros(file.read(), (*_PLACES, *own)):
             return command
     # The package's name is no part of what was read before: so it is defined after that.
     name = f"{command[command.index('-o') + 1]}.h"

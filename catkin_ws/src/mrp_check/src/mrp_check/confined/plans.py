@@ -136,6 +136,7 @@ class DirectNode:
     namespace: its own
     env: of it alone; params: full name of a parameter -> its value
     publishes: how many messages of it are enough; 0 if it publishes nothing by itself
+    relays: whether it publishes one for each that it is sent, and none by itself
     values: what it is sent at once; paced: what it is sent then, one by one
     field, type: of the messages in which it is sent these; None if it is sent nothing
     topic: the last part of its name
@@ -159,6 +160,7 @@ class DirectNode:
     received: Optional[str]
     hook: Optional[Hook]
     topic: Optional[str] = None
+    relays: bool = False
     offers: List[Service] = dataclasses.field(default_factory=list)
     calls: List[Service] = dataclasses.field(default_factory=list)
     example: Optional[Example] = None

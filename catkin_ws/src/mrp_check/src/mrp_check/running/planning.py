@@ -186,6 +186,7 @@ class Planner:
             paced=list(PACED) if is_sent else [],
             field=topic.field if topic else None,
             topic=topic.name if topic else None,
+            relays=bool(relayed),
             text=topic.text if topic else None,
             type=topic.type_in(self.workspace.package.name) if topic else None,
             received=_received(node),
