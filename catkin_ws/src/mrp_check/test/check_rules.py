@@ -13,6 +13,7 @@ from mrp_check.rules import (
     early_timer,
     lifetime,
     message_fields,
+    lists,
     no_value,
     node_name,
     node_start,
@@ -111,7 +112,7 @@ def python_findings(folder, source, **others):
     known = facts.Facts(python={read.file: read}, relevant=[read.file])
     one = types.SimpleNamespace(package=package, facts=known)
     rules = python_names, message_fields, rospy_calls, early_timer, not_called, not_kept, responses
-    rules += (no_value,)
+    rules += (no_value, lists)
     return [finding for file in rules for finding in file.RULE.findings(one)]
 
 

@@ -263,6 +263,30 @@ def test_what_a_function_returns_is_used_where_it_returns_something(function, us
 
 
 @pytest.mark.parametrize(
+    ("use", "error"),
+    [
+        ("a = filter(None, [1])\nprint(a[0])", "TypeError"),
+        ("print(len(map(str, [1])))", "TypeError"),
+        ("print({}.values()[0])", "TypeError"),
+        ("a = {}.keys()\na.sort()", "AttributeError"),
+        ("a = {}\nprint(a.has_key(1))", "AttributeError"),
+        ("for a in {}.iteritems():\n    print(a)", "AttributeError"),
+        ("a = list(filter(None, [1]))\nprint(a[0])", None),
+        ("a = {}.keys()\nprint(len(a))", None),
+        ("a = filter(None, [1])\na = [*a]\nprint(a[0])", None),
+        ("def zip(*a):\n    return a\n\n\nprint(zip(1)[0])", None),
+        ("class A:\n    def keys(self):\n        return [1]\n\n\nprint(A().keys()[0])", None),
+        ("from own import *\nprint(map(1)[0])", None),
+    ],
+    ids=range(12),
+)
+def test_what_python_2_made_a_list_is_not_used_as_one(use, error, tmp_path):
+    found = check_rules.python_findings(tmp_path, f"import rospy\n{use}\n")
+    said = [one.message for one in found if "Python 3" in one.message]
+    assert [text.split()[-5] for text in said] == [error] * bool(error)
+
+
+@pytest.mark.parametrize(
     ("function", "found"),
     [("def run(self, goal):", [("callbacks", 5)]), ("def run(goal):", []), ("def run(*a):", [])],
     ids=range(3),
