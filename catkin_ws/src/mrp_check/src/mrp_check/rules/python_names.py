@@ -58,6 +58,7 @@ class Names(PythonRule):
 
     def _module(self, node: ast.stmt, name: str) -> Iterator[Finding]:
         if self.is_own(name):
+            yield from self._generated(node, name)
             return
         missing, parent = None, None
         for length in range(1, name.count(".") + 2):
@@ -89,6 +90,27 @@ class Names(PythonRule):
             expected="a module that is installed",
             fix=f"Write {near}." if near else "Correct the name of the module.",
         )
+
+    def _generated(self, node: ast.stmt, name: str) -> Iterator[Finding]:
+        """Yield the Finding about messages, or services, of a package that has none."""
+        kinds = {"msg": ("message", "action"), "srv": ("service",)}
+        part = name.partition(".")[2]
+        is_there = part not in kinds or self.package.of_kind(*kinds[part])
+        if is_there or name.split(".")[0] != self.package.name or self._has_module(name):
+            return
+        yield self.finding(
+            "python-names",
+            f"{name} is generated from the files in {part}/, and this package has none: Python ends"
+            " with a ModuleNotFoundError.",
+            node,
+            expected=f"files in {part}/, and generate_messages() in CMakeLists.txt",
+            fix=f"Add them; or import the {part} module of the package that has them.",
+        )
+
+    def _has_module(self, name: str) -> bool:
+        path = name.replace(".", "/")
+        paths = [f"/{one}" for one in self.package.of_kind("python")]
+        return any(one.endswith((f"/{path}.py", f"/{path}/__init__.py")) for one in paths)
 
     def _absent(self, node: ast.stmt, module: str) -> Finding:
         self.source.absent[module] = said = uses.absent(module, "python")
