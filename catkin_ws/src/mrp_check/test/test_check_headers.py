@@ -41,7 +41,10 @@ def test_only_what_reads_the_same_after_ros_may_stand_before_it(source, begins):
 @pytest.mark.parametrize(
     ("command", "flags"),
     [
-        ("/usr/bin/c++ -DROS_PACKAGE_NAME=x -DA=1 -I/b -isystem /c -O2 -o d -c e", ["-DA=1", "-O2"]),
+        (
+            "/usr/bin/c++ -DROS_PACKAGE_NAME=x -DA=1 -I/b -isystem /c -O2 -o d -c e",
+            ["-DA=1", "-O2"],
+        ),
         ("g++ -std=gnu++17 -Wall -MD -MT a -MF b -o c.o -c e.cpp", ["-std=gnu++17", "-Wall"]),
         ("g++ -fplugin=own.so -o d -c e.cpp", None),
         ("g++ -include own.h -o d -c e.cpp", None),

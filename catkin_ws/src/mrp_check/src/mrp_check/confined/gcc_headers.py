@@ -12,6 +12,7 @@ import hashlib
 import os
 import re
 import sys
+from typing import List, Optional, Sequence
 
 FOLDER = "MRP_CHECK_HEADERS"  # variables.py has it, too: this file can import nothing of it
 NAME = "ros.h"  # in the folder of its flags, beside what g++ made of it, which it ends in .gch
@@ -19,17 +20,20 @@ NAME = "ros.h"  # in the folder of its flags, beside what g++ made of it, which 
 _COMPILERS = ("c++", "g++")
 _TWO_WORDS = ("-o", "-MF", "-MT", "-MQ", "-isystem", "-I")
 _NO_PART = ("-c", "-I", "-M", "-DROS_PACKAGE_NAME=")
-_FLAG = re.compile(r"-(D\w+(=\d+)?|O\w*|W[\w=+-]+|f[\w-]+|g\w*|m[\w=-]+|pedantic|pthread|std=[\w+]+)")
+_FLAG = re.compile(
+    r"-(D\w+(=\d+)?|O\w*|W[\w=+-]+|f[\w-]+|g\w*|m[\w=-]+|pedantic|pthread|std=[\w+]+)"
+)
 # What may stand before #include <ros/ros.h>: C++'s own headers, and those in folders of installed
 # packages, which are the same before it and after.
 _BEFORE = re.compile(
-    rb"\s+|//[^\n]*|/\*.*?\*/|#[ \t]*include[ \t]*<(?:[a-z_]+|(?P<of_package>\w+/\w+\.h))>", re.DOTALL
+    rb"\s+|//[^\n]*|/\*.*?\*/|#[ \t]*include[ \t]*<(?:[a-z_]+|(?P<of_package>\w+/\w+\.h))>",
+    re.DOTALL,
 )
 _ROS = re.compile(rb"#[ \t]*include[ \t]*[<\"]ros/ros\.h[>\"]")
 _PLACES = ("/usr/include", "/opt/ros/noetic/include")
 
 
-def flags(command):
+def flags(command: List[str]) -> Optional[List[str]]:
     """Return the arguments on which it depends what g++ makes of ROS's headers, or None if that
     cannot be said.
 
@@ -47,12 +51,12 @@ def flags(command):
     return kept if is_known else None
 
 
-def folder_of(flags):
+def folder_of(flags: List[str]) -> str:
     """Return what the folder of these flags is called."""
     return hashlib.sha256("\0".join(flags).encode()).hexdigest()[:16]
 
 
-def begins_with_ros(source, places=_PLACES):
+def begins_with_ros(source: bytes, places: Sequence[str] = _PLACES) -> bool:
     """Return whether all that stands before <ros/ros.h> in a source is as well read after it.
 
     places: folders of headers that others have written, or a tool
@@ -68,11 +72,13 @@ def begins_with_ros(source, places=_PLACES):
     return True
 
 
-def with_headers(command, folder):
+def with_headers(command: List[str], folder: str) -> List[str]:
     """Return the command that compiles with the headers in a folder; the same one without them."""
     known = flags(command)
-    header = known is not None and os.path.join(folder, folder_of(known), NAME)
-    if not header or not os.path.exists(f"{header}.gch"):
+    if known is None:
+        return command
+    header = os.path.join(folder, folder_of(known), NAME)
+    if not os.path.exists(f"{header}.gch"):
         return command
     with open(command[-1], "rb") as file:
         # Beside what is installed: what catkin makes of the package's own messages.

@@ -1,0 +1,101 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What Python's functions return, and what is done with it; and messages that nobody has."""
+
+import check_rules
+import pytest
+from check_rules import told
+
+pytestmark = pytest.mark.quick
+
+
+@pytest.mark.parametrize(
+    ("body", "severities"),
+    [
+        ("    pass", ["error"]),
+        ("    if request.data:\n        return None", ["error"]),
+        ("    if request.data:\n        return [True, '']", ["warning"]),
+        ("    while True:\n        if request.data:\n            return [True, '']", []),
+        ("    raise rospy.ServiceException('no')", []),
+        ("    if request.data:\n        return [True, '']\n    return [False, '']", []),
+        ("    try:\n        return [True, '']\n    except ValueError:\n        raise", []),
+    ],
+    ids=range(7),
+)
+def test_what_answers_a_service_returns_a_response(body, severities, tmp_path):
+    head = "import rospy\nfrom std_srvs.srv import SetBool\n\n\n"
+    service = "\n\n\nrospy.init_node('a')\nrospy.Service('switch', SetBool, switch)\nrospy.spin()\n"
+    text = f"{head}def switch(request):\n{body}{service}"
+    found = check_rules.python_findings(tmp_path, text)
+    assert [one.severity for one in found if one.id == "callbacks"] == severities
+
+
+@pytest.mark.parametrize(
+    ("function", "use", "lines"),
+    [
+        ("rospy.spin()", "a = make()\na.start()", [7]),
+        ("rospy.spin()", "make().start()", [6]),
+        ("return 1", "a = make()\na.start()", []),
+        ("yield 1", "a = make()\na.start()", []),
+        ("raise ValueError", "a = make()\na.start()", []),
+        ("rospy.spin()", "a = 1\na = make()\na.start()", []),
+        ("rospy.spin()", "try:\n    make().start()\nexcept AttributeError:\n    pass", []),
+    ],
+    ids=range(7),
+)
+def test_what_a_function_returns_is_used_where_it_returns_something(function, use, lines, tmp_path):
+    text = f"import rospy\n\n\ndef make():\n    {function}\n{use}\n"
+    found = check_rules.python_findings(tmp_path, text)
+    assert told(found) == [("python-names", line) for line in lines]
+
+
+@pytest.mark.parametrize(
+    ("use", "error"),
+    [
+        ("a = filter(None, [1])\nprint(a[0])", "TypeError"),
+        ("print(len(map(str, [1])))", "TypeError"),
+        ("print({}.values()[0])", "TypeError"),
+        ("a = {}.keys()\na.sort()", "AttributeError"),
+        ("a = {}\nprint(a.has_key(1))", "AttributeError"),
+        ("for a in {}.iteritems():\n    print(a)", "AttributeError"),
+        ("a = list(filter(None, [1]))\nprint(a[0])", None),
+        ("a = {}.keys()\nprint(len(a))", None),
+        ("a = filter(None, [1])\na = [*a]\nprint(a[0])", None),
+        ("def zip(*a):\n    return a\n\n\nprint(zip(1)[0])", None),
+        ("class A:\n    def keys(self):\n        return [1]\n\n\nprint(A().keys()[0])", None),
+        ("from own import *\nprint(map(1)[0])", None),
+    ],
+    ids=range(12),
+)
+def test_what_python_2_made_a_list_is_not_used_as_one(use, error, tmp_path):
+    found = check_rules.python_findings(tmp_path, f"import rospy\n{use}\n")
+    said = [one.message for one in found if "Python 3" in one.message]
+    assert [text.split()[-5] for text in said] == [error] * bool(error)
+
+
+@pytest.mark.parametrize(
+    ("module", "others", "found"),
+    [
+        ("msg", {}, [("python-names", 1)]),
+        ("srv", {"msg__A_DOT_msg": ""}, [("python-names", 1)]),
+        ("msg", {"msg__A_DOT_msg": ""}, []),
+        ("msg", {"action__A_DOT_action": "---\n---\n"}, []),
+        ("msg", {"src__some_pkg__msg_DOT_py": ""}, []),
+        ("nodes", {"src__some_pkg__nodes_DOT_py": ""}, []),
+    ],
+    ids=range(6),
+)
+def test_messages_of_a_package_that_has_none(module, others, found, tmp_path):
+    text = f"from some_pkg.{module} import *\n"
+    assert told(check_rules.python_findings(tmp_path, text, **others)) == found
+
+
+@pytest.mark.parametrize(
+    ("function", "found"),
+    [("def run(self, goal):", [("callbacks", 5)]), ("def run(goal):", []), ("def run(*a):", [])],
+    ids=range(3),
+)
+def test_what_an_action_server_calls_takes_the_goal(function, found, tmp_path):
+    head = "import rospy\nimport actionlib  # not everywhere\n\n\n"
+    server = "actionlib.SimpleActionServer('a', None, execute_cb=run, auto_start=False)"
+    text = f"{head}{function}\n    pass\n\n\nserver = {server}\n"
+    assert told(check_rules.python_findings(tmp_path, text)) == found
