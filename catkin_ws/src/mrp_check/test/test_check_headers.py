@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""ROS's headers as g++ has read them once for many: when they are used, and what must not differ."""
+"""ROS's headers as g++ has read them once for many: when they are used, and what stays as it is."""
 
 import os
 
