@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Small packages for the tests of the checker's rules: a rule sees the files, nothing is built."""
 
+import os
 import pathlib
 import types
 
-from mrp_check import case
+from mrp_check import case, sandbox
 from mrp_check.contract import spec
 from mrp_check.rules import (
     REQUIREMENTS,
@@ -50,6 +51,9 @@ catkin_package(CATKIN_DEPENDS roscpp rospy std_msgs)
 catkin_install_python(PROGRAMS src/odd.py DESTINATION bin)
 """
 PUB_SUB = spec.read(spec.find("pub_sub"))
+# How commands are confined here, and as root wherever it is; otherwise nothing is promised.
+_OF_ROOT = sandbox.isolation() if os.getuid() else sandbox.Isolation.USER
+ISOLATIONS = [*dict.fromkeys([sandbox.isolation(), _OF_ROOT])]
 ASKED = {id_: one for id_, one in REQUIREMENTS.items() if PUB_SUB.asks(id_)}
 
 

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """A package that does harm when it is built or run: it is reported, and goes no further."""
 
-import os
 import textwrap
 
 import pytest
+from check_rules import ISOLATIONS
 from lab_package import PUBLISHERS, findings_of, make_package, spec_of
 from mrp_check import check, sandbox
 from mrp_check.contract.finding import ERROR
@@ -80,12 +80,8 @@ threading.Thread(target=attack, daemon=True).start()
 """
 
 
-# What root has wherever it is; without it and without namespaces, nothing is promised.
-ROOTS = sandbox.isolation() if os.getuid() else sandbox.Isolation.USER
-
-
 @proves("no way to reach the program that observes them, so they cannot change the verdict.")
-@pytest.mark.parametrize("isolation", dict.fromkeys([sandbox.isolation(), ROOTS]))
+@pytest.mark.parametrize("isolation", ISOLATIONS)
 def test_a_node_cannot_change_what_is_seen_of_it(tmp_path, monkeypatch, isolation):
     monkeypatch.setattr(sandbox, "isolation", lambda: isolation)
     defects = {"start": PUBLISHERS["start"]}

@@ -5,7 +5,8 @@ import os
 
 import check_sets
 import pytest
-from mrp_check import check
+from check_rules import ISOLATIONS
+from mrp_check import check, sandbox
 from mrp_check.building import headers
 from mrp_check.confined import gcc_headers, variables
 from mrp_check.contract import spec
@@ -91,11 +92,15 @@ def compiled(tmp_path, open_folders):
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize("isolation", ISOLATIONS)
 @proves(
     "In a class and in make learn, the compiler reads ROS's headers once for each set of flags, and"
     " not for each source."
 )
-def test_second_source_is_compiled_with_the_headers_of_the_first(kept, compiled):
+def test_second_source_is_compiled_with_the_headers_of_the_first(
+    kept, compiled, monkeypatch, isolation
+):
+    monkeypatch.setattr(sandbox, "isolation", lambda: isolation)
     assert compiled()[::2] == ([], True)
     (made,) = kept.glob(f"*/{gcc_headers.NAME}.gch")
     assert made.stat().st_uid == os.getuid()

@@ -86,7 +86,7 @@ class Catkin:
         kept = headers.folder()
         if kept:
             environment[variables.HEADERS] = str(kept)
-            environment["CMAKE_CXX_COMPILER_LAUNCHER"] = ";".join(headers.LAUNCHER)
+            environment["CMAKE_CXX_COMPILER_LAUNCHER"] = headers.launcher()
         return self.workspace.run(
             *command,
             readable=[kept] if kept else [],

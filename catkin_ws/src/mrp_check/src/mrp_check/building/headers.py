@@ -8,12 +8,10 @@ import pathlib
 import shutil
 from typing import Iterable
 
-from mrp_check import confine
+from mrp_check import confine, sandbox
 from mrp_check.confined import cpp_headers, gcc_headers, variables
 from mrp_check.scratch import scratch_folder
 
-# What CMake calls in place of the compiler. -I and -S: nothing of Python's own is needed.
-LAUNCHER = ("/usr/bin/python3", "-I", "-S", gcc_headers.__file__)
 _MOST = 3  # sets of flags: each takes 200 MB
 _BEGIN = '#define ROS_PACKAGE_NAME "ros"\n#include <ros/ros.h>\n#undef ROS_PACKAGE_NAME\n'
 
@@ -22,6 +20,12 @@ def folder() -> pathlib.Path | None:
     """Return the folder in which they are kept, if there is one."""
     kept = os.environ.get(variables.HEADERS)
     return pathlib.Path(kept) if kept else None
+
+
+def launcher() -> str:
+    """Return what CMake is to call in place of the compiler, with ; between its words."""
+    # -I and -S: nothing of Python's own is needed.
+    return ";".join(("/usr/bin/python3", "-I", "-S", str(sandbox.code() / "gcc_headers.py")))
 
 
 def missing(commands: Iterable[list[str]]) -> list[str] | None:
