@@ -23,6 +23,7 @@ NODE = "src/publisher_cpp_node.cpp"
         ("#include <ros/ros.h>\n", True),
         ("// a /* b\n/* #define A\n */\n#include <cstdint>  // c\n# include <ros/ros.h>\n", True),
         ("#include <std_msgs/UInt32.h>\n#include <ros/ros.h>\n", True),
+        ("#include <stdint.h>\n#include <boost/bind/bind.hpp>\n#include <ros/ros.h>\n", True),
         ("#include <some_pkg/own.h>\n#include <ros/ros.h>\n", False),
         ("#include <cstdint>\n", False),
         ("#define A 1\n#include <ros/ros.h>\n", False),
@@ -32,7 +33,7 @@ NODE = "src/publisher_cpp_node.cpp"
         ("int main() {}\n#include <ros/ros.h>\n", False),
         ("/* " * 9999, False),
     ],
-    ids=range(11),
+    ids=range(12),
 )
 def test_only_what_reads_the_same_after_ros_may_stand_before_it(source, begins):
     assert gcc_headers.begins_with_ros(source.encode()) is begins
