@@ -8,10 +8,12 @@ import pytest
 from check_rules import MANIFEST
 from mrp_check import check
 from mrp_check.building import configuring
+from mrp_check.confined.launch_dump import Started
 from mrp_check.contract.finding import NOTE, WARNING, Finding
-from mrp_check.rules import arguments, unset, waiting
+from mrp_check.rules import arguments, unread, unset, waiting
 from mrp_check.sources.facts import Facts
 from mrp_check.student.cmake import Model
+from mrp_check.student.launch import Launch
 
 pytestmark = pytest.mark.quick
 
@@ -107,3 +109,36 @@ def test_many_findings_are_one_line_without_a_contract_if_they_are_of_many_files
     many = [Finding("starts", "It is so.", f"{n}.py", 1) for n in range(5)]
     (one,) = check.folded(many, facts, is_any=True)
     assert one.message.startswith("5 such faults in files that are no node: 0.py")
+
+
+@pytest.mark.parametrize(
+    ("source", "params", "remaps", "is_up", "found"),
+    [
+        ('n.param("rate", r, 1);', {"/a/rate": 2}, [], True, []),
+        ('n.param("rate", r, 1);', {"/a/rte": 2}, [], True, [("starts", 3)]),
+        ('n.param("rate", r, 1);', {"/b/rte": 2}, [], True, []),
+        ("n.param(name, r, 1);", {"/a/rte": 2}, [], True, []),
+        ('n.param("gains/p", r, 1);', {"/a/gains/p": 2}, [], True, []),
+        ('n.advertise<A>("chatter", 1);', {}, [("/chater", "/b")], False, [("topic", 4)]),
+        ('n.advertise<A>("chatter", 1);', {}, [("/chatter", "/b")], False, []),
+        ('n.advertise<A>("chatter", 1);', {}, [("/chater", "/b")], True, []),
+    ],
+    ids=range(8),
+)
+def test_what_a_launch_file_gives_is_named_in_a_source(
+    source, params, remaps, is_up, found, tmp_path
+):
+    text = (
+        '<launch>\n  <node pkg="some_pkg" type="a" name="a">\n    <param name="rte" value="2"/>\n'
+        '    <remap from="chater" to="b"/>\n  </node>\n</launch>\n'
+    )
+    package = check_rules.make(
+        tmp_path / "some_pkg", src__a_DOT_cpp=MAIN.format(source), launch__a_DOT_launch=text
+    )
+    file = "launch/a.launch"
+    node = Started("some_pkg", "a", "a", "/", "", remaps, [], "", "", file, 2)
+    known = case(package)
+    known.facts.sources = {"a": ["src/a.cpp"]}
+    known.nodes = {"a": types.SimpleNamespace(is_up=is_up)}
+    known.launches = [Launch("", nodes=[node], files=[file], params=params, file=file)]
+    assert check_rules.told(unread.RULE.findings(known)) == found

@@ -1,0 +1,85 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What a launch file gives a node, the node's sources name: a parameter, or a name to be changed."""
+
+from __future__ import annotations
+
+import re
+from typing import Iterator
+
+from mrp_check.case import Case
+from mrp_check.confined.launch_dump import Started
+from mrp_check.contract.finding import WARNING, Finding
+from mrp_check.contract.requirements import ANY, Rule
+from mrp_check.contract.words import last_part
+from mrp_check.rules.launch_remap import remap_line
+from mrp_check.sources import uses
+from mrp_check.student.launch import Launch
+
+# What reads parameters, or takes part in the graph, under names that stand in no source of the node.
+_UNSEEN = re.compile(
+    r"\b(get_param_names|getParamNames|search\w*param)\b|(?i:param)\w*\s*(<[\w:]+>\s*)?\(\s*[^\"'\s)]"
+    r"|dynamic_reconfigure|nodelet|plugin|actionlib|image_transport|camera_info|controller|diagnos"
+    r"|tf2?_ros|moveit|message_filters"
+)
+
+
+def _findings(case: Case) -> Iterator[Finding]:
+    for launch in case.launches:
+        for node in launch.nodes:
+            files = case.facts.sources.get(node.type, [])
+            # A node may be of many classes: all that the package has may be its own.
+            kinds = case.package.of_kind("cpp", "header", "python")
+            text = "\n".join(uses.code(case.package, file) for file in kinds)
+            if node.package == case.package.name and files and not _UNSEEN.search(text):
+                yield from _of_params(case, launch, node, text)
+                if node.type not in case.nodes or not case.nodes[node.type].is_up:
+                    yield from _of_remaps(case, node, text)
+
+
+def _of_params(case: Case, launch: Launch, node: Started, text: str) -> Iterator[Finding]:
+    for name in launch.params:
+        own = name[len(node.path) + 1 :] if name.startswith(f"{node.path}/") else ""
+        if not own or any(_is_named(part, text) for part in own.split("/")):
+            continue
+        lines = [
+            (file, element.line)
+            for file, element in launch.elements(case.package)
+            if element.tag == "param" and last_part(element.attributes.get("name", "")) == own
+        ]
+        file, line = lines[0] if lines else (node.file, node.line)
+        yield Finding(
+            "starts",
+            f"The launch file sets the parameter {own} of {node.name}, and no source of this"
+            " package names it: it changes nothing.",
+            file,
+            line,
+            WARNING,
+            expected="a parameter that the node reads",
+            seen=f"{own}, which nothing reads",
+            fix=f"Read {own} in the node; or take the <param> out.",
+            node=node.type,
+        )
+
+
+def _of_remaps(case: Case, node: Started, text: str) -> Iterator[Finding]:
+    """Yield those of a node that was not seen: of one that was, it is known what it uses."""
+    for old, new in node.remaps:
+        if not _is_named(last_part(old), text):
+            yield Finding(
+                "topic",
+                f"The launch file renames {old} of {node.name}, and no source of this package has"
+                " such a name.",
+                node.file,
+                remap_line(case.package, node, old, new),
+                WARNING,
+                expected="a name that the node uses",
+                seen=f"{old} renamed to {new}",
+                node=node.type,
+            )
+
+
+def _is_named(name: str, text: str) -> bool:
+    return re.search(rf"(?<!\w){re.escape(name)}(?!\w)", text) is not None
+
+
+RULE = Rule("run", 23, ("nodes",), _findings, also=("starts", "topic"), only=ANY)
