@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What a launch file gives a node, the node's sources name: a parameter, or a name to be changed."""
+"""What a launch file gives a node is named in the sources: a parameter, or a name that it changes."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from mrp_check.rules.launch_remap import remap_line
 from mrp_check.sources import uses
 from mrp_check.student.launch import Launch
 
-# What reads parameters, or takes part in the graph, under names that stand in no source of the node.
+# What reads parameters, or publishes, under names that stand in no source of the node.
 _UNSEEN = re.compile(
     r"\b(get_param_names|getParamNames|search\w*param)\b|(?i:param)\w*\s*(<[\w:]+>\s*)?\(\s*[^\"'\s)]"
     r"|dynamic_reconfigure|nodelet|plugin|actionlib|image_transport|camera_info|controller|diagnos"
