@@ -7,10 +7,10 @@ import check_rules
 import pytest
 from check_rules import MANIFEST
 from mrp_check import check
-from mrp_check.building import configuring
+from mrp_check.building import configuring, placeholders
 from mrp_check.confined.launch_dump import Started
 from mrp_check.contract.finding import NOTE, WARNING, Finding
-from mrp_check.rules import arguments, unread, unset, waiting
+from mrp_check.rules import arguments, load_manifest, unbuilt, unread, unset, waiting
 from mrp_check.sources.facts import Facts
 from mrp_check.student.cmake import Model
 from mrp_check.student.launch import Launch
@@ -142,3 +142,55 @@ def test_what_a_launch_file_gives_is_named_in_a_source(
     known.nodes = {"a": types.SimpleNamespace(is_up=is_up)}
     known.launches = [Launch("", nodes=[node], files=[file], params=params, file=file)]
     assert check_rules.told(unread.RULE.findings(known)) == found
+
+
+@pytest.mark.parametrize(
+    ("begin", "arguments", "line"),
+    [
+        ("", "_1", 4),
+        ("#include <actionlib/server/simple_action_server.h>", "&f, _1, 2", 4),
+        ("#include <boost/bind/bind.hpp>\nusing namespace boost::placeholders;", "_1", None),
+        ("#include <boost/bind.hpp>", "_1", None),
+        ("#include <tf/message_filter.h>", "_1", None),
+        ('#include "own.h"', "_1", None),
+        ("", "boost::placeholders::_1", None),
+        ("", "std_1, 2", None),
+    ],
+    ids=range(8),
+)
+def test_a_placeholder_is_known_though_nothing_is_compiled(begin, arguments, line, tmp_path):
+    text = f"#include <ros/ros.h>\n{begin}\nint main() {{\n  boost::bind({arguments}); }}\n"
+    own = "#include <boost/bind.hpp>\n"
+    package = check_rules.make(tmp_path / "some_pkg", src__a_DOT_cpp=text, src__own_DOT_h=own)
+    found = [*placeholders.findings(package, ["src/a.cpp"])]
+    assert [one.line for one in found] == ([line] if line else [])
+
+
+@pytest.mark.parametrize(
+    ("body", "is_up", "found"),
+    [
+        ("while (true)\n  {\n    f();\n  }", False, [("exit", 4)]),
+        ("for (;;) { g(); }", False, [("exit", 4)]),
+        ("while (1) { if (f()) { break; } }", False, []),
+        ("while (1) { f(); }", True, []),
+        ("while (ros::ok()) { f(); }", False, []),
+        ("t = n.createTimer(d, f);", False, [("spin", 4)]),
+        ("t = n.createTimer(d, f);\n  ros::spin();", False, []),
+    ],
+    ids=range(7),
+)
+def test_what_the_text_of_a_node_shows_that_was_not_built(body, is_up, found, tmp_path):
+    text = f'int main()\n{{\n  ros::init(a, b, "a");\n  {body}\n}}\n'
+    known = case(check_rules.make(tmp_path / "some_pkg", src__a_DOT_cpp=text))
+    known.nodes = {"src/a.cpp": types.SimpleNamespace(is_up=is_up)}
+    assert check_rules.told(unbuilt.RULE.findings(known)) == found
+
+
+@pytest.mark.parametrize(
+    ("name", "found"),
+    [("some_pkg", []), ("std_msgs", []), ("no_such_pkg", [("python-names", 2)])],
+)
+def test_load_manifest_names_a_package_that_is_there(name, found, tmp_path):
+    text = f"import roslib\nroslib.load_manifest('{name}')\n  print 1\n"
+    known = case(check_rules.make(tmp_path / "some_pkg", src__a_DOT_py=text))
+    assert check_rules.told(load_manifest.RULE.findings(known)) == found

@@ -99,3 +99,15 @@ def test_what_an_action_server_calls_takes_the_goal(function, found, tmp_path):
     server = "actionlib.SimpleActionServer('a', None, execute_cb=run, auto_start=False)"
     text = f"{head}{function}\n    pass\n\n\nserver = {server}\n"
     assert told(check_rules.python_findings(tmp_path, text)) == found
+
+
+@pytest.mark.parametrize(
+    ("call", "indent", "found"),
+    [("", "    ", [("node-start", 6)]), ("main()", "    ", []), ("", "", [])],
+    ids=range(3),
+)
+def test_the_start_of_a_program_stands_outside_of_its_functions(call, indent, found, tmp_path):
+    test = f"{indent}if __name__ == '__main__':\n{indent}    print(1)\n"
+    text = f"import rospy\n\n\ndef main():\n    rospy.spin()\n{test}{call}\n"
+    seen = check_rules.python_findings(tmp_path, text)
+    assert [one for one in told(seen) if one[0] == "node-start"] == found

@@ -23,10 +23,11 @@ _NO_PART = ("-c", "-I", "-M", "-DROS_PACKAGE_NAME=")
 _FLAG = re.compile(
     r"-(D\w+(=\d+)?|O\w*|W[\w=+-]+|f[\w-]+|g\w*|m[\w=-]+|pedantic|pthread|std=[\w+]+)"
 )
-# What may stand before #include <ros/ros.h>: headers of C++ and C, and those in folders of installed
-# packages, which are the same before it and after.
+# What may stand before #include <ros/ros.h>: headers of C++ and C, and those in folders of
+# installed packages, which are the same before it and after.
 _BEFORE = re.compile(
-    rb"\s+|//[^\n]*|/\*.*?\*/|#[ \t]*include[ \t]*<(?:[a-z_]+|(?:math|signal|std\w+|string|unistd)\.h"
+    rb"\s+|//[^\n]*|/\*.*?\*/"
+    rb"|#[ \t]*include[ \t]*<(?:[a-z_]+|(?:math|signal|std\w+|string|unistd)\.h"
     rb"|(?P<of_package>[\w/]+/\w+\.h(?:pp)?))>",
     re.DOTALL,
 )

@@ -17,7 +17,7 @@ FILE = "CMakeLists.txt"
 
 def _findings(case: Case) -> Iterator[Finding]:
     if FILE in case.package.files:
-        yield from _missing_calls(case.model)
+        yield from _missing_calls(case.package, case.model)
         yield from _too_late(case.model)
         yield from _no_folder(case.package, case.model)
     else:
@@ -30,7 +30,7 @@ def _findings(case: Case) -> Iterator[Finding]:
         )
 
 
-def _missing_calls(model: Model) -> Iterator[Finding]:
+def _missing_calls(package: Package, model: Model) -> Iterator[Finding]:
     before = model.catkin or (model.project and model.project[1])
     for needed, found, why in (
         ("project(NAME)", model.project, "CMake needs it first of all"),
@@ -42,7 +42,7 @@ def _missing_calls(model: Model) -> Iterator[Finding]:
             " roslaunch and rosrun do not look",
         ),
     ):
-        if found is None:
+        if found is None and not (needed[-2:] == "()" and _is_included(package, model)):
             yield Finding(
                 "cmake",
                 f"CMakeLists.txt does not call {needed}: {why}.",
@@ -52,6 +52,12 @@ def _missing_calls(model: Model) -> Iterator[Finding]:
                 seen="no such call",
                 fix=f"Add {needed} after this line." if before else f"Add {needed}.",
             )
+
+
+def _is_included(package: Package, model: Model) -> bool:
+    """Return whether a file that CMake did not come to may call catkin_package()."""
+    files = [path for path in package.files if path.endswith(".cmake")]
+    return not model.complete and any("catkin_package" in package.text(file) for file in files)
 
 
 def _too_late(model: Model) -> Iterator[Finding]:

@@ -7,7 +7,7 @@ import os
 from typing import Iterator
 
 from mrp_check import evidence
-from mrp_check.building import compiler, configuring, linker
+from mrp_check.building import compiler, configuring, linker, placeholders
 from mrp_check.case import Case
 from mrp_check.contract.errors import CannotCheck
 from mrp_check.contract.finding import Finding
@@ -18,6 +18,7 @@ from mrp_check.sources import uses
 def findings(case: Case) -> Iterator[Finding]:
     if not case.built:
         yield from _of_other_machines(case)
+        yield from placeholders.findings(case.package, case.package.of_kind("cpp"))
         return
     output, package = case.built.output, case.package
     yield from compiler.without_return(package, output, case.package_folder)
@@ -30,6 +31,7 @@ def findings(case: Case) -> Iterator[Finding]:
     if not found and not absent:
         found = [configuring.unknown(package, case.built, "compile")]
     yield from found
+    yield from placeholders.findings(package, absent)
     if absent:
         raise CannotCheck(" ".join(uses.absent(name, "cpp") for name in sorted({*absent.values()})))
 

@@ -31,7 +31,8 @@ def _findings(case: Case) -> Iterator[Finding]:
         own.update(used)
     for name, use in sorted(used.items()):
         in_manifest = manifest is None or name in _all(manifest, tests=not use.firm)
-        in_cmake = model.catkin is None or name in model.components or use.language == "launch"
+        is_open = model.catkin is None or model.finds_all or use.language == "launch"
+        in_cmake = is_open or name in model.components
         if in_manifest and manifest is not None:
             yield from _kind(package, name, use, manifest)
         if not in_manifest and not in_cmake and name not in own:
@@ -42,6 +43,7 @@ def _findings(case: Case) -> Iterator[Finding]:
         if not in_cmake and model.catkin:
             yield _not_in_cmake(name, use, model, model.catkin)
     if manifest is not None:
+        yield from _several(package, manifest)
         yield from _no_packages(package, manifest, used)
         yield from _passed_on(used, manifest, model)
 
@@ -92,6 +94,24 @@ def _misspelt(name: str, names: Iterable[str], used: Collection[str]) -> str | N
     """Return the name in `names` that is no package and looks like this one, or None."""
     others = [one for one in names if one not in used and not uses.is_ros_package(one)]
     return nearest(name, others, 0.8)
+
+
+def _several(package: Package, manifest: Manifest) -> Iterator[Finding]:
+    """Yield a warning for each tag of package.xml that has the names of several packages."""
+    for name in sorted(_all(manifest, tests=True)):
+        if len(name.split()) > 1:
+            line = package.find_line(FILE, name.split()[0], 1)
+            yield Finding(
+                "dependencies",
+                f"package.xml names several packages in one tag: '{name}' is taken for the name of"
+                " one, which does not exist.",
+                FILE,
+                line,
+                WARNING,
+                expected="a tag for each package",
+                seen=package.lines(FILE)[line - 1].strip(),
+                fix="Write one tag for each.",
+            )
 
 
 def _no_packages(package: Package, manifest: Manifest, used: Collection[str]) -> Iterator[Finding]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import dataclasses
 import os
+import re
 import shutil
 from typing import Iterator
 
@@ -43,7 +44,25 @@ def _findings(case: Case) -> Iterator[Finding]:
             finding.node = None if case.spec.is_contract else node.type
             yield finding
     if not case.spec.is_contract:
+        yield from _illegal(launch)
         yield from _elsewhere(case, launch)
+
+
+def _illegal(launch: Launch) -> Iterator[Finding]:
+    """Yield a warning for each name that ROS takes, and says that it should not be one."""
+    for node in launch.nodes:
+        if not re.fullmatch(r"[A-Za-z]\w*", node.name):
+            legal = re.sub(r"\W", "_", os.path.splitext(node.name)[0])
+            yield Finding(
+                "launch-nodes",
+                f"{node.name} is no legal name of a node: roslaunch and ROS warn of it.",
+                node.file,
+                node.line,
+                WARNING,
+                expected="letters, digits and _, with a letter first",
+                seen=f'name="{node.name}"',
+                fix=f'Write name="{legal}".',
+            )
 
 
 def _elsewhere(case: Case, launch: Launch) -> Iterator[Finding]:

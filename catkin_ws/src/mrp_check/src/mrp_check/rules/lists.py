@@ -84,4 +84,4 @@ class Lists(PythonRule):
         return any(function.name == name for function in self.source.nodes(ast.FunctionDef))
 
 
-RULE = Rule("static", 30, ("facts",), of_sources(Lists), also=("python-names",))
+RULE = Rule("static", 32, ("facts",), of_sources(Lists), also=("python-names",))

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import Iterator, Mapping
 
 from catkin_pkg.package import Package as Manifest
@@ -20,6 +21,7 @@ from mrp_check.student.package import Package
 
 FILE = "CMakeLists.txt"
 _KINDS = ("message", "service", "action")
+_BROUGHT = re.compile(r"\s*(add_(message|service|action)_files|generate_messages)\s*\(")
 
 
 def _findings(case: Case) -> Iterator[Finding]:
@@ -34,7 +36,7 @@ def _findings(case: Case) -> Iterator[Finding]:
     made = model.message_files or model.generate
     if not files and not made or not model.complete and model.catkin is None:
         return
-    if not _finds_all(model):
+    if not model.finds_all:
         yield from _in_cmake(case, files)
     if manifest and (files or model.message_files):
         yield from _in_manifest(package, manifest)
@@ -52,7 +54,7 @@ def _in_cmake(case: Case, files: list[str]) -> Iterator[Finding]:
         yield _message_finding(
             "find_package(catkin ...) does not name message_generation, which brings"
             " generate_messages() and makes code of the package's own messages.",
-            catkin_line,
+            _first_call(case.package) or catkin_line,
             "find_package(catkin REQUIRED COMPONENTS message_generation ...)",
             "Add message_generation to COMPONENTS.",
         )
@@ -79,9 +81,10 @@ def _in_cmake(case: Case, files: list[str]) -> Iterator[Finding]:
         )
 
 
-def _finds_all(model: Model) -> bool:
-    """Return whether catkin_simple finds what package.xml names, and makes the messages."""
-    return model.catkin is not None and model.catkin.arguments[0] == "catkin_simple"
+def _first_call(package: Package) -> int | None:
+    """Return the line of the first command that only message_generation brings."""
+    lines = enumerate(package.lines(FILE), 1)
+    return next((number for number, text in lines if _BROUGHT.match(text)), None)
 
 
 def _elsewhere(case: Case, path: str) -> str | None:

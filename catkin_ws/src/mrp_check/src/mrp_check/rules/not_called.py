@@ -34,6 +34,24 @@ class NotCalled(PythonRule):
                     change=("is_shutdown", "is_shutdown()"),
                 )
         yield from self._statements()
+        yield from self._tests_of_main()
+
+    def _tests_of_main(self) -> Iterator[Finding]:
+        """Yield a finding if the program's start stands within a function that nobody calls."""
+        called = {self.source.definition(node.func) for node in self.source.nodes(ast.Call)}
+        for test in self.source.nodes(ast.Compare):
+            function = self.source.function(test)
+            if not isinstance(function, ast.FunctionDef) or function in called:
+                continue
+            if isinstance(test.left, ast.Name) and test.left.id == "__name__":
+                yield self.finding(
+                    "node-start",
+                    f"This stands within {function.name}(), which nothing calls: Python reads the"
+                    " functions, and ends.",
+                    test,
+                    expected="if __name__ == '__main__': outside of all functions",
+                    fix="Indent it as far as the line with def.",
+                )
 
     def _is_shutdown(self, node: ast.Attribute) -> bool:
         return self.source.dotted(node) == "rospy.is_shutdown"

@@ -50,7 +50,8 @@ def _findings(case: Case) -> Iterator[Finding]:
         is_node = path in case.started or path in nodes or path in {s.path for s in model.scripts}
         if is_node or shebang and _is_node(package, path):
             # What catkin_install_python() puts beside it starts it; once installed, nothing does.
-            runs = path in relayed and not shebang and not case.spec.is_contract
+            is_left = not shebang or "python2" in shebang
+            runs = path in relayed and is_left and not case.spec.is_contract
             for finding in _of(package, model, path, shebang, path in relayed):
                 is_less = runs and finding.severity == ERROR
                 yield dataclasses.replace(finding, severity=WARNING) if is_less else finding
@@ -155,17 +156,18 @@ def _not_relayed(model: Model, path: str, plain: str) -> Finding:
     """Debian has no `python`: it takes catkin_install_python to put the right one there."""
     calls = [s for s in model.scripts if s.by == "catkin_install_python"]
     add = (
-        f"Add {path} to catkin_install_python(PROGRAMS ...)."
+        f"Add {path} to catkin_install_python(PROGRAMS ...) in line {calls[0].line} of"
+        f" {calls[0].file}."
         if calls
         else f"Add catkin_install_python(PROGRAMS {path} DESTINATION"
         " ${CATKIN_PACKAGE_BIN_DESTINATION}) to CMakeLists.txt; or write #!/usr/bin/env python3."
     )
-    calls += [s for s in model.scripts if s.path == path]
     return Finding(
         "scripts",
         f"{path} is not made to run by catkin_install_python(), and its first line asks for"
         " 'python', which this system does not have: it has python3.",
-        *((calls[0].file, calls[0].line) if calls else (path, 1)),
+        path,
+        1,
         expected=f"catkin_install_python(PROGRAMS ... {path} ...) in CMakeLists.txt",
         seen=plain,
         fix=add,

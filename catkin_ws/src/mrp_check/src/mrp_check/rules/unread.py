@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What a launch file gives a node is named in the sources: a parameter, or a name that it changes."""
+"""What a launch file gives a node is named in the sources: a parameter, or a name to change."""
 
 from __future__ import annotations
 

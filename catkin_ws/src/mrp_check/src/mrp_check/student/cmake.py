@@ -215,6 +215,11 @@ class Model:
                 return relative(path, self.folder)
         return relative(base / text, self.folder)
 
+    @property
+    def finds_all(self) -> bool:
+        """Whether catkin_simple finds what package.xml names, and makes the messages."""
+        return self.catkin is not None and self.catkin.arguments[0] == "catkin_simple"
+
     def relayed(self) -> set[str]:
         """Return the scripts that catkin makes executables of."""
         return {script.path for script in self.scripts if script.by == "catkin_install_python"}

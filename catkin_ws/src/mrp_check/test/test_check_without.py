@@ -1,0 +1,85 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What CMakeLists.txt, package.xml and launch files say of packages without a contract."""
+
+import types
+
+import check_rules
+import pytest
+from check_rules import CMAKE, MANIFEST, told
+from mrp_check.confined.launch_dump import Started
+from mrp_check.rules import cmake, dependencies, launch_nodes, messages, scripts
+from mrp_check.sources import executables
+from mrp_check.student.cmake import Model, parsed
+from mrp_check.student.launch import Launch
+
+pytestmark = pytest.mark.quick
+
+NODE = "#!/usr/bin/env {}\nimport rospy\nrospy.init_node('a')\n"
+
+
+def findings(rule, package, **known):
+    given = {"spec": executables.spec(package, check_rules.model_of(package)), **known}
+    return check_rules.file_findings(rule, package, **given)
+
+
+@pytest.mark.parametrize(
+    ("python", "relayed", "severity"),
+    [
+        ("python", False, "error"),
+        ("python", True, None),
+        ("python2", False, "error"),
+        ("python2", True, "warning"),
+    ],
+)
+def test_the_first_line_of_a_script_is_to_blame(python, relayed, severity, tmp_path):
+    text = CMAKE if relayed else CMAKE.replace("src/odd.py", "src/other.py")
+    files = {"src__odd_DOT_py": NODE.format(python), "src__other_DOT_py": NODE.format("python3")}
+    package = check_rules.make(tmp_path / "some_pkg", CMakeLists_DOT_txt=text, **files)
+    found = [one for one in findings(scripts, package) if one.file == "src/odd.py"]
+    assert [(one.severity, one.line) for one in found] == ([(severity, 1)] if severity else [])
+
+
+def test_what_message_generation_brings_is_where_it_is_called(tmp_path):
+    text = f"{CMAKE}\n# add_message_files(FILES A.msg)\nadd_message_files(FILES A.msg)\n"
+    package = check_rules.make(tmp_path / "some_pkg", CMakeLists_DOT_txt=text, msg__A_DOT_msg="")
+    found = [one for one in findings(messages, package) if "message_generation," in one.message]
+    assert told(found) == [("messages", text.count("\n"))]
+
+
+@pytest.mark.parametrize(("ends", "ids"), [(True, ["cmake"]), (False, [])])
+def test_a_call_that_cmake_did_not_come_to_may_be_made(ends, ids, tmp_path):
+    text = "cmake_minimum_required(VERSION 3.10)\nproject(a)\nfind_package(catkin REQUIRED)\n"
+    rest = {"rest_DOT_cmake": "catkin_package()\n"}
+    package = check_rules.make(tmp_path / "some_pkg", CMakeLists_DOT_txt=text, **rest)
+    model = Model(package.root, parsed(text, "CMakeLists.txt"), complete=ends)
+    assert [one.id for one in findings(cmake, package, model=model)] == ids
+
+
+def test_a_tag_has_the_name_of_one_package(tmp_path):
+    text = MANIFEST.replace("<depend>rospy<", "<depend>rospy tf<")
+    package = check_rules.make(tmp_path / "some_pkg", package_DOT_xml=text)
+    found = [one for one in findings(dependencies, package) if "several" in one.message]
+    assert [(one.severity, one.seen) for one in found] == [("warning", "<depend>rospy tf</depend>")]
+
+
+@pytest.mark.parametrize(("name", "number"), [("catkin", 1), ("catkin_simple", 0)])
+def test_catkin_simple_finds_what_package_xml_names(name, number, tmp_path):
+    text = CMAKE.replace("catkin REQUIRED COMPONENTS roscpp rospy", f"{name} REQUIRED COMPONENTS")
+    source = {"src__odd_DOT_py": NODE.format("python")}
+    package = check_rules.make(tmp_path / "some_pkg", CMakeLists_DOT_txt=text, **source)
+    found = [one for one in findings(dependencies, package) if "find_package" in one.message]
+    assert len(found) == number
+
+
+@pytest.mark.parametrize(("name", "found"), [("a_1", []), ("a.py", [("launch-nodes", 2)])])
+def test_a_name_that_ros_warns_of(name, found, tmp_path):
+    package = check_rules.make(tmp_path / "some_pkg", src__odd_DOT_py=NODE.format("python"))
+    node = Started("some_pkg", "odd.py", name, "/", "", [], [], "", "", "launch/a.launch", 2)
+    launch = Launch("", nodes=[node], files=[], file="launch/a.launch")
+    known = types.SimpleNamespace(
+        package=package,
+        launch=launch,
+        model=check_rules.model_of(package),
+        spec=executables.spec(package, check_rules.model_of(package)),
+    )
+    assert told(launch_nodes.RULE.findings(known), "warning") == found
