@@ -111,3 +111,16 @@ def test_the_start_of_a_program_stands_outside_of_its_functions(call, indent, fo
     text = f"import rospy\n\n\ndef main():\n    rospy.spin()\n{test}{call}\n"
     seen = check_rules.python_findings(tmp_path, text)
     assert [one for one in told(seen) if one[0] == "node-start"] == found
+
+
+@pytest.mark.parametrize(
+    ("within", "found"),
+    [("rospy.Publisher('a', String, queue_size=1).publish('x')", [("lifetime", 6)]), ("pass", [])],
+    ids=range(2),
+)
+def test_a_publisher_is_made_once(within, found, tmp_path):
+    head = "import rospy\nfrom std_msgs.msg import String\n\n\ndef hear(message):\n"
+    rest = "\n\n\nrospy.init_node('a')\ns = rospy.Subscriber('b', String, hear)\n"
+    rest += "p = rospy.Publisher('a', String, queue_size=1)\nrospy.spin()\n"
+    seen = check_rules.python_findings(tmp_path, f"{head}    {within}{rest}")
+    assert told(seen, "warning") == found

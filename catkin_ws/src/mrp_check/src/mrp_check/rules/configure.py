@@ -20,7 +20,10 @@ def findings(case: Case) -> Iterator[Finding]:
     package, step = case.package, case.catkin.configured
     missing = configuring.absent(package, step.output, case.spec.is_contract)
     if missing:
-        raise CannotCheck(uses.absent(missing, "cpp"))
+        # CMake stops at the first.
+        others = [one for one in case.catkin.model.components if not uses.is_ros_package(one)]
+        names = [missing, *(one for one in others if one != missing and uses.is_called_so(one))]
+        raise CannotCheck(" ".join(uses.absent(one, "cpp") for one in names))
     missing = configuring.without_definitions(step.output)
     if missing:
         raise CannotCheck(uses.absent(missing, "msg"))

@@ -1,12 +1,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What rospy.Timer() and rospy.Subscriber() return is kept: else nobody can stop it."""
+"""What rospy.Timer() and rospy.Subscriber() return is kept: else nobody can stop it. And a publisher
+is made once."""
 
 from __future__ import annotations
 
 import ast
 from typing import Iterator
 
-from mrp_check.contract.finding import NOTE, Finding
+from mrp_check.contract.finding import NOTE, WARNING, Finding
 from mrp_check.contract.requirements import Rule
 from mrp_check.sources.python_rule import PythonRule, of_sources
 
@@ -26,6 +27,30 @@ class NotKept(PythonRule):
                     expected="a member, such as self.timer or self.subscriber",
                     fix="Keep it as a member.",
                 )
+        yield from self._publishers()
+
+    def _publishers(self) -> Iterator[Finding]:
+        """Yield a warning for each publisher that is made anew whenever a callback is called."""
+        called = {
+            self.source.definition(argument)
+            for call in self.source.nodes(ast.Call)
+            if self.source.dotted(call.func) in ("rospy.Timer", "rospy.Subscriber")
+            for argument in [*call.args, *(keyword.value for keyword in call.keywords)]
+        }
+        for call in self.source.nodes(ast.Call):
+            function = self.source.function(call)
+            is_asked = any(isinstance(one, ast.If) for one in self.source.above(call))
+            if isinstance(function, ast.FunctionDef) and function in called and not is_asked:
+                if self.source.dotted(call.func) == "rospy.Publisher":
+                    yield self.finding(
+                        "lifetime",
+                        f"{function.name}() makes a publisher each time that it is called: a new one"
+                        " is connected to nobody yet, so what it publishes at once is lost.",
+                        call,
+                        severity=WARNING,
+                        expected="a publisher that is made once, before the subscriber",
+                        fix="Make it outside of the callback, and use it there.",
+                    )
 
 
 RULE = Rule("static", 25, ("facts",), of_sources(NotKept), also=("lifetime",))
