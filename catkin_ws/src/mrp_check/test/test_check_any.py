@@ -71,7 +71,7 @@ DOUBTED = [
 
 
 @proves(
-    "In six trials, somebody listed the defects of public packages before the checker saw them.",
+    "In seven trials, somebody listed the defects of public packages before the checker saw them.",
     "Each trial was on other packages, as the checker was improved after each.",
     "Three more labels of the third trial and two of the fourth were wrong, and are not counted.",
     "The last two columns say what the checker finds since it was improved:",
@@ -87,7 +87,7 @@ def test_trials_on_packages_by_strangers():
     trials = [*csv.reader(recorded.read_text().splitlines())][1:]
     tried = []
     wrong = []
-    names = "", "_later", "_third", "_fourth", "_fifth", "_sixth"
+    names = "", "_later", "_third", "_fourth", "_fifth", "_sixth", "_seventh"
     for said, name in zip(trials, names, strict=True):
         text = pathlib.Path(__file__).with_name(f"strangers{name}.csv").read_text()
         rows = [*csv.DictReader(text.splitlines())]
@@ -106,7 +106,7 @@ def test_trials_on_packages_by_strangers():
         assert not packages & {one for others in tried for one in others}
         tried.append(packages)
         wrong.append(found.count("none"))
-    assert wrong == [0, 0, 3, 2, 0, 0]
+    assert wrong == [0, 0, 3, 2, 0, 0, 0]
 
 
 def checked(folder):
