@@ -16,14 +16,13 @@ import signal
 import subprocess
 import sys
 import tarfile
-import tempfile
 import threading
 
 from mrp_check.confined import cpp_headers, variables
 from mrp_check.contract import resources
 from mrp_check.contract.errors import CannotCheck
 from mrp_check.report import json_
-from mrp_check.scratch import scratch_folder
+from mrp_check.scratch import process_folder, scratch_folder
 from mrp_check.student.package import MAX_BYTES, Package, is_of_tools
 
 _HERE = pathlib.Path(__file__).resolve().parents[1]
@@ -34,7 +33,7 @@ _LOCK = threading.Lock()
 _RUNNING: dict[subprocess.Popen, str] = {}  # the checks, and their classes
 _STOPPED: set[str] = set()  # classes
 _READING = threading.Lock()
-_HEADERS: list[tempfile.TemporaryDirectory] = []  # in which ROS's headers are, once they are read
+_HEADERS: list[pathlib.Path] = []  # the folder in which ROS's headers are, once they are read
 
 
 @dataclasses.dataclass(frozen=True)
@@ -119,11 +118,9 @@ def stop(class_: str) -> None:
 def _environment(scratch):
     with _READING:  # the first check reads them for all that follow in this process
         if not _HEADERS:
-            _HEADERS.append(tempfile.TemporaryDirectory(prefix="mrp_check_class_"))
-            folder = pathlib.Path(_HEADERS[0].name)
-            folder.chmod(0o755)
-            cpp_headers.make(folder / cpp_headers.NAME)
-    env = {**os.environ, "TMPDIR": str(scratch), variables.HEADERS: _HEADERS[0].name}
+            _HEADERS.append(process_folder())
+            cpp_headers.make(_HEADERS[0] / cpp_headers.NAME)
+    env = {**os.environ, "TMPDIR": str(scratch), variables.HEADERS: str(_HEADERS[0])}
     env["PYTHONPATH"] = os.pathsep.join([str(_HERE.parent), env.get("PYTHONPATH", "")])
     return env
 
