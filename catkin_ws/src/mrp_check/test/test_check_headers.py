@@ -59,6 +59,15 @@ def test_flags_are_what_the_headers_depend_on(command, flags):
     assert gcc_headers.flags(command.split()) == flags
 
 
+@pytest.mark.quick
+def test_a_source_that_is_not_there_is_the_compilers_business(tmp_path):
+    command = ["g++", "-o", "a.o", "-c", str(tmp_path / "a.cpp")]
+    made = tmp_path / gcc_headers.folder_of(gcc_headers.flags(command))
+    made.mkdir()
+    (made / f"{gcc_headers.NAME}.gch").touch()
+    assert gcc_headers.with_headers(command, str(tmp_path)) is command
+
+
 @pytest.fixture
 def kept(tmp_path, monkeypatch):
     """The folder in which the headers are kept."""

@@ -82,11 +82,15 @@ def with_headers(command: List[str], folder: str) -> List[str]:
     header = os.path.join(folder, folder_of(known), NAME)
     if not os.path.exists(f"{header}.gch"):
         return command
-    with open(command[-1], "rb") as file:
-        # Beside what is installed: what catkin makes of the package's own messages.
-        own = [word[2:] for word in command if re.fullmatch(r"-I.*/devel/include", word)]
-        if not begins_with_ros(file.read(), (*_PLACES, *own)):
-            return command
+    try:
+        with open(command[-1], "rb") as source:
+            text = source.read()
+    except OSError:
+        return command  # the compiler says what is wrong with it
+    # Beside what is installed: what catkin makes of the package's own messages.
+    made = [word[2:] for word in command if re.fullmatch(r"-I.*/devel/include", word)]
+    if not begins_with_ros(text, (*_PLACES, *made)):
+        return command
     # The package's name is no part of what was read before: so it is defined after that.
     name = f"{command[command.index('-o') + 1]}.h"
     own = [word for word in command if word.startswith("-DROS_PACKAGE_NAME=")]
