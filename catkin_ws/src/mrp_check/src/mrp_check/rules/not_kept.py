@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What rospy.Timer() and rospy.Subscriber() return is kept: else nobody can stop it. And a publisher
-is made once."""
+"""What rospy.Timer() and rospy.Subscriber() return is kept: else nobody can stop it. And a
+publisher is made once."""
 
 from __future__ import annotations
 
@@ -44,8 +44,8 @@ class NotKept(PythonRule):
                 if self.source.dotted(call.func) == "rospy.Publisher":
                     yield self.finding(
                         "lifetime",
-                        f"{function.name}() makes a publisher each time that it is called: a new one"
-                        " is connected to nobody yet, so what it publishes at once is lost.",
+                        f"{function.name}() makes a publisher each time that it is called: a new"
+                        " one is connected to nobody yet, so what it publishes at once is lost.",
                         call,
                         severity=WARNING,
                         expected="a publisher that is made once, before the subscriber",
