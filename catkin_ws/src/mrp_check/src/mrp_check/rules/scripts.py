@@ -115,7 +115,9 @@ def _of(
     plain = shebang.rstrip("\r")
     absent = names_no_program(plain) if plain else None
     if absent == PYTHON and not relayed:
-        yield _not_relayed(model, path, plain)
+        finding = _not_relayed(model, path, plain)
+        finding.consequence_of = "scripts" if _is_misspelt(package, model, path) else None
+        yield finding
         return
     if plain:
         yield from _other_program(path, plain, relayed, absent)
@@ -134,6 +136,12 @@ def _of(
             fix=f"chmod +x {path}",
             why="script-not-executable",
         )
+
+
+def _is_misspelt(package: Package, model: Model, path: str) -> bool:
+    """Return whether CMakeLists.txt names a script by a name like it, which no file has."""
+    absent = [script.path for script in model.scripts if script.path not in package.files]
+    return any(nearest(name, package.of_kind("python")) == path for name in absent)
 
 
 def _no_first_line(package: Package, path: str) -> Finding:
