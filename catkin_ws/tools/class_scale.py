@@ -163,7 +163,7 @@ def main(submissions, table=None):
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         folder.chmod(0o711)
-        cpp_headers.make(folder / "ros.pch")  # a machine does that once
+        cpp_headers.make(folder / cpp_headers.NAME)  # a machine does that once
         for workers, count in zip(_WORKERS, counts, strict=True):
             shutil.rmtree(folder / "class", ignore_errors=True)
             make_class(folder / "class", count)

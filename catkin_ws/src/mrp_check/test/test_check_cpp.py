@@ -26,7 +26,7 @@ SOURCES = {name: (FOLDER / f"{name}.cpp").read_text() for name in (PUBLISHER, SU
 
 @pytest.fixture(scope="session")
 def headers(tmp_path_factory):
-    return cpp_headers.make(tmp_path_factory.mktemp("headers") / "ros.pch")
+    return cpp_headers.make(tmp_path_factory.mktemp("headers") / cpp_headers.NAME)
 
 
 def said_of(folder, headers, standard=cpp_headers.STANDARD):

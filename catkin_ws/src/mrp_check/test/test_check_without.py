@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What CMakeLists.txt, package.xml and launch files say of packages without a contract."""
 
-import types
-
 import check_rules
 import pytest
 from check_rules import CMAKE, MANIFEST, told
@@ -76,10 +74,4 @@ def test_a_name_that_ros_warns_of(name, found, tmp_path):
     package = check_rules.make(tmp_path / "some_pkg", src__odd_DOT_py=NODE.format("python"))
     node = Started("some_pkg", "odd.py", name, "/", "", [], [], "", "", "launch/a.launch", 2)
     launch = Launch("", nodes=[node], files=[], file="launch/a.launch")
-    known = types.SimpleNamespace(
-        package=package,
-        launch=launch,
-        model=check_rules.model_of(package),
-        spec=executables.spec(package, check_rules.model_of(package)),
-    )
-    assert told(launch_nodes.RULE.findings(known), "warning") == found
+    assert told(findings(launch_nodes, package, launch=launch), "warning") == found

@@ -150,9 +150,10 @@ class Catkin:
             step = Step(*workspace.made)
             workspace.keep(self.configured, step)
             return step
-        flags = headers.missing(command for _, command in self.compile_commands().values())
-        if flags is not None:
-            workspace.submit(headers.make, flags)  # for what is built next
+        if headers.folder():
+            flags = headers.missing(command for _, command in self.compile_commands().values())
+            if flags is not None:
+                workspace.submit(headers.make, flags)  # for what is built next
         # As catkin_make would, which took its time to find out that CMake need not run again.
         make = ["make", f"--directory={self.folder / 'build'}", *_KEEP_GOING]
         if workspace.compiles_again:

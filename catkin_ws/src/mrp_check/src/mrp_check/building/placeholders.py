@@ -8,7 +8,7 @@ import re
 from typing import Iterable, Iterator
 
 from mrp_check.contract.finding import Finding
-from mrp_check.contract.words import last_part
+from mrp_check.contract.words import last_part, line_of
 from mrp_check.sources import uses
 from mrp_check.student.package import Package
 
@@ -28,11 +28,10 @@ def findings(package: Package, files: Iterable[str]) -> Iterator[Finding]:
     if not _is_gone():
         return
     for file in sorted({*files} & {*package.of_kind("cpp")}):
-        text = uses.code(package, file)
-        match = _BIND.search(text)
+        match = _BIND.search(uses.code(package, file))
         if not match or not _is_plain(package, file):
             continue
-        line = text.count("\n", 0, match.start(1)) + 1
+        line = line_of(match, 1)
         yield Finding(
             "compile",
             f"{file} uses {match[1]} as a name of its own: this machine's Boost has it in"
@@ -53,8 +52,10 @@ def _is_gone() -> bool:
 def _is_plain(package: Package, file: str, seen: tuple[str, ...] = ()) -> bool:
     """Return whether it is known of all headers of a file that they do not declare _1."""
     own = {last_part(path): path for path in package.of_kind("header")}
-    if "placeholders" in package.text(file) or file in seen:
-        return file in seen
+    if file in seen:
+        return True
+    if "placeholders" in package.text(file):
+        return False
     for header, _ in uses.includes(package, file):
         path = own.get(last_part(header))
         is_made = header.split("/")[0] == package.name  # of its messages

@@ -148,7 +148,7 @@ class _Node:
             self._send_one(self.publisher, pending[0])
 
     def _has_answered(self) -> bool:
-        """Return whether the node has done what it does with a message, with the last one."""
+        """Return whether the node has logged, or relayed, the last message that it was sent."""
         if self.plan.relays:
             return self.observer.most_of(self.name() or "") >= len(self.sent)
         return self._has_logged(self.sent[-1])

@@ -34,8 +34,9 @@ def make(path: pathlib.Path) -> pathlib.Path:
     """Put the headers into the file `path`, and return it. Without clang or ROS there is none."""
     if path.exists():
         return path  # an earlier check has made it
-    kept, of_many = _in_cache(), os.environ.get(variables.HEADERS)
-    for earlier in (*([pathlib.Path(of_many, NAME)] if of_many else []), kept):
+    kept, folder = _in_cache(), os.environ.get(variables.HEADERS)
+    of_many = [pathlib.Path(folder, NAME)] if folder else []
+    for earlier in (*of_many, kept):
         if earlier.exists():
             shutil.copyfile(earlier, path)
             return path

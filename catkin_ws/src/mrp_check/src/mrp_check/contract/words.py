@@ -4,7 +4,14 @@
 from __future__ import annotations
 
 import difflib
+import re
 from typing import Iterable
+
+
+def line_of(match: re.Match[str], group: int | str = 0) -> int:
+    """Return the line, from 1, in which a group of a match begins; its text is a whole file's."""
+    text: str = match.string
+    return text.count("\n", 0, match.start(group)) + 1
 
 
 def last_part(name: str) -> str:

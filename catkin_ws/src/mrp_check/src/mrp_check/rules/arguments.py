@@ -9,6 +9,7 @@ from typing import Iterator
 from mrp_check.case import Case
 from mrp_check.contract.finding import WARNING, Finding
 from mrp_check.contract.requirements import ANY, Rule
+from mrp_check.contract.words import line_of
 from mrp_check.sources import uses
 
 _READ = re.compile(r"\bargv\s*\[\s*([1-9])\s*\]")
@@ -34,7 +35,7 @@ def _findings(case: Case) -> Iterator[Finding]:
 def _of(node: str, file: str, code: str) -> Iterator[Finding]:
     only, lines = _ONLY.search(code), code.split("\n")
     for read in _READ.finditer(code):
-        line = code.count("\n", 0, read.start()) + 1
+        line = line_of(read)
         number = int(read[1])
         before = "\n".join(lines[:line])
         if only and only.end() < read.start() and number >= int(only[1]):

@@ -37,12 +37,12 @@ def _missing_calls(package: Package, model: Model) -> Iterator[Finding]:
         ("find_package(catkin REQUIRED ...)", model.catkin, "without it there is no catkin"),
         (
             "catkin_package()",
-            model.catkin_package,
+            model.catkin_package or _is_included(package, model),
             "without it catkin does not know the package, and its executables are put where"
             " roslaunch and rosrun do not look",
         ),
     ):
-        if found is None and not (needed[-2:] == "()" and _is_included(package, model)):
+        if not found:
             yield Finding(
                 "cmake",
                 f"CMakeLists.txt does not call {needed}: {why}.",

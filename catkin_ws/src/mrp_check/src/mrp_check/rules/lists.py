@@ -23,7 +23,7 @@ _GONE = {
 class Lists(PythonRule):
     def findings(self) -> Iterator[Finding]:
         for node in self.source.nodes(ast.Subscript):
-            yield from self._used_as_list(node.value, f"{self.written(node)}", "TypeError")
+            yield from self._used_as_list(node.value, self.written(node), "TypeError")
         for call in self.source.nodes(ast.Call):
             if isinstance(call.func, ast.Name) and call.func.id == "len" and len(call.args) == 1:
                 yield from self._used_as_list(call.args[0], "len()", "TypeError", _FUNCTIONS)

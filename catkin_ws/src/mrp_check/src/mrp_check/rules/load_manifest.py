@@ -9,18 +9,18 @@ from typing import Iterator
 from mrp_check.case import Case
 from mrp_check.contract.finding import Finding
 from mrp_check.contract.requirements import Rule
+from mrp_check.contract.words import line_of
 from mrp_check.sources import uses
 
 _CALL = re.compile(r"^[^#\n]*\bload_manifest\(\s*['\"]([\w-]+)['\"]\s*\)", re.MULTILINE)
 
 
 def _findings(case: Case) -> Iterator[Finding]:
-    """Of the text: so that a file that Python cannot read is looked at, too."""
+    """Look at the text: Python may be unable to read the file."""
     for file in case.package.of_kind("python"):
-        text = case.package.text(file)
-        for match in _CALL.finditer(text):
+        for match in _CALL.finditer(case.package.text(file)):
             if match[1] != case.package.name and not uses.is_ros_package(match[1]):
-                line = text.count("\n", 0, match.start(1)) + 1
+                line = line_of(match, 1)
                 yield Finding(
                     "python-names",
                     f"load_manifest() names {match[1]}, and this machine has no such package:"

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import re
 from typing import Iterator, Mapping
 
 from catkin_pkg.package import Package as Manifest
@@ -21,7 +20,8 @@ from mrp_check.student.package import Package
 
 FILE = "CMakeLists.txt"
 _KINDS = ("message", "service", "action")
-_BROUGHT = re.compile(r"\s*(add_(message|service|action)_files|generate_messages)\s*\(")
+# The commands that only message_generation brings.
+_BROUGHT = r"^\s*(add_(message|service|action)_files|generate_messages)\s*\("
 
 
 def _findings(case: Case) -> Iterator[Finding]:
@@ -51,10 +51,11 @@ def _in_cmake(case: Case, files: list[str]) -> Iterator[Finding]:
     brings = {"message_generation", "genmsg"}  # the first is all of it; the second builds, too
     asks = files or model.generate
     if asks and model.catkin and not brings & {*model.components}:
+        brought = case.package.first_match([FILE], _BROUGHT)
         yield _message_finding(
             "find_package(catkin ...) does not name message_generation, which brings"
             " generate_messages() and makes code of the package's own messages.",
-            _first_call(case.package) or catkin_line,
+            brought[1] if brought else catkin_line,
             "find_package(catkin REQUIRED COMPONENTS message_generation ...)",
             "Add message_generation to COMPONENTS.",
         )
@@ -79,12 +80,6 @@ def _in_cmake(case: Case, files: list[str]) -> Iterator[Finding]:
             f"generate_messages(...) after {call.command}(...)",
             "Add generate_messages(DEPENDENCIES std_msgs).",
         )
-
-
-def _first_call(package: Package) -> int | None:
-    """Return the line of the first command that only message_generation brings."""
-    lines = enumerate(package.lines(FILE), 1)
-    return next((number for number, text in lines if _BROUGHT.match(text)), None)
 
 
 def _elsewhere(case: Case, path: str) -> str | None:

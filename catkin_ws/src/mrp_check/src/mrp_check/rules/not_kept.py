@@ -11,13 +11,15 @@ from mrp_check.contract.finding import NOTE, WARNING, Finding
 from mrp_check.contract.requirements import Rule
 from mrp_check.sources.python_rule import PythonRule, of_sources
 
+_CALLING = ("rospy.Timer", "rospy.Subscriber")  # each calls a function, again and again
+
 
 class NotKept(PythonRule):
     def findings(self) -> Iterator[Finding]:
         for node in self.source.nodes(ast.Expr):
             call = node.value
             name = self.source.dotted(call.func) if isinstance(call, ast.Call) else None
-            if name in ("rospy.Timer", "rospy.Subscriber"):
+            if name in _CALLING:
                 yield self.finding(
                     "lifetime",
                     f"What {name}() returns is not kept. rospy keeps it going all the same; but"
@@ -34,23 +36,24 @@ class NotKept(PythonRule):
         called = {
             self.source.definition(argument)
             for call in self.source.nodes(ast.Call)
-            if self.source.dotted(call.func) in ("rospy.Timer", "rospy.Subscriber")
+            if self.source.dotted(call.func) in _CALLING
             for argument in [*call.args, *(keyword.value for keyword in call.keywords)]
         }
         for call in self.source.nodes(ast.Call):
             function = self.source.function(call)
+            if self.source.dotted(call.func) != "rospy.Publisher" or function not in called:
+                continue
             is_asked = any(isinstance(one, ast.If) for one in self.source.above(call))
-            if isinstance(function, ast.FunctionDef) and function in called and not is_asked:
-                if self.source.dotted(call.func) == "rospy.Publisher":
-                    yield self.finding(
-                        "lifetime",
-                        f"{function.name}() makes a publisher each time that it is called: a new"
-                        " one is connected to nobody yet, so what it publishes at once is lost.",
-                        call,
-                        severity=WARNING,
-                        expected="a publisher that is made once, before the subscriber",
-                        fix="Make it outside of the callback, and use it there.",
-                    )
+            if isinstance(function, ast.FunctionDef) and not is_asked:
+                yield self.finding(
+                    "lifetime",
+                    f"{function.name}() makes a publisher each time that it is called: a new one is"
+                    " connected to nobody yet, so what it publishes at once is lost.",
+                    call,
+                    severity=WARNING,
+                    expected="a publisher that is made once, before the subscriber",
+                    fix="Make it outside of the callback, and use it there.",
+                )
 
 
 RULE = Rule("static", 25, ("facts",), of_sources(NotKept), also=("lifetime",))

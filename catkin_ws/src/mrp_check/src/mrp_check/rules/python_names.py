@@ -96,7 +96,7 @@ class Names(PythonRule):
         kinds = {"msg": ("message", "action"), "srv": ("service",)}
         part = name.partition(".")[2]
         is_there = part not in kinds or self.package.of_kind(*kinds[part])
-        if is_there or name.split(".")[0] != self.package.name or self._has_module(name):
+        if is_there or name.split(".")[0] != self.package.name or self.has_module(name):
             return
         yield self.finding(
             "python-names",
@@ -106,11 +106,6 @@ class Names(PythonRule):
             expected=f"files in {part}/, and generate_messages() in CMakeLists.txt",
             fix=f"Add them; or import the {part} module of the package that has them.",
         )
-
-    def _has_module(self, name: str) -> bool:
-        path = name.replace(".", "/")
-        paths = [f"/{one}" for one in self.package.of_kind("python")]
-        return any(one.endswith((f"/{path}.py", f"/{path}/__init__.py")) for one in paths)
 
     def _absent(self, node: ast.stmt, module: str) -> Finding:
         self.source.absent[module] = said = uses.absent(module, "python")

@@ -18,7 +18,7 @@ from mrp_check.contract.requirements import Requirement, Rule
 from mrp_check.contract.words import nearest, perhaps
 from mrp_check.sources import executables, python_modules
 from mrp_check.sources.uses import is_test
-from mrp_check.student.cmake import Model
+from mrp_check.student.cmake import Model, Script
 from mrp_check.student.package import Package
 
 _MARKS = (codecs.BOM_UTF8, codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)
@@ -87,9 +87,7 @@ def _is_node(package: Package, path: str) -> bool:
 
 def _listed(package: Package, model: Model) -> Iterator[Finding]:
     """Yield a finding for each script that CMakeLists.txt names and that is not there."""
-    for script in model.scripts:
-        if script.path in package.files or "$" in script.path or script.path.startswith("/"):
-            continue
+    for script in _not_there(package, model):
         near = nearest(script.path, package.of_kind("python"))
         yield Finding(
             "scripts",
@@ -138,10 +136,16 @@ def _of(
         )
 
 
+def _not_there(package: Package, model: Model) -> list[Script]:
+    """Return the scripts that CMakeLists.txt names, and that are no files of the package."""
+    missing = [script for script in model.scripts if script.path not in package.files]
+    return [one for one in missing if "$" not in one.path and not one.path.startswith("/")]
+
+
 def _is_misspelt(package: Package, model: Model, path: str) -> bool:
     """Return whether CMakeLists.txt names a script by a name like it, which no file has."""
-    absent = [script.path for script in model.scripts if script.path not in package.files]
-    return any(nearest(name, package.of_kind("python")) == path for name in absent)
+    names = [script.path for script in _not_there(package, model)]
+    return any(nearest(name, package.of_kind("python")) == path for name in names)
 
 
 def _no_first_line(package: Package, path: str) -> Finding:

@@ -9,6 +9,7 @@ from typing import Iterator
 from mrp_check.case import Case
 from mrp_check.contract.finding import WARNING, Finding
 from mrp_check.contract.requirements import ANY, Rule
+from mrp_check.contract.words import line_of
 from mrp_check.sources import uses
 
 _LOOP = re.compile(r"\b(?:while\s*\(\s*(?:1|true)\s*\)|for\s*\(\s*;\s*;\s*\))\s*(?=\{)")
@@ -30,7 +31,7 @@ def _findings(case: Case) -> Iterator[Finding]:
                 yield _finding(
                     case,
                     "spin",
-                    (name, file, text.count("\n", 0, called.start(1)) + 1),
+                    (name, file, line_of(called, 1)),
                     f"{name} asks to be called back here, and never spins: nothing calls it.",
                     "ros::spin() at the end of main",
                 )
@@ -42,7 +43,7 @@ def _endless(case: Case, name: str, file: str, text: str) -> Iterator[Finding]:
             yield _finding(
                 case,
                 "exit",
-                (name, file, text.count("\n", 0, match.start()) + 1),
+                (name, file, line_of(match)),
                 "This loop never ends: it does not ask ros::ok(), so Ctrl-C does not end the node.",
                 "while (ros::ok())",
             )

@@ -9,7 +9,7 @@ from typing import Iterator
 from mrp_check.case import Case
 from mrp_check.contract.finding import WARNING, Finding
 from mrp_check.contract.requirements import ANY, Rule
-from mrp_check.contract.words import last_part, nearest
+from mrp_check.contract.words import last_part, line_of, nearest
 from mrp_check.sources import uses
 
 # A whole statement: what the call returns is not looked at.
@@ -40,7 +40,7 @@ def _of(node: str, file: str, text: str, params: set[str]) -> Iterator[Finding]:
             " as it is, and it may be any number."
             + (f" A launch file sets {near}." if near and near != last_part(name) else ""),
             file,
-            text.count("\n", 0, match.start(1)) + 1,
+            line_of(match, 1),
             WARNING,
             expected=f'param("{name}", {variable}, DEFAULT), or a value where {variable} is made',
             seen=match.group().strip(),

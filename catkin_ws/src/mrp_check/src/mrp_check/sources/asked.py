@@ -8,7 +8,7 @@ import typing
 from typing import Iterable, Iterator, Sequence
 
 from mrp_check.contract.finding import Line
-from mrp_check.contract.words import last_part
+from mrp_check.contract.words import last_part, line_of
 from mrp_check.sources import uses
 from mrp_check.student.package import Package
 
@@ -70,5 +70,4 @@ def of(package: Package, files: Iterable[str]) -> Iterator[Said]:
         text = uses.code(package, file)
         for what, shape in (_PYTHON if package.kind(file) == "python" else _CPP).items():
             for match in re.finditer(shape, text):
-                line = text.count("\n", 0, match.start(1)) + 1
-                yield Said(what, match.group(1), file, line)
+                yield Said(what, match.group(1), file, line_of(match, 1))

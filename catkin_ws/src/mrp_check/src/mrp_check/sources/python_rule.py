@@ -51,12 +51,14 @@ class PythonRule:
     def is_own(self, name: str) -> bool:
         """Return whether a module is the package's own (made, or generated of its messages)."""
         top = name.split(".")[0]
-        return top == self.package.name or any(
-            path.endswith((f"/{top}.py", f"/{top}/__init__.py"))
-            or path == f"{top}.py"
-            or f"/{top}/" in f"/{path}"
-            for path in self.package.of_kind("python")
-        )
+        is_inside = any(f"/{top}/" in f"/{path}" for path in self.package.of_kind("python"))
+        return top == self.package.name or is_inside or self.has_module(top)
+
+    def has_module(self, name: str) -> bool:
+        """Return whether a file of the package is a module of that name."""
+        path = name.replace(".", "/")
+        paths = [f"/{one}" for one in self.package.of_kind("python")]
+        return any(one.endswith((f"/{path}.py", f"/{path}/__init__.py")) for one in paths)
 
     def message_class(self, node: ast.AST | None) -> MessageClass | None:
         """Return the class of a message that an expression names, or None."""

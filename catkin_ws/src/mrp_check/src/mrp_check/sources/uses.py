@@ -13,7 +13,7 @@ import typing
 from typing import Callable, Iterator
 
 from mrp_check.contract.resources import SHARES
-from mrp_check.contract.words import last_part, nearest
+from mrp_check.contract.words import last_part, line_of, nearest
 from mrp_check.student.cmake import Model
 from mrp_check.student.package import Package
 
@@ -144,7 +144,7 @@ def includes(package: Package, file: str) -> Iterator[tuple[str, int]]:
     """Yield (header, line) of each #include that is no comment."""
     text = without_comments(package.text(file))
     for match in _INCLUDE.finditer(text):
-        yield match.group(1), text.count("\n", 0, match.start(1)) + 1
+        yield match.group(1), line_of(match, 1)
 
 
 def package_of_header(header: str) -> str:
@@ -219,7 +219,7 @@ def of_launch(package: Package) -> dict[str, Use]:
     for file in package.of_kind("launch"):
         text = code(package, file)
         for match in _LAUNCHED.finditer("" if is_test(file) else text):
-            line = text.count("\n", 0, match.start()) + 1
+            line = line_of(match)
             _add(found, package, match[1] or match[2], Use(file, line, "launch", False))
     return found
 
@@ -230,7 +230,7 @@ def _imports(package: Package, file: str) -> Iterator[tuple[str, int]]:
     if not tree.body:  # such as of Python 2
         text = code(package, file)
         for match in _IMPORT.finditer(text):
-            yield match[1], text.count("\n", 0, match.start(1)) + 1
+            yield match[1], line_of(match, 1)
     for node in ast.walk(tree):
         if isinstance(node, ast.Import):
             yield from ((alias.name, node.lineno) for alias in node.names)

@@ -16,6 +16,7 @@ import typing
 from typing import Collection, Iterable, Mapping
 
 from mrp_check.confined import written
+from mrp_check.contract.words import line_of
 
 
 class Call(typing.NamedTuple):
@@ -94,7 +95,7 @@ def parsed(text: str, file: str) -> list[Call]:
     variables: dict[str, str] = {}
     depth = 0
     for token in _TOKEN.finditer(text):
-        kind, line = token.lastgroup, text.count("\n", 0, token.start()) + 1
+        kind, line = token.lastgroup, line_of(token)
         if kind in (None, "comment"):
             continue
         word = token[kind]

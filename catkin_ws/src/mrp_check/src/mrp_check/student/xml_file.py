@@ -8,6 +8,7 @@ import re
 import xml.parsers.expat
 
 from mrp_check.contract.finding import Finding
+from mrp_check.contract.words import line_of
 from mrp_check.student.package import Package, declared_entity
 
 
@@ -103,7 +104,7 @@ def _unclosed(package: Package, path: str, noticed: int | None) -> tuple[int, st
     for match in _TAG.finditer(text):
         if not match.group("name") or match.group("end"):
             continue
-        name, line = match.group("name"), text.count("\n", 0, match.start()) + 1
+        name, line = match.group("name"), line_of(match)
         if not match.group("close"):
             stack.append((name, line))
             continue
