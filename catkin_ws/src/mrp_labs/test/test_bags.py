@@ -72,7 +72,8 @@ class TestBags(unittest.TestCase):
     def record_all(cls):
         """Record the lab once: in split bags, in such that repeat what is latched, and one that is
         killed."""
-        split = ("--split", "--duration", "1", MAP, COUNT)
+        # A busy machine can take more than 1 s until the map comes, which is for the first bag.
+        split = ("--split", "--duration", "3", MAP, COUNT)
         with contextlib.ExitStack() as stack:
             lab = stack.enter_context(Lab("bags.launch"))
             lab.wait_for(lambda: "published 1" in lab.logged("/bags/map_py"), "the map")
