@@ -12,6 +12,7 @@ from __future__ import annotations
 import concurrent.futures
 import hashlib
 import math
+import os
 import pathlib
 import time
 import uuid
@@ -27,7 +28,8 @@ from mrp_check.scratch import scratch_folder
 from mrp_check.student import submissions
 from mrp_check.student.package import Package
 
-JOBS = 2
+# One more than there are processors: a check waits at times, as for a node's next message.
+JOBS = min(len(os.sched_getaffinity(0)) + 1, 64)
 _CHUNK = 2**20  # bytes that are read at once
 _MOST_NAMED = 4  # in the sentence on the progress
 
