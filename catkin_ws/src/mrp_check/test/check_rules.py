@@ -11,6 +11,7 @@ from mrp_check.rules import (
     REQUIREMENTS,
     callbacks,
     counter,
+    early_callback,
     early_timer,
     lifetime,
     lists,
@@ -116,7 +117,7 @@ def python_findings(folder, source, **others):
     known = facts.Facts(python={read.file: read}, relevant=[read.file])
     one = types.SimpleNamespace(package=package, facts=known)
     rules = python_names, message_fields, rospy_calls, early_timer, not_called, not_kept, responses
-    rules += (no_value, lists)
+    rules += (no_value, lists, early_callback)
     return [finding for file in rules for finding in file.RULE.findings(one)]
 
 

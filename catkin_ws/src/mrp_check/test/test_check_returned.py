@@ -124,3 +124,62 @@ def test_a_publisher_is_made_once(within, found, tmp_path):
     rest += "p = rospy.Publisher('a', String, queue_size=1)\nrospy.spin()\n"
     seen = check_rules.python_findings(tmp_path, f"{head}    {within}{rest}")
     assert told(seen, "warning") == found
+
+
+OF_CLASS = """import rospy
+from std_msgs.msg import String
+
+
+class Node{bases}:
+    {own}
+
+    def __init__(self):
+        {first}
+        {second}
+
+    def hear(self, message):
+        {use}
+
+
+rospy.init_node('a')
+node = Node()
+rospy.spin()
+"""
+HEARS = "self.subscriber = rospy.Subscriber('b', String, self.hear)"
+MADE = "self.publisher = rospy.Publisher('a', String, queue_size=1)"
+
+
+@pytest.mark.parametrize(
+    ("changed", "found"),
+    [
+        ({}, [("callbacks", 9)]),
+        ({"first": MADE, "second": HEARS}, []),
+        ({"first": f"self.publisher = None\n        {HEARS}"}, []),
+        ({"own": "publisher = None"}, []),
+        ({"bases": "(Other)"}, []),
+        ({"use": "self.other = message"}, []),
+        ({"own": "def say(self):\n        self.publisher.publish('x')", "use": "self.say()"}, [("callbacks", 10)]),
+        ({"first": HEARS.replace("hear)", "hear, queue_size=1)")}, [("callbacks", 9)]),
+        ({"first": HEARS.replace("self.hear", "callback=self.hear")}, [("callbacks", 9)]),
+    ],
+    ids=range(9),
+)
+def test_what_a_callback_uses_is_there_before_it_can_be_called(changed, found, tmp_path):
+    parts = {"bases": "", "own": "count = 0", "first": HEARS, "second": MADE}
+    text = OF_CLASS.format(**{**parts, "use": "self.publisher.publish('x')", **changed})
+    seen = check_rules.python_findings(tmp_path, text)
+    assert told(seen, "warning") == found
+
+
+@pytest.mark.parametrize(
+    ("order", "found"), [("sp", [("callbacks", 9)]), ("ps", [])], ids=["early", "late"]
+)
+def test_what_a_function_uses_is_there_before_it_can_be_called(order, found, tmp_path):
+    parts = {
+        "s": "rospy.Subscriber('b', String, hear)\n",
+        "p": "p = rospy.Publisher('a', String, queue_size=1)\n",
+    }
+    head = "import rospy\nfrom std_msgs.msg import String\n\n\ndef hear(message):\n    p.publish('x')\n"
+    text = f"{head}\nrospy.init_node('a')\n{''.join(parts[one] for one in order)}rospy.spin()\n"
+    seen = check_rules.python_findings(tmp_path, text)
+    assert told(seen, "warning") == found

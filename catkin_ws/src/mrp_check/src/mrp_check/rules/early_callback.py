@@ -1,0 +1,89 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A callback can be called from the moment on that it is named: what it uses is there by then."""
+
+from __future__ import annotations
+
+import ast
+from typing import Iterator
+
+from mrp_check.contract.finding import WARNING, Finding
+from mrp_check.contract.requirements import Rule
+from mrp_check.sources.python_rule import PythonRule, ast_text, of_sources
+from mrp_check.sources.python_source import Variable
+
+_CALLING = {"rospy.Subscriber": "message", "rospy.Service": "request", "rospy.Timer": "call"}
+_BLOCKS = ("body", "orelse", "finalbody")
+
+
+class EarlyCallback(PythonRule):
+    def findings(self) -> Iterator[Finding]:
+        for call in self.source.nodes(ast.Call):
+            what = _CALLING.get(self.source.dotted(call.func) or "")
+            later = self._made_after(call) if what else {}
+            arguments = [*call.args, *(keyword.value for keyword in call.keywords)]
+            for argument in arguments if later else ():
+                function = self.source.definition(argument)
+                used = self._used(function, [])
+                name = next((one for one in later if one in used), None)
+                if isinstance(function, ast.FunctionDef) and name:
+                    place, said = later[name], ast_text(used[name])
+                    yield self.finding(
+                        "callbacks",
+                        f"{function.name}() uses {said}, which is made in line {place.lineno} only:"
+                        f" a {what} that comes before raises an error.",
+                        call,
+                        severity=WARNING,
+                        expected=f"{said} before what calls {function.name}()",
+                        fix=f"Move line {place.lineno} up to before this line.",
+                    )
+
+    def _made_after(self, call: ast.Call) -> dict[Variable, ast.stmt]:
+        """Return the variables that are given a value only after a call, in the same block; and the
+        statement that does so."""
+        made: dict[Variable, list[ast.stmt]] = {}
+        for statement in self._after(call):
+            targets = statement.targets if isinstance(statement, ast.Assign) else []
+            for key in filter(None, map(self.source.key, targets)):
+                made.setdefault(key, []).append(statement)
+        return {
+            key: statements[0]
+            for key, statements in made.items()
+            if len(self.source.stored(key)) == len(statements) and not _may_be_inherited(key)
+        }
+
+    def _after(self, call: ast.Call) -> list[ast.stmt]:
+        """Return the statements that follow a call's own one."""
+        inner: ast.AST = call
+        for outer in self.source.above(call):
+            for block in (getattr(outer, name, []) for name in _BLOCKS):
+                if isinstance(block, list) and inner in block:
+                    return block[block.index(inner) + 1 :]
+            inner = outer
+        return []
+
+    def _used(self, function: ast.AST | None, seen: list[ast.AST]) -> dict[Variable, ast.AST]:
+        """Return the variables that a function reads, or one that it calls; and a place of each."""
+        if not isinstance(function, ast.FunctionDef) or function in seen:
+            return {}
+        used: dict[Variable, ast.AST] = {}
+        for node in ast.walk(function):
+            if isinstance(node, ast.Call):
+                used.update(self._used(self.source.definition(node.func), [*seen, function]))
+            is_read = isinstance(getattr(node, "ctx", None), ast.Load)
+            key = self.source.key(node) if is_read else None
+            if key and not self.source.is_guarded(node, "AttributeError", "NameError"):
+                used.setdefault(key, node)
+        return used
+
+
+def _may_be_inherited(key: Variable) -> bool:
+    """Return whether a variable is a member that its class, or another one, may have, too."""
+    class_, name = key
+    if not isinstance(class_, ast.ClassDef):
+        return False
+    own = [target for one in class_.body for target in getattr(one, "targets", [])]
+    bases = [base for base in class_.bases if getattr(base, "id", "") != "object"]
+    return bool(bases) or any(getattr(target, "id", "") == name for target in own)
+
+
+RULE = Rule("static", 33, ("facts",), of_sources(EarlyCallback), also=("callbacks",))
