@@ -160,7 +160,8 @@ def test_lines_without_a_terminal_and_the_end_by_a_signal(tmp_path, env):
 def test_what_has_not_changed_is_not_built_again(tmp_path, monkeypatch, programs):
     """An old file that is put back is new to make; and an executable of the build before does not
     stand in for one that cannot be built now. What a Python file says reaches neither make nor
-    roslaunch, unless a file of theirs runs a command of its own."""
+    roslaunch, unless a file of theirs runs a command of its own; and what CMakeLists.txt says
+    reaches neither roslaunch nor clang, unless it has files written."""
     monkeypatch.setenv(variables.CCACHE, CACHE)
     source, script, cmake, launch = (
         tmp_path / "package" / path
@@ -177,6 +178,9 @@ def test_what_has_not_changed_is_not_built_again(tmp_path, monkeypatch, programs
     assert checked() == ([], [], first)
     append(launch, "<!-- Another line. -->\n")
     assert checked() == ([], ["launch_dump.py"], first)
+    append(cmake, "# Another line.\n")
+    ids, ran, first = checked()
+    assert (ids, ran) == ([], ["catkin_make", "make"])
     correct, times = source.read_bytes(), source.stat()
     source.write_bytes(correct.replace(b";", b"", 1))
     ids, ran, built = checked()
@@ -190,7 +194,7 @@ def test_what_has_not_changed_is_not_built_again(tmp_path, monkeypatch, programs
     said = '<launch><param name="said" command="echo"/>'
     launch.write_text(launch.read_text().replace("<launch>", said))
     ids, ran, _ = checked()
-    assert (ids, builds(ran)) == ([], ["catkin_make", "make"])
+    assert (ids, builds(ran), "cpp_facts.py" in ran) == ([], ["catkin_make", "make"], True)
     append(script, "# Another line.\n")
     ids, ran, _ = checked()
     assert (ids, sorted(ran)) == ([], ["launch_dump.py", "make"])

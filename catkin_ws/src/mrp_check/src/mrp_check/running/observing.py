@@ -147,7 +147,8 @@ def _executable(
 def _environment(workspace: Workspace) -> dict[str, str]:
     """Return the environment that the workspace's setup.bash makes, as far as there is one."""
     setups = [str(NOETIC), str(workspace.folder / "devel" / "setup.bash")]
-    done = workspace.run_once("bash", "-c", _SOURCED, "bash", *setups, of=())
+    made_by = workspace.package.of_kind("cmake")
+    done = workspace.run_once("bash", "-c", _SOURCED, "bash", *setups, of=made_by)
     pairs = dict(entry.split("=", 1) for entry in done.output.split("\0") if "=" in entry)
     own = {variables.PACKAGES: workspace.ros_packages, variables.PYTHONPATH: ""}
     return {**own, **pairs, **variables.AT_ONCE}

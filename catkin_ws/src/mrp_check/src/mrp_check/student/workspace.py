@@ -14,6 +14,7 @@ import hashlib
 import json
 import os
 import pathlib
+import re
 import shutil
 from typing import Callable, Mapping, Sequence, Tuple, TypeVar
 
@@ -30,8 +31,10 @@ NOETIC = pathlib.Path("/opt/ros/noetic/setup.bash")
 _AT_ONCE = 3  # commands that run in the background at the same time
 _BUILT = ("cpp", "header", "launch")  # kinds of files that CMake does not read
 _NOT_MADE = {"python", "launch"}  # kinds that make does not read, but for a command of one's own
-_OWN_COMMAND = b"add_custom_"
+# What a CMakeLists.txt may have files written by that only it says.
+_WRITES = re.compile(rb"add_custom_|configure_file|\bfile\s*\(", re.IGNORECASE)
 _KNOWN = ".known"  # the ending of what run_once() keeps
+_MOST_KNOWN = 100
 _OF_RUNS = variables.FOLDERS.values()  # folders that the commands of one check write to
 
 
@@ -61,22 +64,20 @@ class Workspace:
         self.package_folder = self.folder / "src" / package.root.resolve().name
         self.given.mkdir(exist_ok=True)
         self._kept = self.given / "kept.json"
-        self._read_by_cmake = _read_by_cmake(package)  # before it is copied: it may change then
+        cmake = [*package.of_kind("cmake"), *(p for p in package.files if p.endswith(".cmake"))]
+        writes = any(_WRITES.search(package.bytes(path)) for path in cmake)
+        # Before it is copied: it may change then.
+        self._read_by_cmake = _digest(package, _BUILT)
+        self._read_by_all = self._read_by_cmake if writes else _digest(package, (*_BUILT, "cmake"))
         kept = self._take_kept()
         self.configured = kept and kept["configured"]
         if not self.configured and self.folder.exists():
             confine.remove(self.folder)
-            for known in self.given.glob(f"*{_KNOWN}"):
-                known.unlink()
         self.folder.mkdir(mode=0o700, exist_ok=True)
         copied = [path for path in package.files if self._copy(path)]
         changed = {package.kind(path) for path in copied if self.configured}
         self.compiles_again = bool(changed & {"cpp", "header"})
-        is_made = not changed <= _NOT_MADE or any(
-            _OWN_COMMAND in package.bytes(path)
-            for path in package.files
-            if package.kind(path) == "cmake"
-        )
+        is_made = writes or not changed <= _NOT_MADE
         self.made = None if is_made else kept and kept["made"]
         self._pool = concurrent.futures.ThreadPoolExecutor(max_workers=_AT_ONCE)
 
@@ -113,8 +114,11 @@ class Workspace:
         self._kept.write_text(json.dumps(kept))
 
     def close(self) -> None:
-        """Wait for what still runs."""
+        """Wait for what still runs, and forget what was not asked for lately."""
         self._pool.shutdown(wait=True)
+        known = sorted(self.given.glob(f"*{_KNOWN}"), key=lambda path: path.stat().st_mtime)
+        for path in known[:-_MOST_KNOWN]:
+            path.unlink()
 
     def submit(
         self, function: Callable[..., T], *arguments: object, **keywords: object
@@ -155,14 +159,15 @@ class Workspace:
     ) -> confine.Result:
         """As run(), unless an earlier check has run it on the same: then return what came of it.
 
-        of: the files of the package that it reads, beside what CMake reads or makes
+        of: the files of the package that it reads, beside those that are no sources
         """
         # Of the copy: a file that is saved just now may be different.
         read = [(path, written.read(self.package_folder / path)) for path in of]
         made = sorted(os.walk(self.folder / "devel" / "include"))
-        known = repr((command, env, self._read_by_cmake, read, made)).encode()
+        known = repr((command, env, self._read_by_all, read, made)).encode()
         path = self.given / (hashlib.sha256(known).hexdigest() + _KNOWN)
         if path.exists():
+            path.touch()
             return confine.Result(**json.loads(path.read_text()))
         result = self.run(*command, seconds=seconds, env=env)
         if result.code == 0:
@@ -182,15 +187,16 @@ def _has_link(folder: pathlib.Path) -> bool:
     return any(path.is_symlink() for path in (folder, folder.parent, *folder.rglob("*")))
 
 
-def _read_by_cmake(package: Package) -> str:
-    """Return a digest of the files' names, and of what CMake and catkin read of each file."""
+def _digest(package: Package, left_out: Sequence[str]) -> str:
+    """Return a digest of the files' names, and of what CMake and catkin read of each file, but for
+    files of these kinds."""
     read: list[object] = [str(package.root)]
     for path in package.files:
         kind = package.kind(path)
         if kind == "python" and not path.endswith("setup.py"):
             content: object = package.shebang(path)
         else:
-            content = kind in _BUILT or package.bytes(path)
+            content = kind in left_out or package.bytes(path)
         read.append((path, package.is_executable(path), content))
     return hashlib.sha256(repr(read).encode()).hexdigest()
 
