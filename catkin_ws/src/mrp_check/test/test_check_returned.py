@@ -183,3 +183,22 @@ def test_what_a_function_uses_is_there_before_it_can_be_called(order, found, tmp
     text = f"{head}\nrospy.init_node('a')\n{''.join(parts[one] for one in order)}rospy.spin()\n"
     seen = check_rules.python_findings(tmp_path, text)
     assert told(seen, "warning") == found
+
+
+@pytest.mark.parametrize(
+    ("said", "found"),
+    [
+        ("rospy.loginfo('heard {message.data}')", [("python-names", 7)]),
+        ("print('{word!r:>9} {message}')", [("python-names", 7)]),
+        ("rospy.loginfo(f'heard {message.data}')", []),
+        ("rospy.loginfo('heard {message}'.format(message=message))", []),
+        ("rospy.loginfo('{nobody} and {}')", []),
+        ("word = '{message}'", []),
+    ],
+    ids=range(6),
+)
+def test_a_text_with_a_variables_name_in_braces_begins_with_f(said, found, tmp_path):
+    head = "import rospy\nfrom std_msgs.msg import String\n\n\ndef hear(message):\n    word = 1\n"
+    text = f"{head}    {said}\n    return word\n\n\ns = rospy.Subscriber('a', String, hear)\n"
+    seen = check_rules.python_findings(tmp_path, text)
+    assert [one for one in told(seen, "warning") if one[0] != "lifetime"] == found
