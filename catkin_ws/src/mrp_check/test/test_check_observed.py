@@ -220,7 +220,7 @@ with Observer() as observer:
         pass
     print("held" if observer.is_held("/n") else "not held")
     observer.release()
-    node.join(10)  # less than it is held for
+    node.join(2)  # seconds: less than it is held for
     print("held" if node.is_alive() else "let go")
     print(observer.seen.publications[0].heard)
 """
@@ -239,6 +239,39 @@ def _said_by(code):
 def test_the_observer_lets_a_publisher_go_on_that_is_to_end():
     """One that waits for the master's answer cannot end: that was called its own fault."""
     assert _said_by(_HELD) == "held\nlet go\nFalse\n"
+
+
+_KNOCK = """\
+        import socket
+        import threading
+        import rosgraph
+        from rospy.impl import tcpros_base
+
+        master = rospy.core.xmlrpcapi(rosgraph.get_master_uri())
+
+        def knock():
+            while not master._lock.locked():
+                pass
+            socket.create_connection(tcpros_base.get_tcpros_server_address()).close()
+
+        threading.Thread(target=knock).start()
+        self.publisher = """
+
+
+def test_a_publisher_that_lets_nobody_in_while_it_announces_is_heard_afterwards(tmp_path):
+    """rospy logs that somebody who connected is gone, and asks the master for a parameter first,
+    which waits for the answer about the publisher: so the observer cannot connect before."""
+    parts = {"right": ("        self.publisher = ", _KNOCK)}
+    folder = make_package(tmp_path / "lab_pkg", parts, {})
+    known = {"built": None, "facts": Facts()}
+    scratch = tmp_path / "scratch"
+    case = check_rules.case_of(Package(folder), scratch, spec_of(["right"], []), **known)
+    runs = case.observed.launch, case.observed.direct
+    case.close()
+    assert [any(one.topic.endswith("/of_right") for one in run.seen.messages) for run in runs] == [
+        True,
+        True,
+    ]
 
 
 def test_the_observer_reads_who_has_registered_while_others_register():

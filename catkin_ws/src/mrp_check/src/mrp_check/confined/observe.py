@@ -36,7 +36,9 @@ from mrp_check.confined.seen import Log, Message, Registration, Seen
 
 NAME = "/mrp_check_observer"
 
-_HOLD = 20.0  # seconds at most, for which the master lets a publisher wait
+# Seconds at most, for which the master lets a publisher wait. A rospy node that logs something
+# meanwhile lets nobody in: it asks the master for a parameter, and waits until it has its answer.
+_HOLD = 4.0
 _ANSWER = 5.0  # seconds within which a node must answer
 _KEEP = 3000  # messages of one publisher on one topic: of more, only the number is kept
 _TEXT = 2000  # characters of a line
@@ -107,8 +109,8 @@ class Observer:
         whether it is."""
         end = time.monotonic() + _HOLD
         self._held.append(node)
-        while not self._is_connected(node, topic) and time.monotonic() < end:
-            if self._is_released:
+        while not self._is_connected(node, topic):
+            if self._is_released or time.monotonic() > end:
                 break
             time.sleep(0.002)
         else:
