@@ -12,7 +12,6 @@ TABLE, a CSV file, is written for the page.
 
 import contextlib
 import csv
-import json
 import pathlib
 import random
 import re
@@ -28,15 +27,14 @@ import time
 import psutil
 from mrp_check.confined import cpp_headers
 from mrp_check.contract import defects, packages, resources
+from mrp_testing.cluster import cluster
 
 _WORKERS = (1, 2, 4)
 _MANY = 10_000
 _SPEC = "pub_sub.yaml"
 _ORDER = 22  # a seed
-_LOCAL = ("--no-dashboard", "--host", "127.0.0.1")
 _PROGRESS = re.compile(r"check: (\d+) of \d+: ")
 _LOOK = 1.0  # seconds between two looks at the memory
-_WAIT = 60  # seconds within which the cluster is there
 
 
 def make_class(folder, count):
@@ -91,36 +89,11 @@ def _megabytes(process):
     return found / 2**20
 
 
-@contextlib.contextmanager
-def started(folder, count):
-    """Yield a scheduler's address, and (name, process) of it and of its workers."""
-    file = folder / "scheduler.json"
-    file.unlink(missing_ok=True)
-    own = ("--scheduler-file", str(file), *_LOCAL)
-    worker = ("worker", *own, "--nthreads", "1", "--no-nanny", "--local-directory", str(folder))
-    commands = [("scheduler", "--port", "0", *own), *[worker] * count]
-    with open(folder / "log", "w") as log, contextlib.ExitStack() as stack:
-        found = []
-        for command in commands:
-            process = subprocess.Popen(["/usr/bin/dask", *command], stderr=log, stdout=log)
-            stack.callback(process.wait)
-            stack.callback(process.terminate)
-            found.append((command[0], process))
-        end = time.monotonic() + _WAIT
-        while (folder / "log").read_text().count("Registered to") < count:
-            if time.monotonic() > end:
-                sys.exit(
-                    f"error: expected {count} workers; they say: {(folder / 'log').read_text()}"
-                )
-            time.sleep(_LOOK)
-        yield json.loads(file.read_text())["address"], found
-
-
 def measured(folder, count):
     """Check the class in `folder` on so many workers; return the figures, and the marks."""
     before, ends = _processor_seconds(), []
     shutil.rmtree(folder / "class.checked", ignore_errors=True)
-    with started(folder, count) as (address, processes):
+    with cluster(folder, count) as (scheduler, address, workers):
         options = ("--spec", resources.folder("specs") / _SPEC, "--csv", folder / "table.csv")
         command = ("rosrun", "mrp_check", "check", "--class", folder / "class", *options)
         begin, said = time.monotonic(), []
@@ -128,7 +101,8 @@ def measured(folder, count):
             [*map(str, command), "--scheduler", address],
             stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True,
         )  # fmt: skip
-        with Memory([("command", checker), *processes]) as memory:
+        processes = [("command", checker), ("scheduler", scheduler)]
+        with Memory([*processes, *(("worker", one) for one in workers)]) as memory:
             for line in checker.stderr:
                 said.append(line)
                 match = _PROGRESS.match(line)

@@ -13,11 +13,12 @@ import pytest
 from check_rules import hand_in
 from check_sets import DEFECTS, break_, lay_out
 from mrp_check import sandbox
+from mrp_testing.cluster import cluster, worker
 from mrp_testing.process import processes_with
 from mrp_testing.proves import proves
 from mrp_testing.waiting import wait_until
 from test_check_class import BROKEN
-from test_check_cluster import SPEC, checked, cluster, headers, quick, worker  # noqa: F401
+from test_check_cluster import SPEC, checked, headers, quick  # noqa: F401
 from test_check_handed_in import BOMB, REFUSED, state
 from test_check_harm import PLANTED
 from test_check_stopped import command

@@ -3,7 +3,6 @@
 
 import contextlib
 import csv
-import json
 import os
 import pathlib
 import re
@@ -20,6 +19,7 @@ from mrp_check.confined import cpp_headers, variables
 from mrp_check.contract import resources
 from mrp_check.contract.packages import lay_out
 from mrp_check.student.package import MAX_BYTES
+from mrp_testing.cluster import cluster, worker
 from mrp_testing.process import Process, processes_with
 from mrp_testing.proves import proves
 from mrp_testing.waiting import wait_until
@@ -29,7 +29,6 @@ pytestmark = pytest.mark.slow
 
 HERE = pathlib.Path(__file__).resolve().parent
 SPEC = ("--spec", "talker_listener_py")
-COMMON = ("--no-dashboard", "--host", "127.0.0.1")  # of a scheduler and of a worker
 NO_WORKER = (
     "check: The scheduler at {0} has no worker: expected one or more. Start one, and the checks go"
     " on: dask worker {0} --nthreads 1."
@@ -56,30 +55,6 @@ def quick(monkeypatch, tmp_path, headers):
 def second():
     """Seconds for which a submission sleeps: a number that no other test on this machine has."""
     return f"5.{uuid.uuid4().int}"
-
-
-@contextlib.contextmanager
-def cluster(folder, workers=2, options=(), **worker_env):
-    """Yield a scheduler, its address, and its workers; options: the scheduler's."""
-    file = folder / f"scheduler_{uuid.uuid4().hex}.json"
-    asked = ("/usr/bin/dask", "scheduler", *COMMON, "--port", "0", "--scheduler-file", str(file))
-    with contextlib.ExitStack() as stack:
-        scheduler = stack.enter_context(Process(*asked, *options))
-        scheduler.wait_for(file.is_file, "the scheduler listens")
-        wait_until(lambda: file.read_text().endswith("}"), "it has said where")
-        address = json.loads(file.read_text())["address"]
-        started = [
-            stack.enter_context(worker(address, folder, **worker_env)) for _ in range(workers)
-        ]
-        for one in started:
-            one.wait_for(lambda: any("Registered to" in x for x in one.lines), "it is there")
-        yield scheduler, address, started
-
-
-def worker(address, folder, **env):
-    """Start a worker of the scheduler at an address; folder: where it may write."""
-    asked = ("/usr/bin/dask", "worker", address, *COMMON, "--nthreads", "1", "--no-nanny")
-    return Process(*asked, "--local-directory", str(folder / "space"), extra_env=env)
 
 
 def checked(folder, *options):
