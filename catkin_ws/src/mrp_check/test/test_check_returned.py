@@ -158,7 +158,10 @@ MADE = "self.publisher = rospy.Publisher('a', String, queue_size=1)"
         ({"own": "publisher = None"}, []),
         ({"bases": "(Other)"}, []),
         ({"use": "self.other = message"}, []),
-        ({"own": "def say(self):\n        self.publisher.publish('x')", "use": "self.say()"}, [("callbacks", 10)]),
+        (
+            {"own": "def say(self):\n        self.publisher.publish('x')", "use": "self.say()"},
+            [("callbacks", 10)],
+        ),
         ({"first": HEARS.replace("hear)", "hear, queue_size=1)")}, [("callbacks", 9)]),
         ({"first": HEARS.replace("self.hear", "callback=self.hear")}, [("callbacks", 9)]),
     ],
