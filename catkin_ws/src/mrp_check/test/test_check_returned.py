@@ -182,8 +182,9 @@ def test_what_a_function_uses_is_there_before_it_can_be_called(order, found, tmp
         "s": "rospy.Subscriber('b', String, hear)\n",
         "p": "p = rospy.Publisher('a', String, queue_size=1)\n",
     }
-    head = "import rospy\nfrom std_msgs.msg import String\n\n\ndef hear(message):\n    p.publish('x')\n"
-    text = f"{head}\nrospy.init_node('a')\n{''.join(parts[one] for one in order)}rospy.spin()\n"
+    head = "import rospy\nfrom std_msgs.msg import String\n\n\ndef hear(message):\n"
+    main = "".join(parts[one] for one in order)
+    text = f"{head}    p.publish('x')\n\nrospy.init_node('a')\n{main}rospy.spin()\n"
     seen = check_rules.python_findings(tmp_path, text)
     assert told(seen, "warning") == found
 
