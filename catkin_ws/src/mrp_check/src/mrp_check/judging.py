@@ -11,6 +11,7 @@ from mrp_check.case import Case
 from mrp_check.contract.finding import ERROR, NOTE, WARNING, Finding, Line
 from mrp_check.rules.responses import NO_RESPONSE
 from mrp_check.running.node import Node
+from mrp_check.running.traces import DIED
 from mrp_check.running.words import last_words
 from mrp_check.sources import asked
 
@@ -137,10 +138,10 @@ def _of_run(case: Case, finding: Finding) -> None:
         if ends or any(word in finding.message for word in _ENDED):
             finding.severity = WARNING
     elif finding.stage == "run" and finding in node.not_up:
-        _of_start(node, finding)
+        _of_start(case, node, finding)
 
 
-def _of_start(node: Node, finding: Finding) -> None:
+def _of_start(case: Case, node: Node, finding: Finding) -> None:
     lines = [text for _, _, text in node.direct.lines] if node.direct else []
     for shape, what, reads in _WAITS:
         said = next((text for text in lines if re.search(shape, text)), None)
@@ -154,6 +155,11 @@ def _of_start(node: Node, finding: Finding) -> None:
         finding.severity = NOTE
         finding.message = f"{node.name} waits for arguments on its command line."
         return
+    file = _works_under(case, node)
+    if file:
+        finding.severity = NOTE
+        finding.message = f"{node.name} works under {file}; started by itself, it ends."
+        return
     early = _early_call(node, lines)
     if early:
         finding.severity, (finding.file, finding.line) = WARNING, early
@@ -162,6 +168,19 @@ def _of_start(node: Node, finding: Finding) -> None:
     if node.direct and node.direct.code == 0 and not _is_left_alone(node):
         finding.severity = NOTE
         finding.message = f"{node.name} does its work, and ends: {last_words(lines) or 'in peace'}"
+
+
+def _works_under(case: Case, node: Node) -> str | None:
+    """Return a launch file under which a node came up, and did not end."""
+    for launched in case.observed.launches:
+        seen = launched.seen.seen
+        up = {one.node for one in [*seen.publications, *seen.subscriptions, *seen.services]}
+        found = map(DIED.search, launched.seen.until_asked())
+        died = {f"/{one['name']}" for one in found if one}
+        paths = {path for path, name in launched.nodes.items() if name == node.name}
+        if launched.file and paths & up - died:
+            return launched.file
+    return None
 
 
 def _early_call(node: Node, lines: list[str]) -> Line | None:

@@ -39,7 +39,7 @@ def _findings(case: Case) -> Iterator[Finding]:
     if not model.finds_all:
         yield from _in_cmake(case, files)
     if manifest and (files or model.message_files):
-        yield from _in_manifest(package, manifest)
+        yield from _in_manifest(package, manifest, _is_brought_along(model))
     yield from _order(package, model)
 
 
@@ -58,6 +58,7 @@ def _in_cmake(case: Case, files: list[str]) -> Iterator[Finding]:
             brought[1] if brought else catkin_line,
             "find_package(catkin REQUIRED COMPONENTS message_generation ...)",
             "Add message_generation to COMPONENTS.",
+            WARNING if _is_brought_along(model) else ERROR,
         )
     for path in files:
         file = last_part(path)
@@ -101,7 +102,13 @@ def _misplaced(line: int, command: str, path: str, elsewhere: str) -> Finding:
     )
 
 
-def _in_manifest(package: Package, manifest: Manifest) -> Iterator[Finding]:
+def _is_brought_along(model: Model) -> bool:
+    """Return whether another package brings what makes messages, as actionlib_msgs does: then CMake
+    goes through without message_generation."""
+    return bool(model.complete and model.generate) and "message_generation" not in model.components
+
+
+def _in_manifest(package: Package, manifest: Manifest, is_brought: bool) -> Iterator[Finding]:
     """Yield a finding for each package that makes or runs messages, and is not declared."""
     known = declared(manifest)
     for name, kind, tag in (
@@ -109,7 +116,7 @@ def _in_manifest(package: Package, manifest: Manifest) -> Iterator[Finding]:
         ("message_runtime", "exec", "exec_depend"),
     ):
         # message_runtime is asked for where the package is installed: no build here needs it.
-        builds = kind == "exec" or "genmsg" in known[kind]
+        builds = kind == "exec" or "genmsg" in known[kind] or is_brought
         if name not in known[kind]:
             yield Finding(
                 "dependencies",
@@ -124,10 +131,11 @@ def _in_manifest(package: Package, manifest: Manifest) -> Iterator[Finding]:
             )
 
 
-def _message_finding(message: str, line: int, expected: str, fix: str) -> Finding:
-    return Finding(
-        "messages", message, FILE, line, expected=expected, seen="no such entry", fix=fix
-    )
+def _message_finding(
+    message: str, line: int, expected: str, fix: str, severity: str = ERROR
+) -> Finding:
+    seen = "no such entry"
+    return Finding("messages", message, FILE, line, severity, expected=expected, seen=seen, fix=fix)
 
 
 def _definition(

@@ -135,7 +135,9 @@ def _executable(
     names = [started.type] if started and started.package == package.name else []
     names += [node.executable] if node.executable else []
     names += [last_part(file) for file in files if file.endswith(".py")]
-    for name in (*names, node.name, f"{node.name}.py"):
+    # A script is no stand-in for a C++ node of its name that could not be built.
+    names += [node.name, *([] if node.language == "cpp" else [f"{node.name}.py"])]
+    for name in names:
         built = workspace.folder / "devel" / "lib" / package.name / name
         scripts = [path for path in package.files if last_part(path) == name]
         for path in (built, *(workspace.package_folder / path for path in scripts)):

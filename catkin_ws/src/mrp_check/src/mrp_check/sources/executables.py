@@ -43,6 +43,8 @@ def is_tool(package: Package, path: str) -> bool:
     """Return whether a Python file is no node, and rosrun finds it all the same."""
     is_module = f"{path.rpartition('/')[0]}/__init__.py" in package.files
     starts = package.shebang(path) and package.is_executable(path)
+    if path.endswith(".cfg"):  # dynamic_reconfigure runs it, by the right Python
+        return False
     return bool(starts) and not is_module and not _is_imported(package, path)
 
 
