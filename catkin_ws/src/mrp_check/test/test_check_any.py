@@ -286,6 +286,36 @@ def test_a_node_that_works_under_its_launch_file_may_end_by_itself(tmp_path):
     assert not [one for one in found if one.severity == ERROR], shown(report.findings)
 
 
+EARLY = """\
+#include <some_pkg/Num.h>
+#include <ros/ros.h>
+
+int main(int argc, char** argv)
+{
+  ros::init(argc, argv, "adds");
+  ros::NodeHandle n;
+  ros::Publisher publisher = n.advertise<some_pkg::Num>("sum", 10);
+  while (true)
+  {
+    publisher.publish(some_pkg::Num());
+    ros::Duration(0.1).sleep();
+  }
+}
+"""
+
+
+def test_a_node_runs_though_its_message_was_made_too_late(tmp_path):
+    cmake = check_rules.CMAKE.replace("COMPONENTS", "COMPONENTS message_generation std_msgs")
+    made = "add_message_files(FILES Num.msg)\ngenerate_messages()\ncatkin_package"
+    cmake = cmake.partition("catkin_install")[0].replace("catkin_package", made)
+    cmake += "include_directories(${catkin_INCLUDE_DIRS})\nadd_executable(adds src/adds.cpp)\n"
+    cmake += "target_link_libraries(adds ${catkin_LIBRARIES})\n"
+    files = {"CMakeLists_DOT_txt": cmake, "src__adds_DOT_cpp": EARLY, "msg__Num_DOT_msg": "int8 a"}
+    report = checked(check_rules.make(tmp_path / "some_pkg", **files).root)
+    found = {(one.severity, one.id) for one in report.findings if one.file != "package.xml"}
+    assert {(ERROR, "messages"), (ERROR, "exit")} <= found, shown(report.findings)
+
+
 @pytest.mark.parametrize(("language", "is_taken"), [("cpp", False), ("python", True)])
 def test_a_script_is_no_stand_in_for_a_cpp_node(language, is_taken, tmp_path):
     package = check_rules.make(tmp_path / "some_pkg", scripts__talks_DOT_py=NEEDS)

@@ -172,12 +172,14 @@ def test_a_placeholder_is_known_though_nothing_is_compiled(begin, arguments, lin
         ("while (true)\n  {\n    f();\n  }", False, [("exit", 4)]),
         ("for (;;) { g(); }", False, [("exit", 4)]),
         ("while (1) { if (f()) { break; } }", False, []),
+        ("while (1) { switch (f()) { case 1: { break; } } }", False, [("exit", 4)]),
+        ("while (1) { for (;;) { if (f()) { break; } } g(); break; }", False, []),
         ("while (1) { f(); }", True, []),
         ("while (ros::ok()) { f(); }", False, []),
         ("t = n.createTimer(d, f);", False, [("spin", 4)]),
         ("t = n.createTimer(d, f);\n  ros::spin();", False, []),
     ],
-    ids=range(7),
+    ids=range(9),
 )
 def test_what_the_text_of_a_node_shows_that_was_not_built(body, is_up, found, tmp_path):
     text = f'int main()\n{{\n  ros::init(a, b, "a");\n  {body}\n}}\n'

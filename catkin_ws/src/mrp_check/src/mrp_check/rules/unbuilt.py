@@ -14,6 +14,8 @@ from mrp_check.sources import uses
 
 _LOOP = re.compile(r"\b(?:while\s*\(\s*(?:1|true)\s*\)|for\s*\(\s*;\s*;\s*\))\s*(?=\{)")
 _ENDS = re.compile(r"\b(ok|isShuttingDown|break|return|exit|throw)\b")
+_BREAK = re.compile(r"\bbreak\b")
+_INNER = re.compile(r"\b(?:switch|for|while|do)\b[^{};]*(?=\{)")
 _CALLED_BACK = re.compile(r"(?:\.|->)(createTimer|createWallTimer|subscribe|advertiseService)\b")
 _SPINS = re.compile(r"[sS]pin|callAvailable|callOne|waitForShutdown")
 
@@ -39,7 +41,11 @@ def _findings(case: Case) -> Iterator[Finding]:
 
 def _endless(case: Case, name: str, file: str, text: str) -> Iterator[Finding]:
     for match in _LOOP.finditer(text):
-        if not _ENDS.search(_block(text, match.end())):
+        block = _block(text, match.end())
+        for inner in reversed([*_INNER.finditer(block)]):  # a break in there ends that alone
+            begin, within = inner.end(), _block(block, inner.end())
+            block = block[:begin] + _BREAK.sub("", within) + block[begin + len(within) :]
+        if not _ENDS.search(block):
             yield _finding(
                 case,
                 "exit",
