@@ -321,7 +321,7 @@ def test_a_script_is_no_stand_in_for_a_cpp_node(language, is_taken, tmp_path):
     package = check_rules.make(tmp_path / "some_pkg", scripts__talks_DOT_py=NEEDS)
     place = types.SimpleNamespace(package=package, folder=tmp_path, package_folder=package.root)
     node = Node("talks", language, executable="talks")
-    found = observing._executable(place, node, None, [])
+    found = observing.executable_of(place, node, None, [])
     assert found == (package.root / "scripts" / "talks.py" if is_taken else None)
 
 

@@ -109,7 +109,7 @@ def planner_of(
     """
     for name, node in spec.nodes.items():
         started, files = result.started.get(name), facts.sources.get(name, [])
-        path = _executable(workspace, node, started, files)
+        path = executable_of(workspace, node, started, files)
         if path:
             result.executables[name] = path
     if not result.executables:
@@ -124,7 +124,7 @@ def planner_of(
     return Planner(workspace, spec, *known, _environment(workspace), own)
 
 
-def _executable(
+def executable_of(
     workspace: Workspace, node: Node, started: Started | None, files: list[str]
 ) -> pathlib.Path | None:
     """Return the path of a node's executable as rosrun finds it, or None.
