@@ -196,8 +196,7 @@ def test_what_has_not_changed_is_not_built_again(tmp_path, monkeypatch, programs
     ids, ran, _ = checked()
     assert (ids, builds(ran), "cpp_facts.py" in ran) == ([], ["catkin_make", "make"], True)
     append(script, "# Another line.\n")
-    ids, ran, _ = checked()
-    assert (ids, sorted(ran)) == ([], ["launch_dump.py", "make"])
+    assert [*map(sorted, checked()[:2])] == [[], ["launch_dump.py", "make"]]
 
 
 def builds(ran):
