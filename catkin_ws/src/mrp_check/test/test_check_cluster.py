@@ -137,7 +137,13 @@ def test_when_all_workers_are_gone_it_says_so_and_waits(tmp_path, second):
     """Two die and are one loss; a third one checks what is left."""
     hand_in(tmp_path / "class", "anna", hanging(second))
     hand_in(tmp_path / "class", "berta", hanging(second))
-    asked = (HERE.parent / "scripts" / "check", "--class", tmp_path / "class", *SPEC)
+    asked = (
+        sys.executable,
+        HERE.parent / "scripts" / "check",
+        "--class",
+        tmp_path / "class",
+        *SPEC,
+    )
     with cluster(tmp_path) as (_, address, workers):
         expected = [NO_WORKER.format(address), "check: There is a worker again: the checks go on."]
 
