@@ -124,10 +124,12 @@ def _add_of_class(parser):
     since = "with --class: show what has changed since an earlier hand-in, whose DIR.checked it is"
     parser.add_argument("--before", metavar="FOLDER", help=since)
     number = (
-        f"with --class: check N at the same time, 1 to 64 (default: {classroom.JOBS}; with"
+        f"with --class: check N at the same time, 1 to {classroom.MOST_JOBS} (default:"
+        f" {classroom.JOBS}; with"
         " --scheduler, as many as its workers have threads)"
     )
-    parser.add_argument("--jobs", type=int, choices=range(1, 65), metavar="N", help=number)
+    jobs = range(1, classroom.MOST_JOBS + 1)
+    parser.add_argument("--jobs", type=int, choices=jobs, metavar="N", help=number)
     where = "with --class: check on the workers of the Dask scheduler at ADDRESS"
     parser.add_argument("--scheduler", metavar="ADDRESS", help=where)
 

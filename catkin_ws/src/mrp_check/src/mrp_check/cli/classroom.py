@@ -28,8 +28,9 @@ from mrp_check.scratch import scratch_folder
 from mrp_check.student import submissions
 from mrp_check.student.package import Package
 
+MOST_JOBS = 64
 # One more than there are processors: a check waits at times, as for a node's next message.
-JOBS = min(len(os.sched_getaffinity(0)) + 1, 64)
+JOBS = min(len(os.sched_getaffinity(0)) + 1, MOST_JOBS)
 _CHUNK = 2**20  # bytes that are read at once
 _MOST_NAMED = 4  # in the sentence on the progress
 

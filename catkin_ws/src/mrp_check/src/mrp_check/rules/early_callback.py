@@ -8,7 +8,7 @@ from typing import Iterator
 
 from mrp_check.contract.finding import WARNING, Finding
 from mrp_check.contract.requirements import Rule
-from mrp_check.sources.python_rule import PythonRule, ast_text, of_sources
+from mrp_check.sources.python_rule import PythonRule, arguments_of, ast_text, of_sources
 from mrp_check.sources.python_source import Variable
 
 _CALLING = {"rospy.Subscriber": "message", "rospy.Service": "request", "rospy.Timer": "call"}
@@ -20,8 +20,7 @@ class EarlyCallback(PythonRule):
         for call in self.source.nodes(ast.Call):
             what = _CALLING.get(self.source.dotted(call.func) or "")
             later = self._made_after(call) if what else {}
-            arguments = [*call.args, *(keyword.value for keyword in call.keywords)]
-            for argument in arguments if later else ():
+            for argument in arguments_of(call) if later else ():
                 function = self.source.definition(argument)
                 used = self._used(function, [])
                 name = next((one for one in later if one in used), None)

@@ -9,7 +9,7 @@ from typing import Iterator
 
 from mrp_check.contract.finding import NOTE, WARNING, Finding
 from mrp_check.contract.requirements import Rule
-from mrp_check.sources.python_rule import PythonRule, of_sources
+from mrp_check.sources.python_rule import PythonRule, arguments_of, of_sources
 
 _CALLING = ("rospy.Timer", "rospy.Subscriber")  # each calls a function, again and again
 
@@ -37,7 +37,7 @@ class NotKept(PythonRule):
             self.source.definition(argument)
             for call in self.source.nodes(ast.Call)
             if self.source.dotted(call.func) in _CALLING
-            for argument in [*call.args, *(keyword.value for keyword in call.keywords)]
+            for argument in arguments_of(call)
         }
         for call in self.source.nodes(ast.Call):
             function = self.source.function(call)

@@ -73,6 +73,11 @@ class PythonRule:
         return ast.get_source_segment(self.package.text(self.file), node) or ""
 
 
+def arguments_of(call: ast.Call) -> list[ast.expr]:
+    """Return all that a call is given, by its place or by its name."""
+    return [*call.args, *(keyword.value for keyword in call.keywords)]
+
+
 def ast_text(node: ast.AST) -> str:
     """Return the source of a short expression."""
     if isinstance(node, ast.Attribute):

@@ -88,8 +88,8 @@ def absent(name: str, language: str) -> str:
     """Return the sentence about a package or a module that this machine has not."""
     guesses, debian = _guesses(name, language), debian_packages()
     guess = next((guess for guess in guesses if guess in debian), None if debian else guesses[0])
-    known = f"Debian package {guess}" if debian else f"perhaps Debian package {guess}"
-    where = known if guess else "not in Debian"
+    perhaps = "" if debian else "perhaps "
+    where = f"{perhaps}Debian package {guess}" if guess else "not in Debian"
     return (
         f"{name} is not on this machine ({where}): what needs it could not be checked. Install it,"
         " and check again."
