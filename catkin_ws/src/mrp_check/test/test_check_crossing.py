@@ -20,7 +20,7 @@ from mrp_check.student.launch import Launch
 
 pytestmark = pytest.mark.quick
 
-HOOK = plans.Hook("/folder", "/events", "/sources", plans.Wrap("data", 1, 2, 2**32))
+HOOK = plans.Hook("/folder", "/events", "/sources", plans.Wrap("data", 1, 2, 2**32, plans.TOLD))
 
 
 @pytest.mark.parametrize("value", [HOOK, Place("a.py", 3, Kind.INIT, "node", queue=10)])

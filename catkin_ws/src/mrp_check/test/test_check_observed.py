@@ -63,8 +63,8 @@ def test_texts_on_a_number_topic_are_found_and_no_fault_of_the_checker(tmp_path)
 
 def test_a_fault_of_the_observer_is_no_finding(tmp_path, monkeypatch):
     folder = make_package(tmp_path / "lab_pkg", {"right": ("", "")}, {})
-    monkeypatch.setattr(planning, "ENOUGH_LAUNCHED", "none")
-    said = r"The observer itself failed: .*\.enough: expected int; found 'none'"
+    monkeypatch.setattr(planning, "ENOUGH_LAUNCHED", 0.5)
+    said = r"The observer itself failed: .*\.enough: expected int; found '0.5'"
     with pytest.raises(CannotCheck, match=said):
         findings_of(folder, spec_of(["right"], []), tmp_path / "scratch")
 

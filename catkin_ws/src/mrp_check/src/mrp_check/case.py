@@ -99,10 +99,11 @@ class Case(Workspace):
 
     @functools.cached_property
     def model(self) -> Model:
-        """What CMakeLists.txt says. The launch file is loaded at the same time."""
+        """What CMakeLists.txt says. What comes next begins."""
         _ = self._loading
         model = self.catkin.model
         self.catkin.start_building()
+        _ = self.environment
         return model
 
     @functools.cached_property

@@ -12,14 +12,13 @@ from mrp_check.confined import apart, crossing, messages, variables, written
 from mrp_check.confined.activity import BUSY, TICK, Activity, is_over, processor_seconds, wait
 from mrp_check.confined.exchange import Exchange
 from mrp_check.confined.observe import Observer
-from mrp_check.confined.plans import Common, DirectNode, DirectPlan
+from mrp_check.confined.plans import TOLD, Common, DirectNode, DirectPlan
 from mrp_check.confined.program import Program, left_behind
 from mrp_check.confined.seen import Alone, DirectResult, Event
 
 _PACE = 1.0  # seconds after which the next value is sent, though the last one was not logged
 _ENDING = 90.0  # seconds after which not even a busy node is waited for
 _STACK_SECONDS = 1.0  # that a stuck node gets to print where it stands
-_AFTER = 4  # messages that the hook tells of after the counter was set
 _SENDING = 100  # messages that may wait to be sent
 _RECENT = 100  # lines in which one that was just logged is looked for
 # What a node subscribes to by itself.
@@ -180,7 +179,7 @@ class _Node:
             return True
         if self.plan.is_wrap:
             names = [event.event for event in self.events()]
-            return names.count("after") >= _AFTER or "error" in names or "not_found" in names
+            return names.count("after") >= TOLD or "error" in names or "not_found" in names
         if self.observer.most_of(name) < self.plan.publishes:
             return False
         if self.plan.values:

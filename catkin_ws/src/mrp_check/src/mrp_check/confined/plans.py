@@ -5,6 +5,7 @@ import dataclasses
 from typing import Dict, List, Optional, Union
 
 Plain = Union[bool, int, float, str]
+TOLD = 3  # messages of a Wrap
 Fields = Dict[str, Plain]  # of a message, each by its path, such as "linear.x"
 
 
@@ -69,12 +70,14 @@ class Wrap:
     """The values that a Python publisher should publish: it is run near the end of them.
 
     field: of the message; start, step, modulus: those of a spec.Values
+    told: messages of which the hook tells after it has set the counter to the last value but one
     """
 
     field: str
     start: int
     step: int
     modulus: int
+    told: int
 
 
 @dataclasses.dataclass

@@ -7,13 +7,13 @@ from typing import Iterator, Sequence
 
 from mrp_check import evidence
 from mrp_check.confined.places import Kind
+from mrp_check.confined.plans import TOLD
 from mrp_check.confined.seen import Number
 from mrp_check.contract.finding import NOTE, Finding
 from mrp_check.contract.requirements import CONTRACT, Requirement, Rule
 from mrp_check.contract.spec import Values
 from mrp_check.running.node import Node, each_node
 
-_TOLD = 4  # messages that the hook tells of after it has set the counter
 _FEW_STEPS = 20  # near its first value, a counter has made no more
 
 
@@ -61,7 +61,7 @@ def _at_the_end(
         return
     rest = after[after.index(last) + 1 :] if last in after else after
     good = (rule.after(last), rule.start)
-    if rest and rest[0] not in good or not rest and len(after) < _TOLD:
+    if rest and rest[0] not in good or not rest and len(after) < TOLD:
         yield _wrap_finding(node, rule, after, expected)
 
 

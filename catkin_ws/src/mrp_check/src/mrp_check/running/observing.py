@@ -12,7 +12,7 @@ import dataclasses
 import os
 import pathlib
 
-from mrp_check.confined import messages, variables
+from mrp_check.confined import messages
 from mrp_check.confined.launch_dump import Started
 from mrp_check.confined.seen import Alone, DirectResult, LaunchResult
 from mrp_check.contract.resources import SHARES
@@ -22,13 +22,7 @@ from mrp_check.running.planning import Planner
 from mrp_check.running.sessions import Sessions, too_busy
 from mrp_check.sources.facts import Facts
 from mrp_check.student.launch import Launch
-from mrp_check.student.workspace import NOETIC, Workspace
-
-# Prints the environment that these files make, as far as there are any.
-_SOURCED = (
-    'for file in "$@"; do [ ! -f "$file" ] || source "$file" -- || true; done; '
-    "printf '\\0'; exec env -0"
-)
+from mrp_check.student.workspace import Workspace
 
 
 @dataclasses.dataclass
@@ -121,7 +115,7 @@ def planner_of(
     )
     own = messages.definitions(package.name, folders, SHARES)
     known = result.executables, result.started, params
-    return Planner(workspace, spec, *known, _environment(workspace), own)
+    return Planner(workspace, spec, *known, workspace.environment.result(), own)
 
 
 def executable_of(
@@ -144,13 +138,3 @@ def executable_of(
             if path.is_file() and os.access(path, os.X_OK):
                 return path
     return None
-
-
-def _environment(workspace: Workspace) -> dict[str, str]:
-    """Return the environment that the workspace's setup.bash makes, as far as there is one."""
-    setups = [str(NOETIC), str(workspace.folder / "devel" / "setup.bash")]
-    made_by = workspace.package.of_kind("cmake")
-    done = workspace.run_once("bash", "-c", _SOURCED, "bash", *setups, of=made_by)
-    pairs = dict(entry.split("=", 1) for entry in done.output.split("\0") if "=" in entry)
-    own = {variables.PACKAGES: workspace.ros_packages, variables.PYTHONPATH: ""}
-    return {**own, **pairs, **variables.AT_ONCE}

@@ -10,6 +10,7 @@ from __future__ import annotations
 import concurrent.futures
 import dataclasses
 import filecmp
+import functools
 import hashlib
 import json
 import os
@@ -28,6 +29,11 @@ Done = Tuple[bool, str, str]  # a catkin.Step
 
 # Of this machine's own ROS, whatever workspace the user's shell has sourced.
 NOETIC = pathlib.Path("/opt/ros/noetic/setup.bash")
+# Prints the environment that these files make, as far as there are any.
+_SOURCED = (
+    'for file in "$@"; do [ ! -f "$file" ] || source "$file" -- || true; done; '
+    "printf '\\0'; exec env -0"
+)
 _AT_ONCE = 3  # commands that run in the background at the same time
 _BUILT = ("cpp", "header", "launch")  # kinds of files that CMake does not read
 _NOT_MADE = {"python", "launch"}  # kinds that make does not read, but for a command of one's own
@@ -173,6 +179,20 @@ class Workspace:
         if result.code == 0:
             path.write_text(json.dumps(dataclasses.asdict(result)))
         return result
+
+    @functools.cached_property
+    def environment(self) -> concurrent.futures.Future[dict[str, str]]:
+        """That of the nodes: what setup.bash makes, as far as there is one. It is read in the
+        background from the first call on."""
+        return self.submit(self._environment)
+
+    def _environment(self) -> dict[str, str]:
+        setups = [str(NOETIC), str(self.folder / "devel" / "setup.bash")]
+        made_by = self.package.of_kind("cmake")
+        done = self.run_once("bash", "-c", _SOURCED, "bash", *setups, of=made_by)
+        pairs = dict(entry.split("=", 1) for entry in done.output.split("\0") if "=" in entry)
+        own = {variables.PACKAGES: self.ros_packages, variables.PYTHONPATH: ""}
+        return {**own, **pairs, **variables.AT_ONCE}
 
     @property
     def ros_packages(self) -> str:

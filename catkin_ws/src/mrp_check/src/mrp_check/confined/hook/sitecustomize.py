@@ -36,7 +36,6 @@ _WRAP = _HOOK.get("wrap")
 
 _LOOK = 3  # messages after which the counter should be known
 _GIVE_UP = 8
-_AFTER = 4  # messages that are told after the counter was set
 _FRAMES = 8
 # In these, no counter is looked for.
 _SKIP = (str, bytes, types.ModuleType, types.FunctionType, types.BuiltinFunctionType)
@@ -197,7 +196,7 @@ class _Wrap:
 
     def __init__(self, rule: Dict[str, int]) -> None:
         start, step, modulus = rule["start"], rule["step"], rule["modulus"]
-        self.step = step
+        self.step, self.told = step, rule["told"]
         self.last = start + (modulus - 1 - start) // step * step  # before it wraps round
         self.seen: List[Tuple[int, Dict[Key, Optional[int]]]] = []
         self.after: Optional[int] = None
@@ -209,7 +208,7 @@ class _Wrap:
         if self.after is not None:
             _tell("after", value=value)
             self.after += 1
-            self.done = self.after >= _AFTER
+            self.done = self.after >= self.told
             return
         slots = {slot.key: slot for slot in _slots(frames)}
         self.seen.append((value, {key: slot.value for key, slot in slots.items()}))
