@@ -33,7 +33,7 @@ _WORKERS = (1, 2, 4)
 _MANY = 10_000
 _SPEC = "pub_sub.yaml"
 _ORDER = 22  # a seed
-_PROGRESS = re.compile(r"check: (\d+) of \d+: ")
+_PROGRESS = re.compile(r"check: ([1-9]\d*) of \d+: ")
 _LOOK = 1.0  # seconds between two looks at the memory
 
 

@@ -114,9 +114,10 @@ def test_progress_says_what_runs_and_how_long_it_takes(tmp_path):
         hand_in(tmp_path / "class", name)
     begun, ended, said = threading.Event(), threading.Event(), []
 
-    def progress(line):
+    def progress(*line):
         said.append(line)
-        ended.set()
+        if len(said) > 1:
+            ended.set()
 
     class OneByOne(Room):
         def report_of(self, one, name):
@@ -126,8 +127,10 @@ def test_progress_says_what_runs_and_how_long_it_takes(tmp_path):
             return super().report_of(one, name)
 
     OneByOne(tmp_path / "class", progress=progress).check()
-    assert re.fullmatch(r"1 of 2: anna: findings; about \d+ min left; now: berta", said[0])
-    assert said[1:] == ["2 of 2: berta: findings"]
+    first, (line, *part), last = said
+    assert first == (f"at most {classroom.JOBS} at a time", 0, 2)
+    assert re.fullmatch(r"anna: findings; about \d+ min left; now: berta", line)
+    assert (part, last) == ([1, 2], ("berta: findings", 2, 2))
     assert classroom.minutes_left(seconds=90, ended=3, left=5) == 3
 
 

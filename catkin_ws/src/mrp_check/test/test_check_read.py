@@ -10,7 +10,15 @@ from mrp_check import check
 from mrp_check.building import configuring, placeholders
 from mrp_check.confined.launch_dump import Started
 from mrp_check.contract.finding import NOTE, WARNING, Finding
-from mrp_check.rules import arguments, load_manifest, unbuilt, unread, unset, waiting
+from mrp_check.rules import (
+    arguments,
+    keyboard_loop,
+    load_manifest,
+    unbuilt,
+    unread,
+    unset,
+    waiting,
+)
 from mrp_check.sources.facts import Facts
 from mrp_check.student.cmake import Model
 from mrp_check.student.launch import Launch
@@ -196,3 +204,21 @@ def test_load_manifest_names_a_package_that_is_there(name, found, tmp_path):
     text = f"import roslib\nroslib.load_manifest('{name}')\n  print 1\n"
     known = case(check_rules.make(tmp_path / "some_pkg", src__a_DOT_py=text))
     assert check_rules.told(load_manifest.RULE.findings(known)) == found
+
+
+@pytest.mark.parametrize(
+    ("body", "found"),
+    [
+        ("while (std::cin >> x) { p.publish(x); }", [("exit", 4)]),
+        ("while (getline(std::cin, line)) p.publish(line);", [("exit", 4)]),
+        ("while (ros::ok() && cin >> x) { p.publish(x); }", []),
+        ("while (cin >> x) { if (!ros::ok()) { break; } }", []),
+        ("signal(SIGINT, end);\n  while (cin >> x) { p.publish(x); }", []),
+        ("while (file >> x) { p.publish(x); }", []),
+    ],
+    ids=range(6),
+)
+def test_a_loop_asks_more_than_the_keyboard(body, found, tmp_path):
+    text = f'int main()\n{{\n  ros::init(a, b, "a");\n  {body}\n}}\n'
+    known = case(check_rules.make(tmp_path / "some_pkg", src__a_DOT_cpp=text))
+    assert check_rules.told(keyboard_loop.RULE.findings(known)) == found

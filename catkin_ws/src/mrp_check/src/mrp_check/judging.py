@@ -9,6 +9,7 @@ from typing import Iterable
 
 from mrp_check.case import Case
 from mrp_check.contract.finding import ERROR, NOTE, WARNING, Finding, Line
+from mrp_check.rules.keyboard_loop import ASKS_KEYBOARD
 from mrp_check.rules.responses import NO_RESPONSE
 from mrp_check.running.node import Node
 from mrp_check.running.traces import DIED
@@ -22,6 +23,8 @@ _RULES = set(
         " launch-file launch-nodes"
     ).split()
 )
+# The same, by what a finding says.
+_SURE = (NO_RESPONSE, "CMake stops", ASKS_KEYBOARD)
 _SEEN = {"build", "run", "stop"}
 # What a node says that stands before an empty keyboard, screen or command line, what it waits for,
 # and what must stand in the line that raised, where anything else raises the same error, too.
@@ -102,7 +105,7 @@ def _is_rule(case: Case, finding: Finding) -> bool:
     if finding.id == "scripts" and is_python:
         # catkin_install_python() makes an executable of what lacks a first line, too.
         return not (finding.file in case.model.relayed() and _came_up(case, finding.file))
-    if NO_RESPONSE in finding.message or "CMake stops" in finding.message:
+    if any(said in finding.message for said in _SURE):
         return True
     if finding.id in ("spin", "lifetime") and not is_python:
         return "publisher that" not in finding.message

@@ -35,6 +35,10 @@ _CHUNK = 2**20  # bytes that are read at once
 _MOST_NAMED = 4  # in the sentence on the progress
 
 
+def quiet(sentence, done, of):
+    """Say nothing."""
+
+
 class Classroom:
     """All submissions of a class.
 
@@ -42,14 +46,14 @@ class Classroom:
     spec_file: the contract
     jobs: how many are checked at the same time; if not given, as many as the machines can
     timeout: seconds that the check of one may take
-    progress: called with a sentence
+    progress: called with a sentence, and how many are done of how many
     package: which is checked of a submission that has several
     results: where the reports are kept
 
     Raises PackageError if there is no submission.
     """
 
-    def __init__(self, folder, spec_file, jobs=None, timeout=120, progress=print, package=""):
+    def __init__(self, folder, spec_file, jobs=None, timeout=120, progress=quiet, package=""):
         self.entries = submissions.entries(folder)
         self.package = package
         self.spec_file = pathlib.Path(spec_file).resolve()
@@ -70,6 +74,7 @@ class Classroom:
         jobs = self.jobs or (cluster.threads if cluster else JOBS)
         self.results.mkdir(parents=True, exist_ok=True)
         self._common, self._begun = self._depended_on(), time.monotonic()
+        self.progress(f"at most {jobs} at a time", 0, len(self.entries))
         with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
             futures = [pool.submit(self._checked, entry) for entry in self.entries]
             try:
@@ -85,14 +90,14 @@ class Classroom:
 
     def _say(self, number, one):
         kept = ", as before" if one.kept else ""
-        said = [f"{number} of {len(self.entries)}: {one.name}: {one.report['verdict']}{kept}"]
+        said = [f"{one.name}: {one.report['verdict']}{kept}"]
         left = len(self.entries) - number
         if left and self._ended:
             minutes = minutes_left(time.monotonic() - self._begun, self._ended, left)
             said.append(f"about {minutes} min left")
         if self._now:
             said.append(f"now: {', '.join(self._now[:_MOST_NAMED])}")
-        self.progress("; ".join(said))
+        self.progress("; ".join(said), number, len(self.entries))
 
     def _checked(self, entry):
         """Return a Submission, whatever happens: what is wrong with one stops no other."""

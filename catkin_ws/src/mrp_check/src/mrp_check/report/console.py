@@ -24,13 +24,14 @@ _COLOURS = {
     NOTE: "36",
 }
 _WIDTH = 100  # characters
+_BAR = "|{bar:20}| {n}/{total}"  # for tqdm
 
 # A package's output and file names must not steer a terminal, and must fit into UTF-8 and XML.
 _UNFIT = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\ud800-\udfff\ufffe\uffff]")
 
 
 class Progress:
-    """Says what is being done: in one line of a terminal, or line by line.
+    """Says what is being done: in one line of a terminal, perhaps with a bar, or line by line.
 
     began: by time.monotonic(); then each line stays, with the seconds that had passed
     """
@@ -39,13 +40,23 @@ class Progress:
         self.stream, self.began = stream, began
         self.terminal = stream.isatty() and began is None
 
-    def show(self, sentence):
+    def show(self, sentence, done=0, of=0):
+        """done, of: how many are done of how many, if that is known"""
+        if of:
+            sentence = f"{self._bar(done, of) if self.terminal else f'{done} of {of}:'} {sentence}"
         start, end = ("\r\x1b[K", "") if self.terminal else ("", "\n")
         passed = "" if self.began is None else f" {time.monotonic() - self.began:5.1f} s "
         said = f"check:{passed} {plain(sentence)}"
         if self.terminal:  # the next one overwrites one line
             said = said[: shutil.get_terminal_size().columns - 1]
         print(f"{start}{said}", end=end, file=self.stream, flush=True)
+
+    def _bar(self, done, of):
+        # Of all that has a progress, only a class needs it.
+        from tqdm import tqdm
+
+        plain_only = "utf" not in (self.stream.encoding or "").lower()
+        return tqdm.format_meter(done, of, 0, bar_format=_BAR, ascii=plain_only)
 
     def clear(self):
         if self.terminal:

@@ -29,9 +29,10 @@ def _of(node: Node) -> Iterator[Finding]:
     text = "\n".join(uses.code(node.package, file) for file in node.files)
     if not _WAITS.search(text):
         rate = "rospy.Rate" if node.is_python else "ros::Rate"
+        fast = ", and publishes as fast as it can" if node.places(Kind.PUBLISH) else ""
         yield node.finding(
             "spin",
-            "The loop never pauses: it keeps a processor busy, and publishes as fast as it can.",
+            f"The loop never pauses: it keeps a processor busy{fast}.",
             loops[0],
             severity=WARNING,
             expected=f"a {rate}, whose sleep() is called in the loop",
