@@ -9,6 +9,7 @@ from typing import Iterable
 
 from mrp_check.case import Case
 from mrp_check.contract.finding import ERROR, NOTE, WARNING, Finding, Line
+from mrp_check.rules.definitions import UNREADABLE
 from mrp_check.rules.keyboard_loop import ASKS_KEYBOARD
 from mrp_check.rules.responses import NO_RESPONSE
 from mrp_check.running.node import Node
@@ -24,7 +25,7 @@ _RULES = set(
     ).split()
 )
 # The same, by what a finding says.
-_SURE = (NO_RESPONSE, "CMake stops", ASKS_KEYBOARD)
+_SURE = (NO_RESPONSE, "CMake stops", ASKS_KEYBOARD, UNREADABLE)
 _SEEN = {"build", "run", "stop"}
 # What a node says that stands before an empty keyboard, screen or command line, what it waits for,
 # and what must stand in the line that raised, where anything else raises the same error, too.

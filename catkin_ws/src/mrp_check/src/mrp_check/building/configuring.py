@@ -220,6 +220,16 @@ _WORDS: Sequence[tuple[str | None, str, Callable[..., _Said] | _Said, str]] = (
         "",
     ),
     (
+        None,
+        r"Cannot locate message \[(\w+)\]: unknown package \[(\w+)\]",
+        lambda *given: (
+            f"a definition uses {given[2][2]}/{given[2][1]}, and generate_messages() does not name"
+            f" {given[2][2]}.",
+            f"Write generate_messages(DEPENDENCIES ... {given[2][2]}).",
+        ),
+        "",
+    ),
+    (
         "catkin_package",
         r"catkin_package\(\) .*?'(\w+)'",
         lambda *given: (

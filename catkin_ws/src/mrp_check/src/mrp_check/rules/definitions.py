@@ -1,0 +1,92 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Each line of a definition is one that ROS reads, and its types are there.
+
+https://wiki.ros.org/msg says what a line may be. genmsg, which makes code of them, reads each line
+here, too.
+"""
+
+from __future__ import annotations
+
+import pathlib
+from typing import Iterator
+
+import genmsg
+from genmsg.msg_loader import load_msg_from_string
+from genmsg.msgs import BUILTIN_TYPES, bare_msg_type
+
+from mrp_check.case import Case
+from mrp_check.contract import resources
+from mrp_check.contract.finding import Finding
+from mrp_check.contract.requirements import ANY, Rule
+from mrp_check.contract.words import nearest, perhaps
+from mrp_check.student.package import Package
+
+UNREADABLE = "which ROS cannot read"
+_KINDS = ("message", "service", "action")
+_BETWEEN = "---"  # a request and its response
+# Types of C++ and Python.
+_OF_LANGUAGES = {"int": "int32", "float": "float32", "double": "float64", "str": "string"}
+_OF_ACTION = ("Action", "ActionFeedback", "ActionGoal", "ActionResult", "Feedback", "Goal", "Result")
+
+
+def _findings(case: Case) -> Iterator[Finding]:
+    package, context = case.package, genmsg.MsgContext.create_default()
+    for path in sorted({*package.of_kind(*_KINDS)} & {*case.model.message_files}):
+        for line, text in enumerate(package.lines(path), 1):
+            if not text.startswith(_BETWEEN):
+                yield from _of_line(package, context, path, line, text)
+
+
+def _of_line(
+    package: Package, context: genmsg.MsgContext, path: str, line: int, text: str
+) -> Iterator[Finding]:
+    """Yield a Finding if a line is no field, no constant and no comment, or its type is nowhere."""
+    try:
+        types = load_msg_from_string(context, text, f"{package.name}/A").types
+    except genmsg.InvalidMsgSpec as error:
+        said, expected = f"{error}", "a type and a name, such as int32 count"
+    else:
+        unknown = next(filter(None, (_unknown(package, one) for one in types)), None)
+        if unknown is None:
+            return
+        said, near = unknown
+        expected = near or "the type of a message that is there"
+    yield Finding(
+        "messages",
+        f"{path} has a line {UNREADABLE}: {said}",
+        path,
+        line,
+        expected=expected,
+        seen=text.strip(),
+        fix="Write it as https://wiki.ros.org/msg says.",
+    )
+
+
+def _unknown(package: Package, type_: str) -> tuple[str, str | None] | None:
+    """Return what to say of a type that is nowhere, and which is like it; None if it is there, or
+    its package is not on this machine."""
+    owner, _, name = bare_msg_type(type_).rpartition("/")
+    if not owner:
+        return None
+    if owner == package.name:
+        known = _own(package)
+        near = _OF_LANGUAGES.get(name) or nearest(name, [*BUILTIN_TYPES, *known])
+        said = f"there is no type {name}, and no msg/{name}.msg."
+    else:
+        folders = [pathlib.Path(share, owner, "msg") for share in resources.SHARES]
+        known = {path.stem for folder in folders for path in folder.glob("*.msg")}
+        near = nearest(name, known)
+        said = f"{owner} has no message {name}."
+    if not known and owner != package.name or name in known:
+        return None
+    return said + perhaps(near), near
+
+
+def _own(package: Package) -> set[str]:
+    """Return the names of the messages that the package defines."""
+    actions = [pathlib.PurePath(path).stem for path in package.of_kind("action")]
+    messages = {pathlib.PurePath(path).stem for path in package.of_kind("message")}
+    return messages | {action + ending for action in actions for ending in _OF_ACTION}
+
+
+RULE = Rule("files", 42, ("model",), _findings, also=("messages",), only=ANY)
