@@ -145,6 +145,22 @@ def test_a_header_that_this_machine_has_not_is_no_misspelt_one(tmp_path, monkeyp
     assert "Debian package libfar-msgs-dev" in words.said and "std_msgs" not in words.said
 
 
+@pytest.mark.parametrize(
+    ("line", "text", "said"),
+    [
+        ("ROS_INF0(x);", "‘ROS_INF0’ was not declared in this scope", "ROS_INFO is meant"),
+        ("ROS_ERROR(no rate!!);", "‘no’ was not declared in this scope", "no quotation marks"),
+        ("#include <old/Go.h>", "old/Go.h: No such file or directory", "made by some_pkg itself"),
+        ("#include <old/No.h>", "old/No.h: No such file or directory", "no header old/No.h"),
+    ],
+    ids=range(4),
+)
+def test_the_compilers_error_has_another_cause(line, text, said, tmp_path):
+    source = f"#include <ros/ros.h>\n{line}\n"
+    package = check_rules.make(tmp_path, src__a_DOT_cpp=source, srv__Go_DOT_srv="---\n")
+    assert said in cpp_words.of(package, cpp_words.Problem("src/a.cpp", 2, text, "")).said
+
+
 def test_catkin_simple_finds_catkin_and_describes_the_package(tmp_path):
     simple = "find_package(catkin_simple REQUIRED)\ncatkin_simple()\ncs_export()\n"
     text = "cmake_minimum_required(VERSION 3.10)\nproject(some_pkg)\n"

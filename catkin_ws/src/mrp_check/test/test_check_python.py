@@ -147,6 +147,23 @@ def test_what_looks_like_it_is_not_flagged(old, new, tmp_path):
     assert told(check_rules.python_findings(tmp_path, replaced(old, new))) == []
 
 
+@pytest.mark.parametrize(
+    ("manifest", "severity"),
+    [(check_rules.MANIFEST, "error"), (f"{check_rules.MANIFEST}<!-- old_pkg -->", "note")],
+)
+def test_a_package_by_its_old_name(manifest, severity, tmp_path):
+    text = replaced("import rospy\n", "import rospy\nfrom old_pkg.srv import Go\n")
+    files = {"srv__Go_DOT_srv": "---\n", "package_DOT_xml": manifest}
+    (finding,) = check_rules.python_findings(tmp_path, text, **files)
+    assert (finding.id, finding.severity) == ("python-names", severity)
+    assert ("which is called some_pkg" in finding.message) == (severity == "error")
+
+
+def test_each_print_of_python_2_is_named(tmp_path):
+    (finding,) = check_rules.python_findings(tmp_path, 'print "a"\nprint("b")\nprint "c"\n')
+    assert finding.line == 1 and "So are the other lines with it: 3." in finding.message
+
+
 def test_what_is_not_kept_is_a_note(tmp_path):
     text = replaced("self.timer = rospy.Timer", "rospy.Timer")
     assert told(check_rules.python_findings(tmp_path, text)) == []

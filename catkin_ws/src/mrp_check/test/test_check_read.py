@@ -9,11 +9,11 @@ from check_rules import MANIFEST
 from mrp_check import check
 from mrp_check.building import configuring, placeholders
 from mrp_check.confined.launch_dump import Started
-from mrp_check.contract.finding import NOTE, WARNING, Finding
+from mrp_check.contract.finding import ERROR, NOTE, WARNING, Finding
 from mrp_check.rules import (
     arguments,
-    keyboard_loop,
-    load_manifest,
+    deaf_loop,
+    definitions,
     unbuilt,
     unread,
     unset,
@@ -31,6 +31,14 @@ MAIN = "int main()\n{{\n  {}\n}}\n"
 def case(package):
     facts = Facts(sources={file: [file] for file in package.of_kind("cpp")})
     return types.SimpleNamespace(package=package, facts=facts, launch=None)
+
+
+def of_main(folder, body, is_up):
+    """Return a case of one C++ node, whose main() has that body, from line 4 on."""
+    text = f'int main()\n{{\n  ros::init(a, b, "a");\n  {body}\n}}\n'
+    known = case(check_rules.make(folder / "some_pkg", src__a_DOT_cpp=text))
+    known.nodes = {"src/a.cpp": types.SimpleNamespace(is_up=is_up, direct=None)}
+    return known
 
 
 @pytest.mark.parametrize(
@@ -177,48 +185,87 @@ def test_a_placeholder_is_known_though_nothing_is_compiled(begin, arguments, lin
 @pytest.mark.parametrize(
     ("body", "is_up", "found"),
     [
-        ("while (true)\n  {\n    f();\n  }", False, [("exit", 4)]),
-        ("for (;;) { g(); }", False, [("exit", 4)]),
-        ("while (1) { if (f()) { break; } }", False, []),
-        ("while (1) { switch (f()) { case 1: { break; } } }", False, [("exit", 4)]),
-        ("while (1) { for (;;) { if (f()) { break; } } g(); break; }", False, []),
-        ("while (1) { f(); }", True, []),
-        ("while (ros::ok()) { f(); }", False, []),
         ("t = n.createTimer(d, f);", False, [("spin", 4)]),
+        ("t = n.createTimer(d, f);", True, []),
         ("t = n.createTimer(d, f);\n  ros::spin();", False, []),
     ],
-    ids=range(9),
+    ids=range(3),
 )
 def test_what_the_text_of_a_node_shows_that_was_not_built(body, is_up, found, tmp_path):
-    text = f'int main()\n{{\n  ros::init(a, b, "a");\n  {body}\n}}\n'
-    known = case(check_rules.make(tmp_path / "some_pkg", src__a_DOT_cpp=text))
-    known.nodes = {"src/a.cpp": types.SimpleNamespace(is_up=is_up)}
+    known = of_main(tmp_path, body, is_up)
     assert check_rules.told(unbuilt.RULE.findings(known)) == found
 
 
 @pytest.mark.parametrize(
-    ("name", "found"),
-    [("some_pkg", []), ("std_msgs", []), ("no_such_pkg", [("python-names", 2)])],
+    ("body", "is_up", "found"),
+    [
+        ("while (true)\n  {\n    f();\n  }", False, [WARNING]),
+        ("for (;;) { g(); }", False, [WARNING]),
+        ("while (1) { if (f()) { break; } }", False, []),
+        ("while (1) { switch (f()) { case 1: { break; } } }", False, [WARNING]),
+        ("while (1) { for (;;) { if (f()) { break; } } g(); break; }", False, []),
+        ("while (1) { f(); }", True, []),
+        ("while (ros::ok()) { f(); }", False, []),
+        ("while (std::cin >> x) { p.publish(x); }", True, [ERROR]),
+        ("while (getline(std::cin, line)) p.publish(line);", True, [ERROR]),
+        ("while (ros::ok() && cin >> x) { p.publish(x); }", True, []),
+        ("while (cin >> x) { if (!ros::ok()) { break; } }", True, []),
+        ("signal(SIGINT, end);\n  while (cin >> x) { p.publish(x); }", True, []),
+        ("while (file >> x) { p.publish(x); }", True, []),
+        ("while (1) { ros::spinOnce(); if (near()) { break; } }", True, [WARNING]),
+        ("do { rate.sleep(); } while (pose.x < 10.5);", True, [WARNING]),
+        ("do { rate.sleep(); } while (ros::ok() && pose.x < 10.5);", True, []),
+        ("while (n < 5) { rate.sleep(); ++n; }", True, []),
+        ("do { rate.sleep(); t1 = ros::Time::now(); } while (t1 < end);", True, []),
+    ],
+    ids=range(18),
 )
-def test_load_manifest_names_a_package_that_is_there(name, found, tmp_path):
-    text = f"import roslib\nroslib.load_manifest('{name}')\n  print 1\n"
-    known = case(check_rules.make(tmp_path / "some_pkg", src__a_DOT_py=text))
-    assert check_rules.told(load_manifest.RULE.findings(known)) == found
+def test_a_loop_asks_whether_the_node_is_to_go_on(body, is_up, found, tmp_path):
+    findings = [*deaf_loop.RULE.findings(of_main(tmp_path, body, is_up))]
+    assert [(one.id, one.line, one.severity) for one in findings] == [
+        ("exit", 4, severity) for severity in found
+    ]
+
+
+def test_a_node_that_was_seen_to_go_on_is_told_of_once(tmp_path):
+    known = of_main(tmp_path, "while (std::cin >> x) { p.publish(x); }", True)
+    (node,) = known.nodes.values()
+    node.direct = types.SimpleNamespace(asked=5.0, stopped_in=None)
+    assert not [*deaf_loop.RULE.findings(known)]
 
 
 @pytest.mark.parametrize(
-    ("body", "found"),
+    ("name", "text", "said"),
     [
-        ("while (std::cin >> x) { p.publish(x); }", [("exit", 4)]),
-        ("while (getline(std::cin, line)) p.publish(line);", [("exit", 4)]),
-        ("while (ros::ok() && cin >> x) { p.publish(x); }", []),
-        ("while (cin >> x) { if (!ros::ok()) { break; } }", []),
-        ("signal(SIGINT, end);\n  while (cin >> x) { p.publish(x); }", []),
-        ("while (file >> x) { p.publish(x); }", []),
+        ("msg/A.msg", "Header header\nint32[] x  # here\nint8 B=3\nC[2] c\nDGoal g\n", None),
+        ("msg/A.msg", "std_msgs/String a\nnowhere_msgs/Thing b\n", None),
+        ("srv/A.srv", "int32 a\n---\nint32 b\n", None),
+        ("action/A.action", "---\n---\nbool done\n", None),
+        ("msg/A.msg", "int32 a\nstring\n", "Invalid declaration: string"),
+        ("srv/A.srv", "\nint32 1st\n---\n", "1st is not a legal message field name"),
+        ("msg/A.msg", "\nint a\n", "Perhaps int32 is meant."),
+        ("msg/A.msg", "\nCC a\n", "Perhaps C is meant."),
+        ("msg/A.msg", "\nstd_msgs/Strng a\n", "std_msgs has no message Strng. Perhaps String"),
     ],
-    ids=range(6),
+    ids=range(9),
 )
-def test_a_loop_asks_more_than_the_keyboard(body, found, tmp_path):
-    text = f'int main()\n{{\n  ros::init(a, b, "a");\n  {body}\n}}\n'
-    known = case(check_rules.make(tmp_path / "some_pkg", src__a_DOT_cpp=text))
-    assert check_rules.told(keyboard_loop.RULE.findings(known)) == found
+def test_ros_reads_each_line_of_a_definition(name, text, said, tmp_path):
+    files = {name: text, "msg/C.msg": "", "action/D.action": "---\n---\n"}
+    made = {path.replace(".", "_DOT_"): content for path, content in files.items()}
+    package = check_rules.make(tmp_path / "some_pkg", **made)
+    model = types.SimpleNamespace(message_files={name})
+    known = types.SimpleNamespace(package=package, model=model)
+    found = [*definitions.RULE.findings(known)]
+    assert [(one.file, one.line) for one in found] == ([(name, 2)] if said else [])
+    assert all(said in one.message for one in found)
+
+
+def test_a_package_that_generate_messages_does_not_name(tmp_path):
+    package = check_rules.make(tmp_path / "some_pkg")
+    output = (
+        "CMake Error at some_pkg/CMakeLists.txt:4 (generate_messages):\n"
+        "  Cannot locate message [Point]: unknown package [geometry_msgs] on search\n  path [{}]\n"
+    )
+    model = Model(package.root, [], complete=False)
+    finding = configuring.finding(package, output, package.root, model)
+    assert "uses geometry_msgs/Point, and generate_messages() does not name" in finding.message

@@ -6,8 +6,10 @@ from __future__ import annotations
 import codecs
 import functools
 import pathlib
+import re
 import stat
 from concurrent.futures import Future
+from typing import Any
 
 from mrp_check.case import Case
 from mrp_check.contract.finding import Finding
@@ -16,7 +18,10 @@ from mrp_check.running import observing, unasked
 from mrp_check.sources import executables, uses
 from mrp_check.student import launch as launching
 from mrp_check.student.launch import Launch
+from mrp_check.student.package import Package
 
+# A folder that catkin_package() names.
+_INCLUDED = r"(?m)^[^#\n]*\bINCLUDE_DIRS\s+(\w+)\b(?!/)"
 _MOST = 12  # launch files that are looked at
 
 
@@ -27,6 +32,14 @@ class AnyCase(Case):
     """
 
     enough = 3
+
+    def __init__(self, package: Package, *given: Any) -> None:
+        super().__init__(package, *given)
+        # CMake stops where one is missing, and a rule says so: the rest is to be checked, too.
+        for file in {"CMakeLists.txt"} & {*package.files}:
+            for name in re.findall(_INCLUDED, package.text(file)):
+                if not (self.package_folder / name).exists():
+                    (self.package_folder / name).mkdir()
 
     def _copy(self, path: str) -> bool:
         copied, package = super()._copy(path), self.package

@@ -9,8 +9,9 @@ from typing import Iterable
 
 from mrp_check.case import Case
 from mrp_check.contract.finding import ERROR, NOTE, WARNING, Finding, Line
+from mrp_check.rules.deaf_loop import ASKS_KEYBOARD
 from mrp_check.rules.definitions import UNREADABLE
-from mrp_check.rules.keyboard_loop import ASKS_KEYBOARD
+from mrp_check.rules.python_names import OLD_NAME
 from mrp_check.rules.responses import NO_RESPONSE
 from mrp_check.running.node import Node
 from mrp_check.running.traces import DIED
@@ -25,7 +26,8 @@ _RULES = set(
     ).split()
 )
 # The same, by what a finding says.
-_SURE = (NO_RESPONSE, "CMake stops", ASKS_KEYBOARD, UNREADABLE)
+_SURE = (NO_RESPONSE, "CMake stops", ASKS_KEYBOARD, UNREADABLE, OLD_NAME)
+_OF_CMAKE = {"manifest", "package-name", "cmake", "configure"}
 _SEEN = {"build", "run", "stop"}
 # What a node says that stands before an empty keyboard, screen or command line, what it waits for,
 # and what must stand in the line that raised, where anything else raises the same error, too.
@@ -70,6 +72,7 @@ def judged(case: Case, findings: Iterable[Finding], seen: Iterable[Finding]) -> 
     confirmed: set[tuple[str | None, str | None]] = {(f.id, f.file) for f in failed}
     confirmed |= {(f.consequence_of, None) for f in findings if f.stage in _SEEN}
     kept = []
+    stops = any(f.id in _OF_CMAKE and f.severity == ERROR for f in findings)
     for finding in findings:
         is_seen = {(finding.id, finding.file), (finding.id, None)} & confirmed
         if finding.severity == ERROR and finding.stage not in _SEEN and not is_seen:
@@ -78,7 +81,7 @@ def judged(case: Case, findings: Iterable[Finding], seen: Iterable[Finding]) -> 
                 finding.severity = NOTE if wants else WARNING
         if finding.severity != ERROR:
             finding.consequence_of = None
-        if not _is_unbuilt(case, finding):
+        if not _is_unbuilt(case, finding, stops):
             kept.append(finding)
     errors = {f.id for f in kept if f.severity == ERROR}
     for finding in kept:
@@ -221,11 +224,15 @@ def _is_left_alone(node: Node) -> bool:
     return bool(node.seen_alone.subscriptions)
 
 
-def _is_unbuilt(case: Case, finding: Finding) -> bool:
-    """Return whether a node has no executable only as something on this machine is missing."""
+def _is_unbuilt(case: Case, finding: Finding, stops: bool) -> bool:
+    """Return whether a node has no executable only as something on this machine is missing.
+
+    stops: whether CMake stops at a fault of the package's own
+    """
+    is_cause = finding.consequence_of is None or case.built is None and not stops
     return (
         finding.id == "starts"
-        and finding.consequence_of is None
+        and is_cause
         and "has no executable" in finding.message
         and not (case.built and case.built.ok)
     )

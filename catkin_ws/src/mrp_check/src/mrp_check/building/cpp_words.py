@@ -128,9 +128,15 @@ def _function_definition(error: Error) -> Words:
     return Words(said, "Add the missing }.")
 
 
+_INCLUDES_ROS = re.compile(r"#\s*include\s*[<\"]ros/")
+# Two words in a row are no C++.
+_UNQUOTED = re.compile(r"\b(ROS_(?:DEBUG|INFO|WARN|ERROR|FATAL))\s*\(\s*[A-Za-z_]+ +[A-Za-z_]+")
+_MACROS = {f"ROS_{level}{end}" for level in ("INFO", "WARN", "ERROR") for end in ("", "_STREAM")}
+
+
 def _undeclared(error: Error) -> Words:
     name, text = error.match.group(1), "\n".join(error.lines)
-    if name == "ros" or name.startswith("ROS_"):
+    if name == "ros" or name.startswith("ROS_") and not _INCLUDES_ROS.search(text):
         return _header(name, "ros/ros.h")
     if uses.is_ros_package(name):
         used = re.search(rf"\b{re.escape(name)}::(\w+)", text)
@@ -143,8 +149,12 @@ def _undeclared(error: Error) -> Words:
     if name in ("cout", "cin", "endl", "string", "vector"):
         said = f"nothing is called {name} here; it is std::{name}."
         return Words(said, f"Write std::{name}.", None, (name, f"std::{name}"))
+    log = _UNQUOTED.search(error.lines[error.problem.line - 1])
+    if log:
+        said = f"the text that {log[1]}() prints has no quotation marks."
+        return Words(said, f'Write {log[1]}("...").')
     own = set(re.findall(r"\b[A-Za-z_]\w*\b", text)) - {name}
-    near = error.suggested() or nearest(name, own, 0.8)
+    near = error.suggested() or nearest(name, own | _MACROS, 0.8)
     return Words(
         f"nothing is called {name} here: it is misspelt, or declared nowhere, or further"
         f" down.{perhaps(near)}",
@@ -204,6 +214,12 @@ def _no_match(error: Error) -> Words:
 def _missing_header(error: Error) -> Words:
     header, package = error.match.group(1), error.package
     folder = uses.package_of_header(header)
+    if uses.is_old_name(package, folder, last_part(header).partition(".")[0]):
+        own = f"{package.name}/{last_part(header)}"
+        said = (
+            f"there is no package {folder}: {last_part(header)} is made by {package.name} itself."
+        )
+        return Words(said, f"Write {own}.", None, (header, own))
     if uses.is_called_so(folder) and not uses.is_ros_package(folder):
         return Words(f"there is no header {header}. {uses.absent(folder, 'cpp')}", "Install it.")
     if header.split("/")[0] != package.name:

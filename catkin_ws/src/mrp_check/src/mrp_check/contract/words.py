@@ -14,6 +14,16 @@ def line_of(match: re.Match[str], group: int | str = 0) -> int:
     return text.count("\n", 0, match.start(group)) + 1
 
 
+def braced(text: str, begin: int, pair: str = "{}") -> str:
+    """Return what stands from a bracket, at `begin`, to before the one that closes it."""
+    depth = 0
+    for at in range(begin, len(text)):
+        depth += {pair[0]: 1, pair[1]: -1}.get(text[at], 0)
+        if depth == 0:
+            return text[begin:at]
+    return text[begin:]
+
+
 def last_part(name: str) -> str:
     """Return what stands behind the last slash, of a path or of a name of ROS."""
     return name.rsplit("/", 1)[-1]

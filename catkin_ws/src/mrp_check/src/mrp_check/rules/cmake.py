@@ -13,6 +13,7 @@ from mrp_check.student.cmake import Model
 from mrp_check.student.package import Package
 
 FILE = "CMakeLists.txt"
+_LOST = ", and its executables are put where roslaunch and rosrun do not look"
 
 
 def _findings(case: Case) -> Iterator[Finding]:
@@ -38,8 +39,9 @@ def _missing_calls(package: Package, model: Model) -> Iterator[Finding]:
         (
             "catkin_package()",
             model.catkin_package or _is_included(package, model),
-            "without it catkin does not know the package, and its executables are put where"
-            " roslaunch and rosrun do not look",
+            "without it catkin does not know the package"
+            # add_message_files() says where executables are put, too.
+            + ("" if model.add_message_files else _LOST),
         ),
     ):
         if not found:

@@ -19,6 +19,7 @@ from mrp_check.contract import resources
 from mrp_check.contract.finding import Finding
 from mrp_check.contract.requirements import ANY, Rule
 from mrp_check.contract.words import nearest, perhaps
+from mrp_check.sources import uses
 from mrp_check.student.package import Package
 
 UNREADABLE = "which ROS cannot read"
@@ -26,7 +27,6 @@ _KINDS = ("message", "service", "action")
 _BETWEEN = "---"  # a request and its response
 # Types of C++ and Python.
 _OF_LANGUAGES = {"int": "int32", "float": "float32", "double": "float64", "str": "string"}
-_OF_ACTION = ("Action", "ActionFeedback", "ActionGoal", "ActionResult", "Feedback", "Goal", "Result")
 
 
 def _findings(case: Case) -> Iterator[Finding]:
@@ -69,7 +69,8 @@ def _unknown(package: Package, type_: str) -> tuple[str, str | None] | None:
     if not owner:
         return None
     if owner == package.name:
-        known = _own(package)
+        made = package.of_kind("message", "action")
+        known = {one for path in made for one in uses.generated(path)}
         near = _OF_LANGUAGES.get(name) or nearest(name, [*BUILTIN_TYPES, *known])
         said = f"there is no type {name}, and no msg/{name}.msg."
     else:
@@ -80,13 +81,6 @@ def _unknown(package: Package, type_: str) -> tuple[str, str | None] | None:
     if not known and owner != package.name or name in known:
         return None
     return said + perhaps(near), near
-
-
-def _own(package: Package) -> set[str]:
-    """Return the names of the messages that the package defines."""
-    actions = [pathlib.PurePath(path).stem for path in package.of_kind("action")]
-    messages = {pathlib.PurePath(path).stem for path in package.of_kind("message")}
-    return messages | {action + ending for action in actions for ending in _OF_ACTION}
 
 
 RULE = Rule("files", 42, ("model",), _findings, also=("messages",), only=ANY)

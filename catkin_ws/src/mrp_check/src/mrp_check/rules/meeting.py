@@ -105,6 +105,8 @@ def _alone(case: Case, graph: Graph, end: End, published: set[str]) -> Iterator[
     near = [one for one in graph.publishers if one.node and _is_meant(one, end)]
     near.sort(key=lambda one: one.topic in heard)
     file, line = case.places.of_topic(end.node or "", Kind.SUBSCRIBER, end.topic)
+    if not near and any(not one.is_up for one in case.nodes.values()):
+        return  # one that did not run may publish there
     if not near:
         nobody = "nobody" if last_part(end.topic) in published else "no node of this package"
         yield Finding(

@@ -27,6 +27,8 @@ _PYTHON2 = {
     **{"basestring": "str", "reduce": "functools.reduce", "unichr": "chr", "file": "open"},
 }
 
+OLD_NAME = ": its messages are made by this package"
+
 
 class Names(PythonRule):
     def __init__(self, package: Package, source: Source) -> None:
@@ -77,6 +79,9 @@ class Names(PythonRule):
             known = set(sys.modules) | ros_modules()
             # Of short names many are alike: cv2 is no misspelt csv.
             near = nearest(missing, {n for n in known if "." not in n}, 0.75)
+            if any(uses.is_old_name(self.package, missing, one.name) for one in node.names):
+                yield self._old_name(node, missing)
+                return
             if not near or uses.is_called_so(missing) or uses.is_of_debian(missing):
                 yield self._absent(node, missing)
                 return
@@ -105,6 +110,15 @@ class Names(PythonRule):
             node,
             expected=f"files in {part}/, and generate_messages() in CMakeLists.txt",
             fix=f"Add them; or import the {part} module of the package that has them.",
+        )
+
+    def _old_name(self, node: ast.stmt, name: str) -> Finding:
+        return self.finding(
+            "python-names",
+            f"There is no package {name}{OLD_NAME}, which is called {self.package.name}.",
+            node,
+            expected=self.package.name,
+            fix=f"Write {self.package.name} for {name}.",
         )
 
     def _absent(self, node: ast.stmt, module: str) -> Finding:

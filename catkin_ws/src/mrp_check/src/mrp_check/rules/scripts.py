@@ -116,8 +116,7 @@ def _of(
         finding = _not_relayed(model, path, plain)
         finding.consequence_of = "scripts" if _is_misspelt(package, model, path) else None
         yield finding
-        return
-    if plain:
+    elif plain:
         yield from _other_program(path, plain, relayed, absent)
     # A byte order mark hides it: the rules about text say so.
     elif not package.bytes(path).startswith(_MARKS):

@@ -50,11 +50,7 @@ def _never(node: Node, loops: bool) -> Finding:
     return node.finding(
         "spin",
         f"{node.main} never calls {call}: "
-        + (
-            "the program loops, and no callback is ever called."
-            if loops
-            else "the program comes to its end at once."
-        ),
+        + ("no callback is ever called." if loops else "the program comes to its end at once."),
         node.facts.end_of_main(node.name) or (node.main, _last_line(node)),
         expected=f"{call} at the end of main",
         seen="no such call",

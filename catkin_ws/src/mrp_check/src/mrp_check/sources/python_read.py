@@ -7,6 +7,7 @@ import re
 from typing import Callable, Sequence
 
 from mrp_check.contract.finding import Finding
+from mrp_check.contract.words import line_of
 from mrp_check.sources.python_source import Source
 from mrp_check.student.package import Package
 
@@ -119,6 +120,10 @@ def _syntax(package: Package, file: str, error: SyntaxError) -> Finding:
             hint = "A colon is missing at the end of the line."
         elif line > 1 and _opens_bracket(lines[line - 2]):
             line, hint = line - 1, "A bracket is opened there and never closed."
+    found = (line_of(match, 2) for match in _PRINT.finditer(package.text(file)))
+    others = [number for number in found if number != line]
+    if "call to 'print'" in text and others:
+        hint += f" So are the other lines with it: {', '.join(map(str, others))}."
     return Finding(
         "python-syntax",
         f"Python cannot read {file}: {text}, in line {line}. {hint}".strip(),

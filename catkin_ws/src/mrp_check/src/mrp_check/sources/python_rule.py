@@ -51,7 +51,9 @@ class PythonRule:
     def is_own(self, name: str) -> bool:
         """Return whether a module is the package's own (made, or generated of its messages)."""
         top = name.split(".")[0]
-        is_inside = any(f"/{top}/" in f"/{path}" for path in self.package.of_kind("python"))
+        # Python does not find the folder of a script by its name.
+        others = [] if top in self.file.split("/") else self.package.of_kind("python")
+        is_inside = any(f"/{top}/" in f"/{path}" for path in others)
         return top == self.package.name or is_inside or self.has_module(top)
 
     def has_module(self, name: str) -> bool:

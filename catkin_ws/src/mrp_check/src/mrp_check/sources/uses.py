@@ -36,6 +36,7 @@ _LOOSE = set(
 )
 
 
+_KINDS = ("message", "service", "action")
 # The ending of a definition -> what is added to its name for what is made of it.
 _MADE = {
     "msg": ("",),
@@ -51,6 +52,16 @@ def generated(path: str) -> list[str]:
     """Return the names of the messages that are made of a .msg, .srv or .action file."""
     name, _, ending = last_part(path).rpartition(".")
     return [name + added for added in _MADE[ending]]
+
+
+def is_old_name(package: Package, owner: str, made: str) -> bool:
+    """Return whether a package that nothing here names can only be this one: what is taken of it
+    is made of a definition of this package's own."""
+    own = {name for path in package.of_kind(*_KINDS) for name in generated(path)}
+    is_other = owner == package.name or exists(owner) or is_called_so(owner)
+    files = [file for file in ("package.xml", "CMakeLists.txt") if file in package.files]
+    is_named = any(re.search(rf"\b{re.escape(owner)}\b", package.text(file)) for file in files)
+    return made in own and not is_other and not is_named
 
 
 class Use(typing.NamedTuple):

@@ -1,0 +1,116 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A loop of a C++ node asks ros::ok(): otherwise Ctrl-C does not end it.
+
+roscpp's handler of SIGINT only asks the node to shut down. A loop that waits for the keyboard, or
+for what a callback changes, goes on: no callback is called any more, and the system goes on with
+read(). https://wiki.ros.org/roscpp/Overview/Initialization%20and%20Shutdown
+"""
+
+from __future__ import annotations
+
+import re
+from typing import Iterator, NamedTuple
+
+from mrp_check.case import Case
+from mrp_check.contract.finding import ERROR, WARNING, Finding
+from mrp_check.contract.requirements import ANY, Rule
+from mrp_check.contract.words import braced, line_of
+from mrp_check.sources import uses
+
+ASKS_KEYBOARD = "This loop only asks the keyboard"
+# Whoever has a handler of one's own may end otherwise.
+_HANDLER = re.compile(r"\b(?:sigaction|signal)\s*\(")
+_HEAD = re.compile(r"\bwhile\s*(?=\()|\bfor\s*(?=\(\s*;\s*;\s*\))|\bdo\s*(?=\{)")
+_ASKS = re.compile(r"\b(?:ok|isShuttingDown|isStarted)\s*\(|\bexit\s*\(|\bthrow\b")
+_ENDLESS = re.compile(r"\s*(?:true|1|;\s*;)?\s*")
+_LEAVES = re.compile(r"\b(?:break|return)\b")
+_BREAK = re.compile(r"\bbreak\b")
+_INNER = re.compile(r"\b(?:switch|for|while|do)\b[^{};]*(?=\{)")
+_KEYBOARD = re.compile(r"\bcin\b\s*>>|\bgetline\s*\(\s*(?:std::)?cin\b")
+# What a loop does that goes on for long, and that waits for no time, and counts nothing.
+_WAITS = re.compile(r"\bspinOnce\s*\(|\bsleep\s*\(")
+_PASSES = re.compile(r"\bTime::now\b|\+\+|--|[-+]=")
+
+
+class _Loop(NamedTuple):
+    """A loop of a text: where it begins, what it asks each time, and what it does."""
+
+    match: re.Match[str]
+    asks: str
+    block: str
+
+
+def _findings(case: Case) -> Iterator[Finding]:
+    for name, files in case.facts.sources.items():
+        texts = {f: uses.code(case.package, f) for f in files if case.package.kind(f) == "cpp"}
+        joined, node = "\n".join(texts.values()), case.nodes.get(name)
+        if "ros::init" not in joined or _HANDLER.search(joined):
+            continue
+        direct = node.direct if node else None
+        if direct and direct.asked is not None and direct.stopped_in is None:
+            continue  # its end was seen, and is told of
+        for file, text in texts.items():
+            for loop in _loops(text):
+                yield from _of(case, (name, file), loop, bool(node and node.is_up))
+
+
+def _of(case: Case, place: tuple[str, str], loop: _Loop, is_up: bool) -> Iterator[Finding]:
+    if _ASKS.search(loop.asks + loop.block):
+        return
+    asks = " ".join(loop.asks.split())
+    said, severity, wanted = "", WARNING, f"while (ros::ok() && {asks})"
+    if _KEYBOARD.search(loop.asks):
+        severity = ERROR
+        said = f"{ASKS_KEYBOARD}: Ctrl-C does not end the node, which waits for what is typed."
+    elif _ENDLESS.fullmatch(loop.asks) and not _LEAVES.search(_own(loop.block)):
+        wanted = "while (ros::ok())"
+        # Of one that ran it would have been seen.
+        said = (
+            ""
+            if is_up
+            else (
+                "This loop never ends: it does not ask ros::ok(), so Ctrl-C does not end the node."
+            )
+        )
+    elif _WAITS.search(loop.block) and not _PASSES.search(loop.asks + loop.block):
+        said = (
+            "This loop does not ask ros::ok(): Ctrl-C does not end the node before the loop ends by"
+            " itself, and no callback is called any more."
+        )
+    if said:
+        (node, file), line = place, line_of(loop.match)
+        seen = case.package.lines(file)[line - 1].strip()
+        yield Finding(
+            "exit", said, file, line, severity, wanted, seen, f"Write {wanted}.", node=node
+        )
+
+
+def _loops(text: str) -> Iterator[_Loop]:
+    for match in _HEAD.finditer(text):
+        if match[0].startswith("do"):
+            block = braced(text, match.end())
+            after = re.compile(r"\}\s*while\s*(?=\()").match(text, match.end() + len(block))
+            if after:
+                yield _Loop(match, braced(text, after.end(), "()")[1:], block)
+        elif not text[: match.start()].rstrip().endswith("}") or not _ends_a_do(text, match):
+            asks = braced(text, match.end(), "()")
+            begin = match.end() + len(asks) + 1
+            one = re.compile(r"\s*(?=\{)").match(text, begin)
+            block = braced(text, one.end()) if one else text[begin:].partition(";")[0]
+            yield _Loop(match, asks[1:], block)
+
+
+def _ends_a_do(text: str, match: re.Match[str]) -> bool:
+    """Return whether a `while` is the end of a `do`: a semicolon follows what it asks."""
+    return text[match.end() + len(braced(text, match.end(), "()")) + 1 :].lstrip().startswith(";")
+
+
+def _own(block: str) -> str:
+    """Return what a loop does, without each `break` that ends another loop or a switch in it."""
+    for inner in reversed([*_INNER.finditer(block)]):
+        begin, within = inner.end(), braced(block, inner.end())
+        block = block[:begin] + _BREAK.sub("", within) + block[begin + len(within) :]
+    return block
+
+
+RULE = Rule("stop", 30, ("nodes",), _findings, also=("exit",), only=ANY)
