@@ -9,11 +9,14 @@ from check_rules import MANIFEST
 from mrp_check import check
 from mrp_check.building import configuring, placeholders
 from mrp_check.confined.launch_dump import Started
+from mrp_check.confined.places import Kind, Place
 from mrp_check.contract.finding import ERROR, NOTE, WARNING, Finding
 from mrp_check.rules import (
     arguments,
     deaf_loop,
     definitions,
+    global_names,
+    load_manifest,
     unbuilt,
     unread,
     unset,
@@ -269,3 +272,37 @@ def test_a_package_that_generate_messages_does_not_name(tmp_path):
     model = Model(package.root, [], complete=False)
     finding = configuring.finding(package, output, package.root, model)
     assert "uses geometry_msgs/Point, and generate_messages() does not name" in finding.message
+
+
+@pytest.mark.parametrize(
+    ("published", "heard", "found"),
+    [
+        ("/chatter", "/chatter", [("topic", 2)]),
+        ("chatter", "chatter", []),
+        ("/cmd_vel", "/pose", []),
+        ("/rosout", "/rosout", []),
+    ],
+    ids=range(4),
+)
+def test_where_own_nodes_meet_is_no_global_name(published, heard, found, tmp_path):
+    text = 'int main()\n{ n.advertiseService("go", f); }\n'
+    known = case(check_rules.make(tmp_path / "some_pkg", src__a_DOT_cpp=text))
+    ends = (2, Kind.PUBLISHER, published), (3, Kind.SUBSCRIBER, heard)
+    known.facts.places = [Place("src/a.cpp", *one) for one in ends]
+    assert check_rules.told(global_names.RULE.findings(known)) == found
+
+
+def test_a_service_of_a_global_name(tmp_path):
+    text = 'int main()\n{ n.advertiseService("/go", f); }\n'
+    known = case(check_rules.make(tmp_path / "some_pkg", src__a_DOT_cpp=text))
+    assert check_rules.told(global_names.RULE.findings(known)) == [("topic", 2)]
+
+
+@pytest.mark.parametrize(
+    ("name", "found"),
+    [("some_pkg", []), ("std_msgs", []), ("no_such_pkg", [("python-names", 2)])],
+)
+def test_load_manifest_names_a_package_that_is_there(name, found, tmp_path):
+    text = f"import roslib\nroslib.load_manifest('{name}')\n  print 1\n"
+    known = case(check_rules.make(tmp_path / "some_pkg", src__a_DOT_py=text))
+    assert check_rules.told(load_manifest.RULE.findings(known)) == found
