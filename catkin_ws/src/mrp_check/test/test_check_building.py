@@ -2,12 +2,14 @@
 """What CMake and the compiler print, in plain words, and the line that is to blame."""
 
 import subprocess
+import types
 
 import check_rules
 import pytest
 from check_rules import CMAKE, MANIFEST
 from mrp_check.building import compiler, configuring, cpp_words
 from mrp_check.rules import cmake as cmake_rule
+from mrp_check.rules import compile as compile_rule
 from mrp_check.student.package import Package
 
 pytestmark = pytest.mark.quick
@@ -159,6 +161,16 @@ def test_the_compilers_error_has_another_cause(line, text, said, tmp_path):
     source = f"#include <ros/ros.h>\n{line}\n"
     package = check_rules.make(tmp_path, src__a_DOT_cpp=source, srv__Go_DOT_srv="---\n")
     assert said in cpp_words.of(package, cpp_words.Problem("src/a.cpp", 2, text, "")).said
+
+
+def test_headers_are_looked_for_where_nothing_is_compiled(tmp_path):
+    source = '#include "/home/nobody/a.h"\n#include <old/Go.h>\n#include <far/No.h>\n'
+    package = check_rules.make(tmp_path, src__a_DOT_cpp=source, srv__Go_DOT_srv="---\n")
+    target = types.SimpleNamespace(sources=["src/a.cpp"])
+    model = types.SimpleNamespace(targets={"a": target})
+    case = types.SimpleNamespace(package=package, model=model, built=None)
+    found = check_rules.told(compile_rule.RULE.findings(case))
+    assert found == [("compile", 1), ("compile", 2)]
 
 
 def test_catkin_simple_finds_catkin_and_describes_the_package(tmp_path):

@@ -16,6 +16,7 @@ from mrp_check.rules import (
     deaf_loop,
     definitions,
     global_names,
+    launched,
     load_manifest,
     unbuilt,
     unread,
@@ -306,3 +307,26 @@ def test_load_manifest_names_a_package_that_is_there(name, found, tmp_path):
     text = f"import roslib\nroslib.load_manifest('{name}')\n  print 1\n"
     known = case(check_rules.make(tmp_path / "some_pkg", src__a_DOT_py=text))
     assert check_rules.told(load_manifest.RULE.findings(known)) == found
+
+
+@pytest.mark.parametrize(
+    ("line", "found"),
+    [("n = int(sys.argv[1])", [NOTE]), ("n = int(text)", [ERROR, ERROR])],
+)
+def test_a_node_that_reads_roslaunchs_own_argument_waits_for_its_own(line, found, tmp_path):
+    package = check_rules.make(tmp_path / "some_pkg", src__odd_DOT_py=f"{line}\n")
+    places = types.SimpleNamespace(
+        traceback=lambda lines: (("src/odd.py", 1), "ValueError", "invalid literal"),
+        sources=lambda node: ["src/odd.py"],
+        of=lambda *given: ("src/odd.py", 1),
+    )
+    died = "[odd-1] process has died [pid 7, exit code 1, cmd odd.py __name:=odd]."
+    seen = types.SimpleNamespace(until_asked=lambda: [died], ending="enough")
+    launches = [types.SimpleNamespace(nodes={"/odd": "odd"}, file="", seen=seen)]
+    known = types.SimpleNamespace(
+        package=package,
+        places=places,
+        nodes={"odd": types.SimpleNamespace(not_up=[])},
+        observed=types.SimpleNamespace(launches=launches),
+    )
+    assert [one.severity for one in launched.RULE.findings(known)] == found

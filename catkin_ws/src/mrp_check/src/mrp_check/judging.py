@@ -38,7 +38,7 @@ _WAITS = (
     (r"(?i)cannot open display|could not connect to display|no display name", "a screen", ""),
     (r"(?i)can.t open camera|VIDEOIO|/dev/(video|tty)\w*", "a device", ""),
     (r"KeyError: ", "a parameter", "param"),
-    (r"IndexError: list index", "arguments", "sys.argv["),
+    (r"IndexError: list index|ValueError: ", "arguments", "sys.argv["),
 )
 # How a program counts its arguments: beside the line at which it ends, it misses some.
 _COUNTS = re.compile(r"\bargc\s*[!<>=]|[<>=]\s*argc\b|\blen\(sys\.argv\)")

@@ -220,7 +220,8 @@ def _missing_header(error: Error) -> Words:
             f"there is no package {folder}: {last_part(header)} is made by {package.name} itself."
         )
         return Words(said, f"Write {own}.", None, (header, own))
-    if uses.is_called_so(folder) and not uses.is_ros_package(folder):
+    is_other = folder != package.name and uses.is_called_so(folder)
+    if is_other and not uses.is_ros_package(folder):
         return Words(f"there is no header {header}. {uses.absent(folder, 'cpp')}", "Install it.")
     if header.split("/")[0] != package.name:
         near = nearest(header, [f"std_msgs/{name}.h" for name in _MESSAGES] + ["ros/ros.h"], 0.7)

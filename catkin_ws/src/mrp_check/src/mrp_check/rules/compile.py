@@ -12,6 +12,7 @@ from mrp_check.case import Case
 from mrp_check.contract.errors import CannotCheck
 from mrp_check.contract.finding import Finding
 from mrp_check.contract.requirements import Requirement, Rule
+from mrp_check.contract.words import last_part
 from mrp_check.sources import uses
 
 
@@ -37,11 +38,25 @@ def findings(case: Case) -> Iterator[Finding]:
 
 
 def _of_other_machines(case: Case) -> Iterator[Finding]:
-    """Yield a finding for each header that a source includes by a whole path, and that is not
-    there. It takes no compiler to say so: nothing is compiled where CMake could not go on."""
+    """Yield a finding for each header that a source includes by a whole path, or by an old name of
+    the package, and that is not there. It takes no compiler to say so: nothing is compiled where
+    CMake could not go on."""
+    package = case.package
     built = {file for target in case.model.targets.values() for file in target.sources}
-    for file in sorted(built & {*case.package.files}):
-        for header, line in uses.includes(case.package, file):
+    for file in sorted(built & {*package.files}):
+        for header, line in uses.includes(package, file):
+            folder, name = uses.package_of_header(header), last_part(header)
+            if uses.is_old_name(package, folder, name.partition(".")[0]):
+                yield Finding(
+                    "compile",
+                    f"{file} includes {header}, and there is no package {folder}: {name} is made by"
+                    f" {package.name} itself.",
+                    file,
+                    line,
+                    expected=f"{package.name}/{name}",
+                    seen=package.lines(file)[line - 1].strip(),
+                    fix=f"Write {package.name}/{name}.",
+                )
             if os.path.isabs(header) and not os.path.exists(header):
                 yield Finding(
                     "compile",
@@ -50,7 +65,7 @@ def _of_other_machines(case: Case) -> Iterator[Finding]:
                     file,
                     line,
                     expected="a path that begins with the name of a package",
-                    seen=case.package.lines(file)[line - 1].strip(),
+                    seen=package.lines(file)[line - 1].strip(),
                     fix="Write the name of the package and of the header alone.",
                 )
 

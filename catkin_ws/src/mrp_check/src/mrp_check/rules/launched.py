@@ -21,12 +21,14 @@ def _findings(case: Case) -> Iterator[Finding]:
     for launched in case.observed.launches:
         lines = launched.seen.until_asked()
         yield from _gave_up(case, launched, lines)
-        yield from _raised(case, launched, lines)
+        raised = [*_raised(case, launched, lines)]
+        yield from raised
+        waiting = {one.node for one in raised if one.severity == NOTE}
         for text in lines:
             died = DIED.search(text)
             name = died and died["code"] and launched.nodes.get("/" + died["name"])
             # What ends by itself, too, has been said.
-            if died and name and not case.nodes[name].not_up:
+            if died and name and name not in waiting and not case.nodes[name].not_up:
                 yield _died(case, launched, name, int(died["code"]))
 
 
@@ -44,6 +46,10 @@ def _raised(case: Case, launched: Launched, lines: list[str]) -> Iterator[Findin
     if name is None or case.nodes[name].not_up:
         return
     source = case.package.lines(place[0])[place[1] - 1].strip()
+    if "sys.argv[" in source:
+        said = f"{name} waits for arguments on its command line: {kind}: {text}"
+        yield Finding("starts", said, *place, severity=NOTE, node=name)
+        return
     yield Finding(
         id_of_error(kind, text, "callbacks"),
         f"{name} runs into an error {_where(launched)}: {kind}: {text}",

@@ -53,12 +53,14 @@ def _no_dependencies(model: Model) -> Iterator[Finding]:
     for call in model.calls:
         for name in call.arguments[1:] if call.command == "add_dependencies" else ():
             if model.lacks_target(name):
-                near = nearest(name, model.made)
+                of_messages = "_generate_messages" in name and not model.generate
+                near = None if of_messages else nearest(name, model.made)
                 yield _missing(
                     call,
                     name,
                     f"add_dependencies() lets {call.arguments[0]} wait for {name}, and there is no"
-                    f" such target.{perhaps(near)}",
+                    f" such target.{perhaps(near)}"
+                    + (" generate_messages() makes it, where it is called." if of_messages else ""),
                     f"a target {name}",
                     f"Write {near} for {name}." if near else f"Take {name} out.",
                 )
