@@ -152,10 +152,11 @@ def test_a_header_that_this_machine_has_not_is_no_misspelt_one(tmp_path, monkeyp
     [
         ("ROS_INF0(x);", "‘ROS_INF0’ was not declared in this scope", "ROS_INFO is meant"),
         ("ROS_ERROR(no rate!!);", "‘no’ was not declared in this scope", "no quotation marks"),
+        ("bind(f, _1);", "‘_1’ was not declared in this scope", "boost::placeholders alone"),
         ("#include <old/Go.h>", "old/Go.h: No such file or directory", "made by some_pkg itself"),
         ("#include <old/No.h>", "old/No.h: No such file or directory", "no header old/No.h"),
     ],
-    ids=range(4),
+    ids=range(5),
 )
 def test_the_compilers_error_has_another_cause(line, text, said, tmp_path):
     source = f"#include <ros/ros.h>\n{line}\n"

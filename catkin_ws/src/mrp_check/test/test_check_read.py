@@ -217,7 +217,7 @@ def test_what_the_text_of_a_node_shows_that_was_not_built(body, is_up, found, tm
         ("signal(SIGINT, end);\n  while (cin >> x) { p.publish(x); }", True, []),
         ("while (file >> x) { p.publish(x); }", True, []),
         ("while (1) { ros::spinOnce(); if (near()) { break; } }", True, [WARNING]),
-        ("do { rate.sleep(); } while (pose.x < 10.5);", True, [WARNING]),
+        ("do {\n  rate.sleep(); }\n  while (pose.x < 10.5);", True, [WARNING]),
         ("do { rate.sleep(); } while (ros::ok() && pose.x < 10.5);", True, []),
         ("while (n < 5) { rate.sleep(); ++n; }", True, []),
         ("do { rate.sleep(); t1 = ros::Time::now(); } while (t1 < end);", True, []),
@@ -226,8 +226,9 @@ def test_what_the_text_of_a_node_shows_that_was_not_built(body, is_up, found, tm
 )
 def test_a_loop_asks_whether_the_node_is_to_go_on(body, is_up, found, tmp_path):
     findings = [*deaf_loop.RULE.findings(of_main(tmp_path, body, is_up))]
+    line = 6 if "do {\n" in body else 4  # what it asks
     assert [(one.id, one.line, one.severity) for one in findings] == [
-        ("exit", 4, severity) for severity in found
+        ("exit", line, severity) for severity in found
     ]
 
 

@@ -7,6 +7,7 @@ import re
 import typing
 from typing import Callable, Sequence
 
+from mrp_check.building import placeholders
 from mrp_check.contract.finding import Change
 from mrp_check.contract.words import last_part, nearest, perhaps
 from mrp_check.sources import uses
@@ -141,6 +142,8 @@ def _undeclared(error: Error) -> Words:
     if uses.is_ros_package(name):
         used = re.search(rf"\b{re.escape(name)}::(\w+)", text)
         return _header(name, f"{name}/{used.group(1)}.h" if used else f"{name}/....h")
+    if re.fullmatch(r"_[1-9]", name):
+        return Words(f"nothing is called {name} here: {placeholders.SAID}", placeholders.FIX)
     if name in _MESSAGES:
         said = f"nothing is called {name} here; the type is std_msgs::{name}."
         return Words(said, f"Write std_msgs::{name}.", None, (name, f"std_msgs::{name}"))

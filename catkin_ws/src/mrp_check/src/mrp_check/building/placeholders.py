@@ -14,6 +14,8 @@ from mrp_check.student.package import Package
 
 # Boost 1.73 took _1 out of the global namespace, and Debian's ROS includes the header without it:
 # https://www.boost.org/doc/libs/1_73_0/libs/bind/doc/html/bind.html
+SAID = "this machine's Boost has it in boost::placeholders alone."
+FIX = "Add #include <boost/bind/bind.hpp> and using namespace boost::placeholders;"
 _OLD = "boost/bind.hpp"  # has it still
 _ROS = (pathlib.Path("/opt/ros/noetic/include/ros"), pathlib.Path("/usr/include/ros"))
 _BIND = re.compile(r"(?<!std::)\b(?:boost::)?bind\s*\([^;]*?(?<![\w:])(_[1-9])\b")
@@ -34,13 +36,12 @@ def findings(package: Package, files: Iterable[str]) -> Iterator[Finding]:
         line = line_of(match, 1)
         yield Finding(
             "compile",
-            f"{file} uses {match[1]} as a name of its own: this machine's Boost has it in"
-            " boost::placeholders alone, so the compiler does not know it.",
+            f"{file} uses {match[1]} as a name of its own: {SAID}",
             file,
             line,
             expected=f"boost::placeholders::{match[1]}",
             seen=package.lines(file)[line - 1].strip(),
-            fix="Add #include <boost/bind/bind.hpp> and using namespace boost::placeholders;",
+            fix=FIX,
         )
 
 

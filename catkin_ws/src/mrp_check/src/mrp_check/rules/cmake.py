@@ -45,11 +45,13 @@ def _missing_calls(package: Package, model: Model) -> Iterator[Finding]:
         ),
     ):
         if not found:
+            is_package = needed.startswith("catkin_package")
+            commented = is_package and package.first_match([FILE], r"^\s*#+\s*catkin_package\(")
             yield Finding(
                 "cmake",
                 f"CMakeLists.txt does not call {needed}: {why}.",
                 FILE,
-                before.line if before else 1,
+                commented[1] if commented else before.line if before else 1,
                 expected=needed,
                 seen="no such call",
                 fix=f"Add {needed} after this line." if before else f"Add {needed}.",

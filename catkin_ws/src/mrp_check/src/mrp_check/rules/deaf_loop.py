@@ -20,7 +20,7 @@ from mrp_check.sources import uses
 ASKS_KEYBOARD = "This loop only asks the keyboard"
 # Whoever has a handler of one's own may end otherwise.
 _HANDLER = re.compile(r"\b(?:sigaction|signal)\s*\(")
-_HEAD = re.compile(r"\bwhile\s*(?=\()|\bfor\s*(?=\(\s*;\s*;\s*\))|\bdo\s*(?=\{)")
+_HEAD = re.compile(r"\b(?P<word>while\s*(?=\()|for\s*(?=\(\s*;\s*;\s*\))|do\s*(?=\{))")
 _ASKS = re.compile(r"\b(?:ok|isShuttingDown|isStarted)\s*\(|\bexit\s*\(|\bthrow\b")
 _ENDLESS = re.compile(r"\s*(?:true|1|;\s*;)?\s*")
 _LEAVES = re.compile(r"\b(?:break|return)\b")
@@ -33,9 +33,9 @@ _PASSES = re.compile(r"\bTime::now\b|\+\+|--|[-+]=")
 
 
 class _Loop(NamedTuple):
-    """A loop of a text: where it begins, what it asks each time, and what it does."""
+    """A loop of a text: the `while` or `for` that asks, what it asks, and what the loop does."""
 
-    match: re.Match[str]
+    head: re.Match[str]
     asks: str
     block: str
 
@@ -78,7 +78,7 @@ def _of(case: Case, place: tuple[str, str], loop: _Loop, is_up: bool) -> Iterato
             " itself, and no callback is called any more."
         )
     if said:
-        (node, file), line = place, line_of(loop.match)
+        (node, file), line = place, line_of(loop.head, "word")
         seen = case.package.lines(file)[line - 1].strip()
         yield Finding(
             "exit", said, file, line, severity, wanted, seen, f"Write {wanted}.", node=node
@@ -89,9 +89,11 @@ def _loops(text: str) -> Iterator[_Loop]:
     for match in _HEAD.finditer(text):
         if match[0].startswith("do"):
             block = braced(text, match.end())
-            after = re.compile(r"\}\s*while\s*(?=\()").match(text, match.end() + len(block))
+            after = re.compile(r"\}\s*(?P<word>while)\s*(?=\()").match(
+                text, match.end() + len(block)
+            )
             if after:
-                yield _Loop(match, braced(text, after.end(), "()")[1:], block)
+                yield _Loop(after, braced(text, after.end(), "()")[1:], block)
         elif not text[: match.start()].rstrip().endswith("}") or not _ends_a_do(text, match):
             asks = braced(text, match.end(), "()")
             begin = match.end() + len(asks) + 1
