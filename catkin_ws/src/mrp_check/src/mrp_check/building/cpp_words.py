@@ -218,11 +218,11 @@ def _missing_header(error: Error) -> Words:
     header, package = error.match.group(1), error.package
     folder = uses.package_of_header(header)
     if uses.is_old_name(package, folder, last_part(header).partition(".")[0]):
-        own = f"{package.name}/{last_part(header)}"
+        right = f"{package.name}/{last_part(header)}"
         said = (
             f"there is no package {folder}: {last_part(header)} is made by {package.name} itself."
         )
-        return Words(said, f"Write {own}.", None, (header, own))
+        return Words(said, f"Write {right}.", None, (header, right))
     is_other = folder != package.name and uses.is_called_so(folder)
     if is_other and not uses.is_ros_package(folder):
         return Words(f"there is no header {header}. {uses.absent(folder, 'cpp')}", "Install it.")

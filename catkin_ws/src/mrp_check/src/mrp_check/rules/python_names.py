@@ -79,7 +79,7 @@ class Names(PythonRule):
             known = set(sys.modules) | ros_modules()
             # Of short names many are alike: cv2 is no misspelt csv.
             near = nearest(missing, {n for n in known if "." not in n}, 0.75)
-            if any(uses.is_old_name(self.package, missing, one.name) for one in node.names):
+            if any(uses.is_old_name(self.package, missing, one) for one in _names_of(node)):
                 yield self._old_name(node, missing)
                 return
             if not near or uses.is_called_so(missing) or uses.is_of_debian(missing):
@@ -353,6 +353,11 @@ def _is_self(node: ast.expr) -> bool:
 def _self_first(method: ast.FunctionDef) -> Change:
     rest = ", " if method.args.args or method.args.vararg or method.args.kwarg else ""
     return f"def {method.name}(", f"def {method.name}(self{rest}"
+
+
+def _names_of(node: ast.stmt) -> list[str]:
+    names = node.names if isinstance(node, (ast.Import, ast.ImportFrom)) else []
+    return [one.name for one in names]
 
 
 RULE = Rule(
