@@ -58,20 +58,15 @@ def _of(case: Case, place: tuple[str, str], loop: _Loop, is_up: bool) -> Iterato
     if _ASKS.search(loop.asks + loop.block):
         return
     asks = " ".join(loop.asks.split())
-    said, severity, wanted = "", WARNING, f"while (ros::ok() && {asks})"
+    is_endless = _ENDLESS.fullmatch(asks)
+    wanted = "while (ros::ok())" if is_endless else f"while (ros::ok() && {asks})"
+    said, severity = "", WARNING
     if _KEYBOARD.search(loop.asks):
         severity = ERROR
         said = f"{ASKS_KEYBOARD}: Ctrl-C does not end the node, which waits for what is typed."
-    elif _ENDLESS.fullmatch(loop.asks) and not _LEAVES.search(_own(loop.block)):
-        wanted = "while (ros::ok())"
-        # Of one that ran it would have been seen.
-        said = (
-            ""
-            if is_up
-            else (
-                "This loop never ends: it does not ask ros::ok(), so Ctrl-C does not end the node."
-            )
-        )
+    elif is_endless and not _LEAVES.search(_own(loop.block)):
+        ended = "This loop never ends: it does not ask ros::ok(), so Ctrl-C does not end the node."
+        said = "" if is_up else ended  # of one that ran, it would have been seen
     elif _WAITS.search(loop.block) and not _PASSES.search(loop.asks + loop.block):
         said = (
             "This loop does not ask ros::ok(): Ctrl-C does not end the node before the loop ends by"

@@ -22,6 +22,8 @@ _HEADERS = {"ros/package.h": "roslib", "ros/package.hpp": "roslib"}
 _INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*[<"]([\w./+-]+)[>"]', re.MULTILINE)
 _IMPORT = re.compile(r"^[ \t]*(?:from|import)[ \t]+([A-Za-z_][\w.]*)", re.MULTILINE)
 _LAUNCHED = re.compile(r'\bpkg\s*=\s*"([A-Za-z]\w*)"|\$\(find\s+([A-Za-z]\w*)\s*\)')
+# What package.xml and CMakeLists.txt say to people alone.
+_WORDS = re.compile(r"<!--.*?-->|<(description|url)\b.*?</\1>|#[^\n]*", re.DOTALL)
 _XML_COMMENT = re.compile(r"<!--.*?-->", re.DOTALL)
 _PYTHON_COMMENT = re.compile(r"^[ \t]*#[^\n]*", re.MULTILINE)
 _COMMENT = re.compile(r"/\*.*?\*/|//[^\n]*", re.DOTALL)
@@ -60,7 +62,8 @@ def is_old_name(package: Package, owner: str, made: str) -> bool:
     own = {name for path in package.of_kind(*_KINDS) for name in generated(path)}
     is_other = owner == package.name or exists(owner) or is_called_so(owner)
     files = [file for file in ("package.xml", "CMakeLists.txt") if file in package.files]
-    is_named = any(re.search(rf"\b{re.escape(owner)}\b", package.text(file)) for file in files)
+    texts = (_WORDS.sub("", package.text(file)) for file in files)
+    is_named = any(re.search(rf"\b{re.escape(owner)}\b", text) for text in texts)
     return made in own and not is_other and not is_named
 
 
