@@ -14,6 +14,11 @@ from mrp_check.student.package import Package
 from mrp_testing.proves import proves
 
 NODE = "src/publisher_cpp_node.cpp"
+# g++ sees the error in a header of ROS's.
+TEMPLATE = """
+void hear(std_msgs::UInt32& message) {}
+void listen(ros::NodeHandle& node) { ros::Subscriber heard = node.subscribe("a", 1, hear); }
+"""
 
 
 @pytest.mark.quick
@@ -125,8 +130,9 @@ def test_second_source_is_compiled_with_the_headers_of_the_first(
     [
         (lambda text: text.replace("#include <ros/ros.h>\n", ""), "ros.h> is missing"),
         (lambda text: "#include <ros/ros.h>\nnot C++;\n" + text, "line 2 of"),
+        (lambda text: text + TEMPLATE, "takes a std_msgs::UInt32& that is not const"),
     ],
-    ids=("not_included", "line"),
+    ids=("not_included", "line", "template"),
 )
 def test_what_is_wrong_is_found_as_ever(kept, compiled, change, says):
     compiled()

@@ -11,6 +11,7 @@ of flags (building/headers.py). Where the two may differ, the compiler is called
 import hashlib
 import os
 import re
+import subprocess
 import sys
 from typing import List, Optional, Sequence
 
@@ -102,4 +103,10 @@ def with_headers(command: List[str], folder: str) -> List[str]:
 
 if __name__ == "__main__":
     words = with_headers(sys.argv[1:], os.environ[FOLDER])
-    os.execvp(words[0], words)
+    if words != sys.argv[1:]:
+        done = subprocess.run(words, stderr=subprocess.PIPE)
+        if done.returncode == 0:
+            sys.stderr.buffer.write(done.stderr)
+            sys.exit()
+    # What g++ says of an error with them may not name the source: so it says it without them.
+    os.execvp(sys.argv[1], sys.argv[1:])
