@@ -2,6 +2,7 @@
 """What class_scale.py makes a class of, and what it has recorded."""
 
 import csv
+import re
 
 import class_scale
 import pytest
@@ -43,6 +44,17 @@ def test_recorded_marks_are_the_same():
     assert [row["workers"] for row in rows] == ["1", "2", "4"]
     assert {row["marks"] for row in rows} == {"the same"}
     assert rows[0]["efficiency"] == "1.00"
+
+
+@proves(
+    "With 10 000 submissions, the scheduler and the command would have less than 1000 MB each: "
+    "what is short first is time."
+)
+def test_memory_is_not_what_is_short_first():
+    for row in csv.DictReader(RECORDED.read_text().splitlines()):
+        then = [float(value) for name, value in row.items() if re.match("MB of .* then", name)]
+        assert len(then) == 2 and max(then) < 1000
+        assert float(row["processor hours then"]) > 20
 
 
 def test_line_through_what_was_seen_leads_to_ten_thousand():

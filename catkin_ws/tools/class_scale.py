@@ -144,7 +144,8 @@ def main(submissions, table=None):
             seconds, processor, ends, memory, marks = measured(folder, workers)
             first = first or (seconds / count, marks)
             moved = [a["submission"] for a, b in zip(first[1], marks) if a != b]
-            hours = at_many(ends) / 3600
+            # A worker has no more of them than before.
+            then = {part: at_many(memory.seen.get(part, [])) for part in ("scheduler", "command")}
             rows.append(
                 {
                     "workers": workers,
@@ -155,14 +156,13 @@ def main(submissions, table=None):
                     "MB of the scheduler": f"{memory.peaks['scheduler']:.0f}",
                     "MB of a worker": f"{memory.peaks['worker']:.0f}",
                     "marks": "the same" if not moved else f"{len(moved)} moved",
-                    f"hours for {_MANY}": f"{hours:.1f}",
+                    f"hours for {_MANY}": f"{at_many(ends) / 3600:.1f}",
+                    "processor hours then": f"{processor / count * _MANY / 3600:.0f}",
+                    **{f"MB of the {part} then": f"{many:.0f}" for part, many in then.items()},
                 }
             )
-            print(", ".join(f"{name}: {value}" for name, value in rows[-1].items()), *moved)
-            print(f"  {_MANY} take {processor / count * _MANY / 3600:.0f} hours of one processor;")
-            for part in ("command", "scheduler"):  # a worker has no more than before
-                megabytes = at_many(memory.seen.get(part, []))
-                print(f"  the {part} has {megabytes:.0f} MB then", flush=True)
+            said = ", ".join(f"{name}: {value}" for name, value in rows[-1].items())
+            print(said, *moved, flush=True)
     if table:
         with open(table, "w", newline="") as file:
             out = csv.DictWriter(file, rows[0], lineterminator="\n")

@@ -14,7 +14,7 @@ from mrp_check.rules.definitions import UNREADABLE
 from mrp_check.rules.python_names import OLD_NAME
 from mrp_check.rules.responses import NO_RESPONSE
 from mrp_check.running.node import Node
-from mrp_check.running.traces import DIED
+from mrp_check.running.traces import ends
 from mrp_check.running.words import last_words
 from mrp_check.sources import asked
 
@@ -182,8 +182,7 @@ def _works_under(case: Case, node: Node) -> str | None:
     for launched in case.observed.launches:
         seen = launched.seen.seen
         up = {one.node for one in [*seen.publications, *seen.subscriptions, *seen.services]}
-        found = map(DIED.search, launched.seen.until_asked())
-        died = {f"/{one['name']}" for one in found if one}
+        died = {*ends(launched.seen.until_asked())}
         paths = {path for path, name in launched.nodes.items() if name == node.name}
         if launched.file and paths & up - died:
             return launched.file

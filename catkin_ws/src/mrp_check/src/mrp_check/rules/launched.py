@@ -11,7 +11,7 @@ from mrp_check.contract.finding import NOTE, Finding, Where
 from mrp_check.contract.requirements import ANY, Rule
 from mrp_check.running.observing import Launched
 from mrp_check.running.starting import id_of_error
-from mrp_check.running.traces import DIED
+from mrp_check.running.traces import ends
 from mrp_check.running.words import code_text
 
 _GIVES_UP = "RLException: "
@@ -24,12 +24,11 @@ def _findings(case: Case) -> Iterator[Finding]:
         raised = [*_raised(case, launched, lines)]
         yield from raised
         waiting = {one.node for one in raised if one.severity == NOTE}
-        for text in lines:
-            died = DIED.search(text)
-            name = died and died["code"] and launched.nodes.get("/" + died["name"])
+        for path, code in ends(lines).items():
+            name = launched.nodes.get(path)
             # What ends by itself, too, has been said.
-            if died and name and name not in waiting and not case.nodes[name].not_up:
-                yield _died(case, launched, name, int(died["code"]))
+            if code and name and name not in waiting and not case.nodes[name].not_up:
+                yield _died(case, launched, name, code)
 
 
 def _where(launched: Launched) -> str:

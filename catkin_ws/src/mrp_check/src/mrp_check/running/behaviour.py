@@ -12,7 +12,7 @@ from mrp_check.confined.seen import DirectResult, LaunchResult, Message, Number,
 from mrp_check.contract.spec import Topic
 from mrp_check.running.node import FEW
 from mrp_check.running.planning import resolved
-from mrp_check.running.traces import DIED, ROS_SERVICES, ROS_TOPICS
+from mrp_check.running.traces import ROS_SERVICES, ROS_TOPICS, ends
 
 _NUMBER = re.compile(r"-?\d+(?:\.\d+)?")
 _STEADY = 0.3  # of the middle gap: by less differ most others of a publisher with a period
@@ -80,8 +80,7 @@ class Behaviour:
             asked = alone.asked or alone.ended_after or 0.0
             self.alone = Run(alone.name, direct.seen, asked)
         for path, one in launched:
-            ended = [found for found in map(DIED.search, one.until_asked()) if found]
-            self.ends |= any(f"/{e['name']}" == path and not e["code"] for e in ended)
+            self.ends |= ends(one.until_asked()).get(path) == 0
         self.runs = [*self.launched, *filter(None, [self.alone])]
 
     @property

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import re
-from typing import Any
+from typing import Any, Iterable
 
 from mrp_check.confined.places import Kind
 from mrp_check.confined.seen import Message, Number, Seen
@@ -14,7 +14,7 @@ from mrp_check.running.places import Places
 from mrp_check.running.planning import WRAP
 
 # What roslaunch says; only of what has died it says a code.
-DIED = re.compile(
+_DIED = re.compile(
     r"\[(?P<name>\S+)-\d+\] process has "
     r"(?:died \[pid \d+, exit code (?P<code>-?\d+)|finished cleanly)"
 )
@@ -22,6 +22,13 @@ DIED = re.compile(
 ROS_TOPICS = {"/rosout", "/rosout_agg", "/clock", "/tf", "/tf_static", "/diagnostics"}
 # What each node offers by itself.
 ROS_SERVICES = {"get_loggers", "set_logger_level", "tf2_frames"}
+
+
+def ends(lines: Iterable[str]) -> dict[str, int]:
+    """Return full name -> exit code of each node whose end roslaunch tells of in these lines: of
+    one that was started again, the first."""
+    found = [one for one in map(_DIED.search, lines) if one]
+    return {f"/{one['name']}": int(one["code"] or 0) for one in reversed(found)}
 
 
 class Traces:
@@ -66,11 +73,7 @@ class Traces:
 
     def died(self) -> int | None:
         """Return the exit code if roslaunch says that the node ended by itself, or None."""
-        for text in self.console:
-            found = DIED.search(text)
-            if found and "/" + found["name"] == self.path:
-                return int(found["code"] or 0)
-        return None
+        return ends(self.console).get(self.path)
 
     def errors(self) -> list[str]:
         """Return the lines that the node, started by itself, wrote to standard error, before it was
