@@ -41,7 +41,7 @@ def of_main(folder, body, is_up):
     """Return a case of one C++ node, whose main() has that body, from line 4 on."""
     text = f'int main()\n{{\n  ros::init(a, b, "a");\n  {body}\n}}\n'
     known = case(check_rules.make(folder / "some_pkg", src__a_DOT_cpp=text))
-    known.nodes = {"src/a.cpp": types.SimpleNamespace(is_up=is_up, direct=None)}
+    known.nodes = {"src/a.cpp": types.SimpleNamespace(name="a", is_up=is_up, direct=None)}
     return known
 
 
@@ -192,12 +192,14 @@ def test_a_placeholder_is_known_though_nothing_is_compiled(begin, arguments, lin
         ("t = n.createTimer(d, f);", False, [("spin", 4)]),
         ("t = n.createTimer(d, f);", True, []),
         ("t = n.createTimer(d, f);\n  ros::spin();", False, []),
+        ("if (argc != 2) { return 1; }", False, [("starts", 4)]),
     ],
-    ids=range(3),
+    ids=range(4),
 )
 def test_what_the_text_of_a_node_shows_that_was_not_built(body, is_up, found, tmp_path):
     known = of_main(tmp_path, body, is_up)
-    assert check_rules.told(unbuilt.RULE.findings(known)) == found
+    said = check_rules.told(unbuilt.RULE.findings(known), "warning", "note")
+    assert said == found
 
 
 @pytest.mark.parametrize(

@@ -13,6 +13,7 @@ from mrp_check.rules.deaf_loop import ASKS_KEYBOARD
 from mrp_check.rules.definitions import UNREADABLE
 from mrp_check.rules.python_names import OLD_NAME
 from mrp_check.rules.responses import NO_RESPONSE
+from mrp_check.rules.unbuilt import COUNTS
 from mrp_check.running.node import Node
 from mrp_check.running.traces import ends
 from mrp_check.running.words import last_words
@@ -40,8 +41,8 @@ _WAITS = (
     (r"KeyError: ", "a parameter", "param"),
     (r"IndexError: list index|ValueError: ", "arguments", "sys.argv["),
 )
-# How a program counts its arguments: beside the line at which it ends, it misses some.
-_COUNTS = re.compile(r"\bargc\s*[!<>=]|[<>=]\s*argc\b|\blen\(sys\.argv\)")
+# Beside the line at which a program ends, it misses some of the arguments that it counts.
+_COUNTS = re.compile(COUNTS)
 _ENDS = re.compile(r"\bexit\s*\(|\bquit\s*\(|\breturn\s+(-?[1-9]|EXIT_FAILURE)")
 _FEW = 6  # lines
 # The same of a launch file: an argument, a variable of the environment, or another's launch file.
