@@ -103,7 +103,8 @@ class Case(Workspace):
         _ = self._loading
         model = self.catkin.model
         self.catkin.start_building()
-        _ = self.environment
+        if self.sessions.have_begun:
+            _ = self.environment
         return model
 
     @functools.cached_property

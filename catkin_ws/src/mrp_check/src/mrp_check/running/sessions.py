@@ -49,6 +49,11 @@ class Sessions:
         """Begin one for each kind of plan."""
         self._begun = {kind: self._begin(kind) for kind in _KINDS}
 
+    @property
+    def have_begun(self) -> bool:
+        """Whether one waits for its plan."""
+        return bool(self._begun)
+
     def _begin(self, kind: str) -> _Begun:
         plan = self.workspace.given / f"{kind}.json"
         plan.unlink(missing_ok=True)  # that of another one, which has ended
