@@ -21,7 +21,7 @@ from mrp_check.running.node import Node
 from mrp_check.running.places import Places
 from mrp_check.running.sessions import Sessions
 from mrp_check.sources import node as sources_node
-from mrp_check.sources import reading
+from mrp_check.sources import reading, uses
 from mrp_check.sources.cpp_read import CppReader
 from mrp_check.sources.facts import Facts
 from mrp_check.student import launch as launching
@@ -121,7 +121,7 @@ class Case(Workspace):
     @functools.cached_property
     def facts(self) -> Facts:
         """What the sources say."""
-        if self.package.of_kind("message", "service", "action"):
+        if self.package.of_kind(*uses.DEFINITIONS):
             self.catkin.wait_until_built()  # before, there are no headers of its messages
         reader = CppReader(self, self.catkin.compile_commands(), self.headers)
         return reading.read(reader, self.spec, self.model, self.launch)

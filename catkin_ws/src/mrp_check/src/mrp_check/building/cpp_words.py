@@ -217,8 +217,8 @@ def _no_match(error: Error) -> Words:
 def _missing_header(error: Error) -> Words:
     header, package = error.match.group(1), error.package
     folder = uses.package_of_header(header)
-    if uses.is_old_name(package, folder, last_part(header).partition(".")[0]):
-        right = f"{package.name}/{last_part(header)}"
+    right = uses.renamed(package, header)
+    if right:
         said = (
             f"there is no package {folder}: {last_part(header)} is made by {package.name} itself."
         )

@@ -52,7 +52,7 @@ class Progress:
         print(f"{start}{said}", end=end, file=self.stream, flush=True)
 
     def _bar(self, done, of):
-        # Of all that has a progress, only a class needs it.
+        # Only a class needs it.
         from tqdm import tqdm
 
         plain_only = "utf" not in (self.stream.encoding or "").lower()

@@ -45,17 +45,17 @@ def _of_other_machines(case: Case) -> Iterator[Finding]:
     built = {file for target in case.model.targets.values() for file in target.sources}
     for file in sorted(built & {*package.files}):
         for header, line in uses.includes(package, file):
-            folder, name = uses.package_of_header(header), last_part(header)
-            if uses.is_old_name(package, folder, name.partition(".")[0]):
+            right, folder = uses.renamed(package, header), uses.package_of_header(header)
+            if right:
                 yield Finding(
                     "compile",
-                    f"{file} includes {header}, and there is no package {folder}: {name} is made by"
-                    f" {package.name} itself.",
+                    f"{file} includes {header}, and there is no package {folder}:"
+                    f" {last_part(header)} is made by {package.name} itself.",
                     file,
                     line,
-                    expected=f"{package.name}/{name}",
+                    expected=right,
                     seen=package.lines(file)[line - 1].strip(),
-                    fix=f"Write {package.name}/{name}.",
+                    fix=f"Write {right}.",
                 )
             if os.path.isabs(header) and not os.path.exists(header):
                 yield Finding(

@@ -18,7 +18,7 @@ from mrp_check.contract.words import braced, line_of
 from mrp_check.sources import uses
 
 ASKS_KEYBOARD = "This loop only asks the keyboard"
-# Whoever has a handler of one's own may end otherwise.
+# A node with a handler of its own may end in another way.
 _HANDLER = re.compile(r"\b(?:sigaction|signal)\s*\(")
 _HEAD = re.compile(r"\b(?P<word>while\s*(?=\()|for\s*(?=\(\s*;\s*;\s*\))|do\s*(?=\{))")
 _ASKS = re.compile(r"\b(?:ok|isShuttingDown|isStarted)\s*\(|\bexit\s*\(|\bthrow\b")
@@ -42,13 +42,13 @@ class _Loop(NamedTuple):
 
 def _findings(case: Case) -> Iterator[Finding]:
     for name, files in case.facts.sources.items():
-        texts = {f: uses.code(case.package, f) for f in files if case.package.kind(f) == "cpp"}
+        texts = uses.cpp_code(case.package, files)
         joined, node = "\n".join(texts.values()), case.nodes.get(name)
         if "ros::init" not in joined or _HANDLER.search(joined):
             continue
         direct = node.direct if node else None
         if direct and direct.asked is not None and direct.stopped_in is None:
-            continue  # its end was seen, and is told of
+            continue  # another finding says that it did not end
         for file, text in texts.items():
             for loop in _loops(text):
                 yield from _of(case, (name, file), loop, bool(node and node.is_up))

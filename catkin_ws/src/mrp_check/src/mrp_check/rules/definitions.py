@@ -23,7 +23,6 @@ from mrp_check.sources import uses
 from mrp_check.student.package import Package
 
 UNREADABLE = "which ROS cannot read"
-_KINDS = ("message", "service", "action")
 _BETWEEN = "---"  # a request and its response
 # Types of C++ and Python.
 _OF_LANGUAGES = {"int": "int32", "float": "float32", "double": "float64", "str": "string"}
@@ -31,7 +30,7 @@ _OF_LANGUAGES = {"int": "int32", "float": "float32", "double": "float64", "str":
 
 def _findings(case: Case) -> Iterator[Finding]:
     package, context = case.package, genmsg.MsgContext.create_default()
-    for path in sorted({*package.of_kind(*_KINDS)} & {*case.model.message_files}):
+    for path in sorted({*package.of_kind(*uses.DEFINITIONS)} & {*case.model.message_files}):
         for line, text in enumerate(package.lines(path), 1):
             if not text.startswith(_BETWEEN):
                 yield from _of_line(package, context, path, line, text)

@@ -10,26 +10,27 @@ from typing import Iterator
 
 from mrp_check.case import Case
 from mrp_check.confined.places import Kind
-from mrp_check.contract.finding import WARNING, Finding
+from mrp_check.contract.finding import WARNING, Finding, Line
 from mrp_check.contract.requirements import ANY, Rule
 from mrp_check.running.traces import ROS_TOPICS
 from mrp_check.sources import asked
 
+_ENDS = (Kind.PUBLISHER, Kind.SUBSCRIBER)
+
 
 def _findings(case: Case) -> Iterator[Finding]:
-    named: dict[Kind | str, dict[str, list[tuple[str, int]]]] = {}
+    named: dict[object, dict[str, list[Line]]] = {key: {} for key in (*_ENDS, "offers")}
     for node, files in case.facts.sources.items():
-        for place in case.facts.of(node, Kind.PUBLISHER, Kind.SUBSCRIBER):
+        for place in case.facts.of(node, *_ENDS):
             if place.text and place.text.startswith("/") and place.text not in ROS_TOPICS:
-                where = named.setdefault(place.kind, {}).setdefault(place.text, [])
-                where.append((place.file, place.line))
+                named[place.kind].setdefault(place.text, []).append((place.file, place.line))
         for one in asked.of(case.package, files):
             if one.what == "offers" and one.name.startswith("/"):
-                named.setdefault("offers", {}).setdefault(one.name, []).append((one.file, one.line))
+                named[one.what].setdefault(one.name, []).append((one.file, one.line))
     # What only one side names may be another package's.
-    published, heard = (named.get(kind, {}) for kind in (Kind.PUBLISHER, Kind.SUBSCRIBER))
+    published, heard = (named[kind] for kind in _ENDS)
     own = {name: published[name] + heard[name] for name in published.keys() & heard}
-    for name, places in {**own, **named.get("offers", {})}.items():
+    for name, places in {**own, **named["offers"]}.items():
         for file, line in {file: line for file, line in reversed(places)}.items():
             yield Finding(
                 "topic",

@@ -19,7 +19,6 @@ from mrp_check.student.manifest import declared, last_dependency
 from mrp_check.student.package import Package
 
 FILE = "CMakeLists.txt"
-_KINDS = ("message", "service", "action")
 # The commands that only message_generation brings.
 _BROUGHT = r"^\s*(add_(message|service|action)_files|generate_messages)\s*\("
 
@@ -32,7 +31,7 @@ def _findings(case: Case) -> Iterator[Finding]:
         path = f"srv/{service.type.split('/')[1]}.srv"
         for half, said in enumerate((service.request, service.response)):
             yield from _definition(package, path, said, half) if said else ()
-    files = [path for path in package.of_kind(*_KINDS) if path.count("/") <= 1]
+    files = [path for path in package.of_kind(*uses.DEFINITIONS) if path.count("/") <= 1]
     made = model.message_files or model.generate
     if not files and not made or not model.complete and model.catkin is None:
         return
@@ -181,7 +180,7 @@ def _definition(
 
 def _order(package: Package, model: Model) -> Iterator[Finding]:
     """Yield a finding for each target that uses a message's header before it is made."""
-    own = {name for path in package.of_kind(*_KINDS) for name in uses.generated(path)}
+    own = uses.made(package)
     for target in model.targets.values():
         used = [
             (file, line, header)

@@ -164,8 +164,8 @@ class Names(PythonRule):
         if {*self.source.stars} - {f"{name_of}.msg", f"{name_of}.srv"}:
             return  # it may have any name
         kinds = messages.UndefinedName, messages.UndefinedLocal, messages.ImportStarUsage
-        paths = self.package.of_kind("message", "service", "action") if self.source.stars else ()
-        known = {*self.source.imports, *(name for path in paths for name in uses.generated(path))}
+        made = uses.made(self.package) if self.source.stars else ()
+        known = {*self.source.imports, *made}
         for message in sorted(found, key=lambda message: message.lineno):
             if not isinstance(message, kinds):
                 continue

@@ -24,7 +24,7 @@ def _findings(case: Case) -> Iterator[Finding]:
     for name, files in case.facts.sources.items():
         node = case.nodes.get(name)
         yield from _arguments(case, node, files) if node else ()
-        texts = {f: uses.code(case.package, f) for f in files if case.package.kind(f) == "cpp"}
+        texts = uses.cpp_code(case.package, files)
         joined = "\n".join(texts.values())
         if not node or node.is_up or "ros::init" not in joined or _SPINS.search(joined):
             continue

@@ -120,10 +120,10 @@ def _syntax(package: Package, file: str, error: SyntaxError) -> Finding:
             hint = "A colon is missing at the end of the line."
         elif line > 1 and _opens_bracket(lines[line - 2]):
             line, hint = line - 1, "A bracket is opened there and never closed."
-    found = (line_of(match, 2) for match in _PRINT.finditer(package.text(file)))
-    others = [number for number in found if number != line]
-    if "call to 'print'" in text and others:
-        hint += f" So are the other lines with it: {', '.join(map(str, others))}."
+    if "call to 'print'" in text:
+        found = (line_of(match, 2) for match in _PRINT.finditer(package.text(file)))
+        others = [str(number) for number in found if number != line]
+        hint += f" So are the other lines with it: {', '.join(others)}." if others else ""
     return Finding(
         "python-syntax",
         f"Python cannot read {file}: {text}, in line {line}. {hint}".strip(),

@@ -10,7 +10,7 @@ import re
 import subprocess
 import sys
 import typing
-from typing import Callable, Iterator
+from typing import Callable, Iterable, Iterator
 
 from mrp_check.contract.resources import SHARES
 from mrp_check.contract.words import last_part, line_of, nearest
@@ -38,7 +38,7 @@ _LOOSE = set(
 )
 
 
-_KINDS = ("message", "service", "action")
+DEFINITIONS = ("message", "service", "action")  # kinds of files
 # The ending of a definition -> what is added to its name for what is made of it.
 _MADE = {
     "msg": ("",),
@@ -56,15 +56,28 @@ def generated(path: str) -> list[str]:
     return [name + added for added in _MADE[ending]]
 
 
-def is_old_name(package: Package, owner: str, made: str) -> bool:
+def made(package: Package) -> set[str]:
+    """Return the names of all that is made of a package's own definitions."""
+    return {name for path in package.of_kind(*DEFINITIONS) for name in generated(path)}
+
+
+def is_old_name(package: Package, owner: str, name: str) -> bool:
     """Return whether a package that nothing here names can only be this one: what is taken of it
     is made of a definition of this package's own."""
-    own = {name for path in package.of_kind(*_KINDS) for name in generated(path)}
+    if name not in made(package):
+        return False
     is_other = owner == package.name or exists(owner) or is_called_so(owner)
     files = [file for file in ("package.xml", "CMakeLists.txt") if file in package.files]
     texts = (_WORDS.sub("", package.text(file)) for file in files)
     is_named = any(re.search(rf"\b{re.escape(owner)}\b", text) for text in texts)
-    return made in own and not is_other and not is_named
+    return not is_other and not is_named
+
+
+def renamed(package: Package, header: str) -> str | None:
+    """Return what a header is called that is included by an old name of the package, or None."""
+    file = last_part(header)
+    is_old = is_old_name(package, package_of_header(header), file.partition(".")[0])
+    return f"{package.name}/{file}" if is_old else None
 
 
 class Use(typing.NamedTuple):
@@ -153,6 +166,11 @@ def code(package: Package, file: str) -> str:
     if kind == "python":
         return _PYTHON_COMMENT.sub("", text)
     return _XML_COMMENT.sub(blank, text) if kind == "launch" else without_comments(text)
+
+
+def cpp_code(package: Package, files: Iterable[str]) -> dict[str, str]:
+    """Return file -> code() of those that are C++ sources."""
+    return {file: code(package, file) for file in files if package.kind(file) == "cpp"}
 
 
 def includes(package: Package, file: str) -> Iterator[tuple[str, int]]:
