@@ -27,6 +27,7 @@ from mrp_check.rules import (
     rospy_calls,
     spin,
     swapped_sources,
+    typed,
     unfilled,
 )
 from mrp_check.sources import facts, node, python_facts, python_read, uses
@@ -118,7 +119,7 @@ def python_findings(folder, source, **others):
     known = facts.Facts(python={read.file: read}, relevant=[read.file])
     one = types.SimpleNamespace(package=package, facts=known)
     rules = python_names, message_fields, rospy_calls, early_timer, not_called, not_kept, responses
-    rules += (no_value, lists, early_callback, unfilled)
+    rules += (no_value, lists, early_callback, unfilled, typed)
     return [finding for file in rules for finding in file.RULE.findings(one)]
 
 

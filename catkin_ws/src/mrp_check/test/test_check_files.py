@@ -166,8 +166,9 @@ def test_comment_uses_nothing(source, tmp_path):
         ("catkin_package(", "add_executable(b src/a.cpp)\ncatkin_package(", 5, "comes after"),
         ("catkin_install", "add_executable(b src/aa.cpp)\ncatkin_install", 5, "src/a.cpp is meant"),
         ("catkin_package(", "catkin_package(INCLUDE_DIRS include ", 4, "no such folder"),
+        ("catkin_install", "add_rostest_gtest(t src/a.cpp src/t.cpp)\ncatkin_install", 5, "XML"),
     ],
-    ids=range(5),
+    ids=range(6),
 )
 def test_broken_cmake(old, new, line, says, tmp_path):
     assert CMAKE.count(old) == 1

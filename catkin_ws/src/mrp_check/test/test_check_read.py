@@ -18,12 +18,14 @@ from mrp_check.rules import (
     global_names,
     launched,
     load_manifest,
+    types_written,
     unbuilt,
     unread,
     unset,
     waiting,
 )
 from mrp_check.sources.facts import Facts
+from mrp_check.sources.python_source import Source
 from mrp_check.student.cmake import Model
 from mrp_check.student.launch import Launch
 
@@ -200,6 +202,41 @@ def test_what_the_text_of_a_node_shows_that_was_not_built(body, is_up, found, tm
     known = of_main(tmp_path, body, is_up)
     said = check_rules.told(unbuilt.RULE.findings(known), "warning", "note")
     assert said == found
+
+
+TAKES = "void heard(const {}& m) {{}}\n"
+PUBLISHES = 'int main() { p = n.advertise<some_pkg::Own>("/talk", 1); }\n'
+HEARS = 'int main() { n.subscribe("talk", 1, heard); }\n'
+
+
+@pytest.mark.parametrize(
+    ("publishes", "takes", "hears", "is_up", "found"),
+    [
+        (PUBLISHES, "std_msgs::String::ConstPtr", HEARS, False, [2]),
+        (PUBLISHES, "std_msgs::StringConstPtr", HEARS, False, [2]),
+        (PUBLISHES, "std_msgs::String", HEARS, False, [2]),
+        (PUBLISHES, "some_pkg::Own::ConstPtr", HEARS, False, []),
+        (PUBLISHES, "some_pkg::Own", HEARS, False, []),
+        (PUBLISHES, "std_msgs::String", HEARS, True, []),
+        (PUBLISHES.replace("some_pkg::", ""), "std_msgs::String", HEARS, False, [2]),
+        (PUBLISHES, "std_msgs::String", HEARS.replace("talk", "say"), False, []),
+        (PUBLISHES, "", HEARS.replace("scribe(", "scribe<std_msgs::Char>("), False, [2]),
+        (PUBLISHES, "", HEARS, False, []),
+    ],
+    ids=range(10),
+)
+def test_two_types_of_one_topic_in_what_did_not_run(
+    publishes, takes, hears, is_up, found, tmp_path
+):
+    files = {"src__a_DOT_cpp": publishes, "src__b_DOT_cpp": TAKES.format(takes) + hears}
+    python = "import rospy\nfrom some_pkg.msg import Own\nrospy.Publisher('talk', Own)\n"
+    package = check_rules.make(tmp_path / "some_pkg", **files, src__c_DOT_py=python)
+    known = case(package)
+    known.facts.sources["c"] = ["src/c.py"]
+    known.facts.python = {"src/c.py": Source("src/c.py", python)}
+    known.nodes = {file: types.SimpleNamespace(is_up=is_up) for file in known.facts.sources}
+    findings = [*types_written.RULE.findings(known)]
+    assert [(one.file, one.line) for one in findings] == [("src/b.cpp", line) for line in found]
 
 
 @pytest.mark.parametrize(

@@ -72,6 +72,36 @@ def test_what_python_2_made_a_list_is_not_used_as_one(use, error, tmp_path):
     assert [text.split()[-5] for text in said] == [error] * bool(error)
 
 
+MOVE = "def move(far):\n    gone = 0\n    while gone < far:\n        gone += 0.1\n"
+
+
+@pytest.mark.parametrize(
+    ("code", "found"),
+    [
+        ("far = input()\nwhile 0 < far:\n    pass", [("error", 1)]),
+        ("print(1 / input())", [("error", 1)]),
+        ("print(-input())", [("error", 1)]),
+        ("a = input()\nprint(abs(a))\nprint(abs(a))", [("error", 1)]),
+        ("rospy.Rate(input())", [("error", 1)]),
+        (f"{MOVE}move(input())", [("error", 5)]),
+        ("a = input()\nif a == 1:\n    pass", [("warning", 1)]),
+        (f"{MOVE}move(input())\nmove(1)", []),
+        (f"{MOVE}move(float(input()))", []),
+        ("a = input()\nif a == '1':\n    pass", []),
+        ("a = input()\na = int(a)\nprint(a - 1)", []),
+        ("print(input() + 'a', input() * 2)", []),
+        ("print('%s' % input())", []),
+        ("try:\n    print(1 - input())\nexcept TypeError:\n    pass", []),
+        ("def input():\n    return 1\nprint(1 - input())", []),
+        ("if input() < input():\n    pass", []),
+    ],
+    ids=range(16),
+)
+def test_what_is_typed_is_a_text(code, found, tmp_path):
+    said = check_rules.python_findings(tmp_path, f"import rospy\n{code}\n")
+    assert [(one.severity, one.line - 1) for one in said] == found
+
+
 @pytest.mark.parametrize(
     ("module", "others", "found"),
     [

@@ -12,8 +12,11 @@ from mrp_check.case import Case
 from mrp_check.contract.finding import NOTE, WARNING, Finding
 from mrp_check.contract.requirements import Requirement, Rule
 from mrp_check.contract.words import nearest, perhaps
-from mrp_check.student.cmake import Call, Model
+from mrp_check.student.cmake import Call, Model, parsed
+from mrp_check.student.package import Package
 
+_LAUNCH_FILE = {"add_rostest": 0, "add_rostest_gtest": 1, "add_rostest_gmock": 1}  # its place
+_NO_LAUNCH_FILES = (".cpp", ".cc", ".cxx", ".py")
 _NO_FOLDERS = ("BEFORE", "AFTER", "SYSTEM")
 
 
@@ -23,6 +26,7 @@ def _findings(case: Case) -> Iterator[Finding]:
     yield from _no_libraries(case.model)
     yield from _no_system_libraries(case.model)
     yield from _no_folders(case.model)
+    yield from _no_launch_files(case.package)
 
 
 def _no_sources(case: Case) -> Iterator[Finding]:
@@ -115,6 +119,26 @@ def _no_folders(model: Model) -> Iterator[Finding]:
                 )
                 finding.severity = NOTE
                 yield finding
+
+
+def _no_launch_files(package: Package) -> Iterator[Finding]:
+    """What is built has no tests: CMake passes over these calls, so that they are read as text.
+
+    https://docs.ros.org/en/noetic/api/rostest/html/ says what the macros take.
+    """
+    file = "CMakeLists.txt"
+    for call in parsed(package.text(file), file):
+        names = call.arguments[_LAUNCH_FILE.get(call.command, len(call.arguments)) :][:1]
+        for name in names:
+            if name.endswith(_NO_LAUNCH_FILES):
+                yield _missing(
+                    call,
+                    name,
+                    f"{call.command}() takes the launch file of a test here, and {name} is a"
+                    " source: rostest reads it as XML, and fails.",
+                    "a file such as test/some.test, which starts the test",
+                    f"Name the launch file first, and {name} after it.",
+                )
 
 
 RULE = Rule(

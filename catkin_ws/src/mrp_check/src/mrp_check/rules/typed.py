@@ -1,0 +1,99 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What somebody types is a text in Python 3, and no number.
+
+In Python 2, input() made a number of it. https://docs.python.org/3/whatsnew/3.0.html#builtins
+"""
+
+from __future__ import annotations
+
+import ast
+from typing import Iterator
+
+from mrp_check.contract.finding import ERROR, WARNING, Finding
+from mrp_check.contract.requirements import Rule
+from mrp_check.sources.python_rule import PythonRule, of_sources
+
+_ORDERS = (ast.Lt, ast.LtE, ast.Gt, ast.GtE)
+_EQUALITIES = (ast.Eq, ast.NotEq)
+# A text plus a text, a text times a whole number, and a text % its values are texts.
+_NUMERIC = (ast.Sub, ast.Div, ast.FloorDiv, ast.Pow)
+_OF_NUMBERS = {"abs", "range", "round", "rospy.Duration", "rospy.Rate", "rospy.sleep"}
+_NUMBER = (int, float)
+
+
+class Typed(PythonRule):
+    def findings(self) -> Iterator[Finding]:
+        said: set[ast.Call] = set()
+        for node, operand, does in self._uses():
+            call = self._typed(operand)
+            if call is None or call in said or self.source.is_guarded(node, "TypeError"):
+                continue
+            said.add(call)
+            is_equality = isinstance(node, ast.Compare) and isinstance(node.ops[0], _EQUALITIES)
+            follows = "Python ends with a TypeError when it comes there"
+            yield self.finding(
+                "python-names",
+                f"In Python 3, input() returns a text, and line {node.lineno} {does}:"
+                f" {'they are never equal' if is_equality else follows}.",
+                call,
+                severity=WARNING if is_equality else ERROR,
+                expected="float(input(...)), or int(input(...))",
+                fix="Write float(...) around input(...); or int(...) for whole numbers.",
+            )
+
+    def _uses(self) -> Iterator[tuple[ast.expr, ast.expr, str]]:
+        """Yield what needs a number: all of it, the part that is one, and what it does with it."""
+        for node in self.source.nodes(ast.expr):
+            if isinstance(node, ast.Compare) and isinstance(node.ops[0], _ORDERS + _EQUALITIES):
+                for one, other in (pair := (node.left, node.comparators[0])), pair[::-1]:
+                    if self._is_number(other):
+                        yield node, one, "compares it with a number"
+            elif isinstance(node, ast.BinOp) and isinstance(node.op, _NUMERIC):
+                yield node, node.left, "computes with it"
+                yield node, node.right, "computes with it"
+            elif isinstance(node, ast.UnaryOp) and isinstance(node.op, (ast.USub, ast.UAdd)):
+                yield node, node.operand, "computes with it"
+            elif isinstance(node, ast.Call) and len(node.args) == 1:
+                name = self.source.dotted(node.func) or getattr(node.func, "id", "")
+                if name in _OF_NUMBERS and not self.source.definition(node.func):
+                    yield node, node.args[0], f"gives it to {name}()"
+
+    def _typed(self, node: ast.expr, depth: int = 0) -> ast.Call | None:
+        """Return the call of input() that an expression is the value of, or None."""
+        if isinstance(node, ast.Call):
+            is_own = "input" in self.source.imports or self.source.definition(node.func)
+            is_input = isinstance(node.func, ast.Name) and node.func.id == "input"
+            return node if is_input and not is_own else None
+        key = self.source.key(node) if isinstance(node, (ast.Name, ast.Attribute)) else None
+        stored = self.source.stored(key)
+        if key and stored == [None] and depth < 2:
+            given = self._given(key[0], key[1])
+            return self._typed(given, depth + 1) if given else None
+        return self._typed(stored[0], depth) if len(stored) == 1 and stored[0] is not node else None
+
+    def _given(self, function: ast.AST, name: str) -> ast.expr | None:
+        """Return what a parameter of a function is in its only call, by its place."""
+        if not isinstance(function, ast.FunctionDef):
+            return None
+        names = [one.arg for one in function.args.args if one.arg != "self"]
+        calls = [c for c in self.source.nodes(ast.Call) if self._calls(c, function)]
+        if len(calls) != 1 or name not in names or names.index(name) >= len(calls[0].args):
+            return None
+        return calls[0].args[names.index(name)]
+
+    def _calls(self, call: ast.Call, function: ast.FunctionDef) -> bool:
+        named = getattr(call.func, "id", None) or getattr(call.func, "attr", None)
+        return named == function.name
+
+    def _is_number(self, node: ast.expr) -> bool:
+        """Return whether an expression is a number, as far as the source says it plainly."""
+        if isinstance(node, ast.BinOp):
+            return isinstance(node.op, (*_NUMERIC, ast.Mult))
+        stored = self.source.stored(self.source.key(node))
+        values = [self.source.value(one) for one in stored if one is not None] or [
+            self.source.value(node)
+        ]
+        return all(isinstance(value, _NUMBER) for value in values)
+
+
+RULE = Rule("static", 30, ("facts",), of_sources(Typed), also=("python-names",))
