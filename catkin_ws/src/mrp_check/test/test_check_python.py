@@ -162,9 +162,21 @@ def test_a_package_by_its_old_name(manifest, severity, tmp_path):
     assert ("which is called some_pkg" in finding.message) == (severity == "error")
 
 
-def test_each_print_of_python_2_is_named(tmp_path):
-    (finding,) = check_rules.python_findings(tmp_path, 'print "a"\nprint("b")\nprint "c"\n')
-    assert finding.line == 1 and "So are the other lines with it: 3." in finding.message
+EXCEPT = "try:\n    pass\nexcept OSError{} e:\n    pass\n"
+
+
+@pytest.mark.parametrize(
+    ("text", "first", "other"),
+    [
+        ('print "a"\nprint("b")\nprint "c"\n', 1, 3),
+        (EXCEPT.format(",") + EXCEPT.format(" as") + EXCEPT.format(","), 3, 11),
+    ],
+    ids=range(2),
+)
+def test_each_line_of_python_2_is_named(text, first, other, tmp_path):
+    (finding,) = check_rules.python_findings(tmp_path, text)
+    said = f"So are the other lines with it: {other}."
+    assert finding.line == first and said in finding.message
 
 
 def test_what_is_not_kept_is_a_note(tmp_path):

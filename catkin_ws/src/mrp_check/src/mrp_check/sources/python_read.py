@@ -21,6 +21,7 @@ _SYNTAX = (
     (r"unindent does not match|unexpected indent", "The line is not indented as those around it."),
     (r"inconsistent use of tabs", "Tabs and spaces are mixed: use four spaces for each level."),
     (r"Missing parentheses in call to 'print'", "In Python 3, print is a function: print(...)."),
+    (r"multiple exception types", "In Python 3, write: except NAME as VARIABLE."),
     (r"Maybe you meant '=='|cannot assign to", "= gives a value, == compares."),
     (r"forgot a comma", "A comma is missing, or a bracket is not closed."),
     (
@@ -50,6 +51,10 @@ _IN_PYTHON3: Sequence[tuple[str, Callable[[str], str]]] = (
     (r"Maybe you meant '=='", lambda text: _EQUAL.sub(r"\1==", text)),
     (r"inconsistent use of tabs|unindent does not match", lambda text: text.expandtabs(8)),
 )
+
+
+# What Python says -> what stands in each line of the kind.
+_OF_PYTHON2 = (("call to 'print'", _PRINT), ("multiple exception types", _EXCEPT))
 
 
 def _printed(statement: re.Match[str]) -> str:
@@ -120,10 +125,11 @@ def _syntax(package: Package, file: str, error: SyntaxError) -> Finding:
             hint = "A colon is missing at the end of the line."
         elif line > 1 and _opens_bracket(lines[line - 2]):
             line, hint = line - 1, "A bracket is opened there and never closed."
-    if "call to 'print'" in text:
-        found = (line_of(match, 2) for match in _PRINT.finditer(package.text(file)))
-        others = [str(number) for number in found if number != line]
-        hint += f" So are the other lines with it: {', '.join(others)}." if others else ""
+    for said, shape in _OF_PYTHON2:
+        if re.search(said, text):
+            found = (line_of(match, 2) for match in shape.finditer(package.text(file)))
+            others = [str(number) for number in found if number != line]
+            hint += f" So are the other lines with it: {', '.join(others)}." if others else ""
     return Finding(
         "python-syntax",
         f"Python cannot read {file}: {text}, in line {line}. {hint}".strip(),
