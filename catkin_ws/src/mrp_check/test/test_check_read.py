@@ -14,6 +14,7 @@ from mrp_check.contract.finding import ERROR, NOTE, WARNING, Finding
 from mrp_check.rules import (
     arguments,
     deaf_loop,
+    deaf_python,
     definitions,
     global_names,
     launched,
@@ -202,6 +203,31 @@ def test_what_the_text_of_a_node_shows_that_was_not_built(body, is_up, found, tm
     known = of_main(tmp_path, body, is_up)
     said = check_rules.told(unbuilt.RULE.findings(known), "warning", "note")
     assert said == found
+
+
+@pytest.mark.parametrize(
+    ("loop", "is_up", "found"),
+    [
+        ("while True:\n    print(input())", False, [4]),
+        ("while 1:\n    time.sleep(1)", False, [4]),
+        ("def ask():\n    return input()\nwhile True:\n    ask()", False, [6]),
+        ("while True:\n    print(input())", True, []),
+        ("while True:\n    rospy.sleep(1)", False, []),
+        ("while True:\n    rate.sleep()", False, []),
+        ("while True:\n    if input() == 'q':\n        break", False, []),
+        ("while not rospy.is_shutdown():\n    print(input())", False, []),
+        ("def say():\n    p.publish(1)\nwhile True:\n    say()", False, []),
+        ("while near:\n    print(input())", False, []),
+    ],
+    ids=range(10),
+)
+def test_a_loop_in_python_asks_whether_the_node_is_to_go_on(loop, is_up, found, tmp_path):
+    text = f"import rospy\nimport time\nrospy.init_node('a')\n{loop}\n"
+    package = check_rules.make(tmp_path / "some_pkg", src__a_DOT_py=text)
+    facts = Facts(sources={"a": ["src/a.py"]}, python={"src/a.py": Source("src/a.py", text)})
+    nodes = {"a": types.SimpleNamespace(is_up=is_up)}
+    known = types.SimpleNamespace(package=package, facts=facts, nodes=nodes)
+    assert [one.line for one in deaf_python.RULE.findings(known)] == found
 
 
 TAKES = "void heard(const {}& m) {{}}\n"
