@@ -96,4 +96,4 @@ class Typed(PythonRule):
         return all(isinstance(value, _NUMBER) for value in values)
 
 
-RULE = Rule("static", 30, ("facts",), of_sources(Typed), also=("python-names",))
+RULE = Rule("static", 35, ("facts",), of_sources(Typed), also=("python-names",))
