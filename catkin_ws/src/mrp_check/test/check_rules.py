@@ -28,7 +28,9 @@ from mrp_check.rules import (
     spin,
     swapped_sources,
     typed,
+    unbound,
     unfilled,
+    unheard,
 )
 from mrp_check.sources import facts, node, python_facts, python_read, uses
 from mrp_check.student import cmake, manifest
@@ -119,7 +121,7 @@ def python_findings(folder, source, **others):
     known = facts.Facts(python={read.file: read}, relevant=[read.file])
     one = types.SimpleNamespace(package=package, facts=known)
     rules = python_names, message_fields, rospy_calls, early_timer, not_called, not_kept, responses
-    rules += (no_value, lists, early_callback, unfilled, typed)
+    rules += (no_value, lists, early_callback, unfilled, typed, unbound, unheard)
     return [finding for file in rules for finding in file.RULE.findings(one)]
 
 

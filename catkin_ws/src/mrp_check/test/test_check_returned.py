@@ -72,6 +72,99 @@ def test_what_python_2_made_a_list_is_not_used_as_one(use, error, tmp_path):
     assert [text.split()[-5] for text in said] == [error] * bool(error)
 
 
+ASK = """def ask():
+    try:
+        return service(1)
+    except rospy.ServiceException:
+        print("no")
+"""
+
+
+@pytest.mark.parametrize(
+    ("code", "found"),
+    [
+        (f"{ASK}print(ask().sum)", [("warning", 6)]),
+        (f"{ASK}a = ask()\nprint(a[0])", [("warning", 7)]),
+        (f"{ASK}a = ask()\nif a:\n    print(a.sum)", []),
+        (f"{ASK}    raise\n".replace("print", "str") + "print(ask().sum)", []),
+        (f"{ASK}    return [1]\nprint(ask()[0])", []),
+        (f"{ASK}try:\n    print(ask().sum)\nexcept AttributeError:\n    pass", []),
+    ],
+    ids=range(6),
+)
+def test_what_a_call_gives_that_failed(code, found, tmp_path):
+    said = check_rules.python_findings(tmp_path, f"import rospy\n{code}\n")
+    assert [(one.severity, one.line - 1) for one in said if "returns nothing" in one.message] == found
+
+
+@pytest.mark.parametrize(
+    ("code", "found"),
+    [
+        ("if c == 1:\n    a = 1\nelif c == 2:\n    a = 2\nprint(a)", [5]),
+        ("def f(c):\n    if c:\n        a = 1\n    return a", [4]),
+        ("try:\n    a = f()\nexcept ValueError:\n    print(1)\nprint(a)", [5]),
+        ("try:\n    a = f()\nexcept ValueError:\n    print(1)\nwhile a > 0:\n    pass", [5]),
+        ("try:\n    a = f()\nexcept rospy.ROSInterruptException:\n    pass\nprint(a)", []),
+        ("try:\n    a = 1\n    f()\nexcept ValueError:\n    print(1)\nprint(a)", []),
+        ("try:\n    a = f()\nexcept ValueError:\n    raise\nprint(a)", []),
+        ("try:\n    a = f()\nexcept ValueError:\n    a = 1\nprint(a)", []),
+        ("if c == 1:\n    a = 1\nelse:\n    sys.exit(1)\nprint(a)", []),
+        ("def out():\n    exit()\nif c:\n    a = 1\nelse:\n    out()\nprint(a)", []),
+        ("if c > 1:\n    a = 1\nelif c <= 1:\n    a = 2\nprint(a)", []),
+        ("a = 0\nif c:\n    a = 1\nprint(a)", []),
+        ("if c:\n    a = 1\nif c:\n    print(a)", []),
+        ("for c in 1, 2:\n    if c == 1:\n        a = 1\n    print(a)", []),
+        ("if c:\n    a = 1\nprint(c and a)", []),
+        ("def f(a):\n    if a:\n        a = 1\n    print(a)", []),
+        ("if c:\n    for b in 1, 2:\n        a = b\nelse:\n    a = 2\nprint(a)", []),
+    ],
+    ids=range(17),
+)
+def test_each_way_gives_a_value(code, found, tmp_path):
+    said = check_rules.python_findings(tmp_path, f"import rospy\nimport sys\n{code}\n")
+    assert [one.line - 2 for one in said if "has no value if" in one.message] == found
+
+
+HEARD = """def heard(message):
+    global pose
+    pose = message.data
+    tell()
+def tell():
+    print(pose)
+rospy.Subscriber("pose", String, heard)
+"""
+HEARS = """class Node:
+    def __init__(self):
+        rospy.Subscriber("pose", String, self.heard)
+    def heard(self, message):
+        self.pose = message.data
+        print(self.pose)
+    def answer(self, request):
+        return self.pose
+"""
+
+
+@pytest.mark.parametrize(
+    ("code", "found"),
+    [
+        (f"{HEARD}print(pose)", [8]),
+        (f"{HEARD}def answer(request):\n    return pose + pose", [9]),
+        (HEARS, [8]),
+        (HEARD, []),
+        (f"pose = None\n{HEARD}print(pose)", []),
+        (f"{HEARD}rospy.wait_for_message('pose', String)\nprint(pose)", []),
+        (f"{HEARD}try:\n    print(pose)\nexcept NameError:\n    pass", []),
+        (HEARS.replace("Node:", "Node(Base):"), []),
+        (HEARS.replace("    def __init__", "    pose = 0\n    def __init__"), []),
+    ],
+    ids=range(9),
+)
+def test_what_a_message_gives_is_not_there_before_it(code, found, tmp_path):
+    head = "import rospy\nfrom std_msgs.msg import String\nfrom base import Base\n"
+    said = check_rules.python_findings(tmp_path, f"{head}{code}\n", base_DOT_py="class Base: 1\n")
+    assert [one.line - 3 for one in said if "Only a message" in one.message] == found
+
+
 MOVE = "def move(far):\n    gone = 0\n    while gone < far:\n        gone += 0.1\n"
 
 

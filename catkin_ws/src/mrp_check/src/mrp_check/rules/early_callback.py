@@ -47,7 +47,7 @@ class EarlyCallback(PythonRule):
         return {
             key: statements[0]
             for key, statements in made.items()
-            if len(self.source.stored(key)) == len(statements) and not _may_be_inherited(key)
+            if len(self.source.stored(key)) == len(statements) and not may_be_inherited(key)
         }
 
     def _after(self, call: ast.Call) -> list[ast.stmt]:
@@ -75,7 +75,7 @@ class EarlyCallback(PythonRule):
         return used
 
 
-def _may_be_inherited(key: Variable) -> bool:
+def may_be_inherited(key: Variable) -> bool:
     """Return whether a variable is a member that its class, or another one, may have, too."""
     class_, name = key
     if not isinstance(class_, ast.ClassDef):
