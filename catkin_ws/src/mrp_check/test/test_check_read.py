@@ -208,18 +208,21 @@ def test_what_the_text_of_a_node_shows_that_was_not_built(body, is_up, found, tm
 @pytest.mark.parametrize(
     ("loop", "is_up", "found"),
     [
-        ("while True:\n    print(input())", False, [4]),
+        ("while True:\n    print(1)", False, [4]),
         ("while 1:\n    time.sleep(1)", False, [4]),
-        ("def ask():\n    return input()\nwhile True:\n    ask()", False, [6]),
-        ("while True:\n    print(input())", True, []),
-        ("while True:\n    rospy.sleep(1)", False, []),
-        ("while True:\n    rate.sleep()", False, []),
-        ("while True:\n    if input() == 'q':\n        break", False, []),
-        ("while not rospy.is_shutdown():\n    print(input())", False, []),
+        ("while True:\n    rospy.sleep(1)", False, [4]),
+        ("while True:\n    rate.sleep()", False, [4]),
+        ("def ask():\n    return 1\nwhile True:\n    ask()", False, [6]),
+        ("while True:\n    print(1)", True, []),
+        ("while True:\n    if end():\n        break", False, []),
+        ("while not rospy.is_shutdown():\n    print(1)", False, []),
         ("def say():\n    p.publish(1)\nwhile True:\n    say()", False, []),
-        ("while near:\n    print(input())", False, []),
+        ("while near:\n    print(1)", False, []),
+        ("while not rospy.is_shutdown():\n    print(input())", True, [5]),
+        ("def input():\n    pass\nprint(input())", True, []),
+        ("rospy.init_node('b', disable_signals=True)\nprint(input())", False, []),
     ],
-    ids=range(10),
+    ids=range(13),
 )
 def test_a_loop_in_python_asks_whether_the_node_is_to_go_on(loop, is_up, found, tmp_path):
     text = f"import rospy\nimport time\nrospy.init_node('a')\n{loop}\n"

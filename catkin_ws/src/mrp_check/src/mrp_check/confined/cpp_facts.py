@@ -6,6 +6,7 @@ Usage: cpp_facts.py TASK    (a places.Task, as JSON; a places.Answer is printed)
 
 from __future__ import annotations
 
+import ctypes
 import os
 import pathlib
 import re
@@ -40,6 +41,8 @@ Arguments = Sequence[Cursor]  # of a call
 def main() -> None:
     from clang import cindex
 
+    # A source may be in any encoding, and clang's names are what it has read.
+    cindex.c_interop_string.value = property(_text)
     task = crossing.from_json(Task, sys.argv[1])
     answer = {}
     for file, *arguments in task.units:
@@ -49,6 +52,11 @@ def main() -> None:
         except cindex.TranslationUnitLoadError as error:
             answer[file] = Said(errors=[str(error)])
     sys.stdout.write(crossing.to_json(answer))
+
+
+def _text(name: ctypes.c_char_p) -> str | None:
+    data = ctypes.c_char_p.value.__get__(name)
+    return None if data is None else data.decode(errors="replace")
 
 
 def parsed(cindex: types.ModuleType, file: str, arguments: list[str], headers: str) -> Cursor:

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A loop of a Python node that did not run asks rospy.is_shutdown(), or does what rospy ends.
+"""Ctrl-C ends a Python node: nothing waits for the keyboard, and no loop goes on.
 
-rospy's handler of SIGINT keeps KeyboardInterrupt back: a loop that only computes, waits for the
-keyboard or calls time.sleep() goes on. What it does on Ctrl-C is seen of a node that runs.
+rospy's handler of SIGINT keeps KeyboardInterrupt back: input() waits on, and so does a loop that
+only computes or sleeps. Nor does rospy.sleep() raise an error, unless time is simulated.
 https://github.com/ros/ros_comm/blob/noetic-devel/clients/rospy/src/rospy/core.py
 """
 
@@ -18,28 +18,42 @@ from mrp_check.sources.python_source import Source
 
 _LEAVES = (ast.Break, ast.Raise, ast.Return)
 # What asks, what ends the program, and what raises an error of rospy's once the node is to end.
-_ENDS = "_exit exit is_shutdown kill publish quit signal_shutdown sleep spin wait_for_message".split()
+_ENDS = "_exit exit is_shutdown kill publish quit signal_shutdown spin wait_for_message".split()
 
 
 def _findings(case: Case) -> Iterator[Finding]:
     for name, files in case.facts.sources.items():
         node = case.nodes.get(name)
         for source in filter(None, map(case.facts.python.get, files)):
-            if node and not node.is_up and _is_rospys(source):
-                for loop in source.nodes(ast.While):
-                    if _is_deaf(source, loop):
-                        yield Finding(
-                            "exit",
-                            "This loop never ends: it does not ask rospy.is_shutdown(), so Ctrl-C"
-                            " does not end the node.",
-                            source.file,
-                            loop.lineno,
-                            WARNING,
-                            expected="while not rospy.is_shutdown():",
-                            seen=case.package.lines(source.file)[loop.lineno - 1].strip(),
-                            fix="Write while not rospy.is_shutdown():.",
-                            node=name,
-                        )
+            deaf = _deaf(source, bool(node and node.is_up)) if _is_rospys(source) else None
+            if deaf:
+                line, said, expected, fix = deaf
+                seen = case.package.lines(source.file)[line - 1].strip()
+                place = source.file, line, WARNING
+                yield Finding("exit", said, *place, expected, seen, fix, node=name)
+
+
+def _deaf(source: Source, is_up: bool) -> tuple[int, str, str, str] | None:
+    """Return (line, what is wrong, what is expected, what to do) of the first place, or None.
+
+    is_up: whether the node ran; then it was seen what its loops do
+    """
+    for loop in source.nodes(ast.While):
+        if not is_up and _goes_on(source, loop):
+            wanted = "while not rospy.is_shutdown():"
+            said = "This loop never ends: it does not ask rospy.is_shutdown(), so Ctrl-C does not"
+            return loop.lineno, f"{said} end the node.", wanted, f"Write {wanted}"
+    for call in source.nodes(ast.Call):
+        if isinstance(call.func, ast.Name) and call.func.id == "input":
+            if not source.definition(call.func) and "input" not in source.imports:
+                return (
+                    call.lineno,
+                    "Ctrl-C does not end the node while it waits for the keyboard: rospy keeps"
+                    " KeyboardInterrupt back, until somebody presses Enter.",
+                    "rospy.init_node(..., disable_signals=True)",
+                    "Let rospy.init_node() have disable_signals=True; then Ctrl-C ends input().",
+                )
+    return None
 
 
 def _is_rospys(source: Source) -> bool:
@@ -48,7 +62,8 @@ def _is_rospys(source: Source) -> bool:
     return bool(calls) and not any(k.arg == "disable_signals" for c in calls for k in c.keywords)
 
 
-def _is_deaf(source: Source, loop: ast.While) -> bool:
+def _goes_on(source: Source, loop: ast.While) -> bool:
+    """Return whether a loop goes on for ever, whatever is asked of the node."""
     if not isinstance(loop.test, ast.Constant) or not loop.test.value:
         return False
     within = [node for one in loop.body for node in ast.walk(one)]
@@ -60,11 +75,7 @@ def _is_deaf(source: Source, loop: ast.While) -> bool:
     if any(isinstance(node, _LEAVES) for node in within):
         return False
     named = (node for node in within if isinstance(node, (ast.Attribute, ast.Name)))
-    return not any(
-        (getattr(node, "attr", None) or getattr(node, "id", "")) in _ENDS
-        and source.dotted(node) != "time.sleep"
-        for node in named
-    )
+    return not any(getattr(one, "attr", getattr(one, "id", "")) in _ENDS for one in named)
 
 
 RULE = Rule("stop", 31, ("nodes",), _findings, also=("exit",), only=ANY)

@@ -37,8 +37,8 @@ def _where(launched: Launched) -> str:
 
 def _raised(case: Case, launched: Launched, lines: list[str]) -> Iterator[Finding]:
     found = case.places.traceback(lines)
-    if found is None:
-        return
+    if found is None or found[1] == "KeyboardInterrupt":
+        return  # that is Ctrl-C
     place, kind, text = found
     nodes = [n for n in launched.nodes.values() if place[0] in case.places.sources(n)]
     name = nodes[0] if nodes else None

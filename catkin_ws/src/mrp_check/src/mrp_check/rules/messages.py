@@ -61,6 +61,8 @@ def _in_cmake(case: Case, files: list[str]) -> Iterator[Finding]:
         )
     for path in files:
         file = last_part(path)
+        if _is_of_action(path, model):
+            continue
         if path not in model.message_files and (not own or file[:-4] in own):
             command = f"add_{case.package.kind(path)}_files"
             elsewhere = _elsewhere(case, path)
@@ -80,6 +82,13 @@ def _in_cmake(case: Case, files: list[str]) -> Iterator[Finding]:
             f"generate_messages(...) after {call.command}(...)",
             "Add generate_messages(DEPENDENCIES std_msgs).",
         )
+
+
+def _is_of_action(path: str, model: Model) -> bool:
+    """Return whether a message is one of those that an action is made into: code is made of them."""
+    named = re.fullmatch(r"(?:.*/)?(\w+?)(?:Action)?(?:Goal|Feedback|Result)?\.msg", path)
+    actions = (last_part(one)[: -len(".action")] for one in model.message_files)
+    return named is not None and named[1] in actions
 
 
 def _elsewhere(case: Case, path: str) -> str | None:
