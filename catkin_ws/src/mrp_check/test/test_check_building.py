@@ -164,6 +164,20 @@ def test_the_compilers_error_has_another_cause(line, text, said, tmp_path):
     assert said in cpp_words.of(package, cpp_words.Problem("src/a.cpp", 2, text, "")).said
 
 
+def test_what_stands_behind_a_header_that_is_not_there(tmp_path):
+    source = "#include <ros/ros.h>\n#include <some_pkg/no.h>\nauto f = boost::bind(g, _1);\n"
+    package = check_rules.make(tmp_path, src__a_DOT_cpp=source)
+    output = f"{tmp_path}/src/a.cpp:2:10: fatal error: some_pkg/no.h: No such file or directory\n"
+    known = types.SimpleNamespace(
+        package=package,
+        package_folder=tmp_path,
+        built=types.SimpleNamespace(ok=False, output=output),
+        model=check_rules.model_of(package),
+        spec=types.SimpleNamespace(is_contract=False),
+    )
+    assert check_rules.told(compile_rule.RULE.findings(known)) == [("compile", 2), ("compile", 3)]
+
+
 def test_headers_are_looked_for_where_nothing_is_compiled(tmp_path):
     source = '#include "/home/nobody/a.h"\n#include <old/Go.h>\n#include <far/No.h>\n'
     package = check_rules.make(tmp_path, src__a_DOT_cpp=source, srv__Go_DOT_srv="---\n")

@@ -259,6 +259,13 @@ def test_what_is_correct_is_not_flagged(node, changes, tmp_path, headers):
     assert told(findings(tmp_path, headers, node, replaced(node, *changes))) == []
 
 
+def test_a_source_may_be_in_any_encoding(tmp_path, headers):
+    text = SOURCES[PUBLISHER].replace("namespace of node", "\xd7\xd4 namespace of node")
+    check_rules.make(tmp_path, src__a_DOT_cpp=text.encode("latin-1"))
+    places = said_of(tmp_path, headers).places
+    assert [place.text for place in places if place.kind is Kind.PUBLISHER] == ["great_topic"]
+
+
 def test_headers_that_do_not_fit_are_read_again(tmp_path, headers):
     check_rules.make(tmp_path, src__a_DOT_cpp=SOURCES[PUBLISHER])
     said = said_of(tmp_path, headers)

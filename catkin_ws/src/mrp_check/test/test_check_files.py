@@ -166,9 +166,10 @@ def test_comment_uses_nothing(source, tmp_path):
         ("catkin_package(", "add_executable(b src/a.cpp)\ncatkin_package(", 5, "comes after"),
         ("catkin_install", "add_executable(b src/aa.cpp)\ncatkin_install", 5, "src/a.cpp is meant"),
         ("catkin_package(", "catkin_package(INCLUDE_DIRS include ", 4, "no such folder"),
+        ("DESTINATION bin", "DESTINATION $(CATKIN_PACKAGE_BIN_DESTINATION)", 5, "braces"),
         ("catkin_install", "add_rostest_gtest(t src/a.cpp src/t.cpp)\ncatkin_install", 5, "XML"),
     ],
-    ids=range(6),
+    ids=range(7),
 )
 def test_broken_cmake(old, new, line, says, tmp_path):
     assert CMAKE.count(old) == 1
@@ -235,6 +236,16 @@ def test_what_asks_for_python_may_not_be_executable_either(tmp_path):
     (package.root / "src/odd.py").chmod(0o644)
     first, second = file_findings(scripts, package, started={"src/odd.py": None})
     assert "asks for 'python'" in first.message and "not executable:" in second.message
+
+
+def test_a_copy_of_a_script_may_be_the_one_that_is_executable(tmp_path):
+    text = NODE.replace("env python", "env python3")
+    package = check_rules.make(tmp_path, src__odd_DOT_py=text, launch__odd_DOT_py=text)
+    (package.root / "launch/odd.py").chmod(0o644)
+    given = {"src/odd.py": None, "launch/odd.py": None}
+    assert told(file_findings(scripts, package, started=given)) == []
+    (package.root / "src/odd.py").chmod(0o644)
+    assert len(told(file_findings(scripts, package, started=given))) == 1  # one is relayed
 
 
 @pytest.mark.parametrize(("is_relayed", "severity"), [(True, "warning"), (False, "error")])
@@ -323,6 +334,17 @@ def test_generate_messages_is_known_where_its_package_is_found(finds, says, tmp_
     package = check_rules.make(tmp_path, CMakeLists_DOT_txt=text_)
     found = [finding.message for finding in file_findings(messages, package)]
     assert [message[: len(word)] for message, word in zip(found, says, strict=True)] == says
+
+
+def test_code_is_made_of_the_messages_of_an_action(tmp_path):
+    calls = "add_action_files(FILES Do.action)\ngenerate_messages()\ncatkin_package"
+    text_ = CMAKE.replace("catkin_package", calls).replace("rospy", "rospy message_generation", 1)
+    made = {f"msg__{name}_DOT_msg": "" for name in ("DoActionGoal", "DoResult", "DoAction", "Do2")}
+    package = check_rules.make(
+        tmp_path, action__Do_DOT_action="---\n---\n", CMakeLists_DOT_txt=text_, **made
+    )
+    found = [one.message for one in file_findings(messages, package)]
+    assert [text_[: text_.index(".msg")] for text_ in found if ".msg is" in text_] == ["msg/Do2"]
 
 
 @pytest.mark.parametrize(

@@ -13,6 +13,7 @@ from mrp_check.confined.places import Kind, Place
 from mrp_check.contract.finding import ERROR, NOTE, WARNING, Finding
 from mrp_check.rules import (
     arguments,
+    configured,
     deaf_loop,
     deaf_python,
     definitions,
@@ -137,11 +138,11 @@ def test_many_findings_are_one_line_without_a_contract_if_they_are_of_many_files
 @pytest.mark.parametrize(
     ("source", "params", "remaps", "is_up", "found"),
     [
-        ('n.param("rate", r, 1);', {"/a/rate": 2}, [], True, []),
+        ('ros::NodeHandle n("~"); n.param("rate", r, 1);', {"/a/rate": 2}, [], True, []),
         ('n.param("rate", r, 1);', {"/a/rte": 2}, [], True, [("starts", 3)]),
         ('n.param("rate", r, 1);', {"/b/rte": 2}, [], True, []),
         ("n.param(name, r, 1);", {"/a/rte": 2}, [], True, []),
-        ('n.param("gains/p", r, 1);', {"/a/gains/p": 2}, [], True, []),
+        ('ros::NodeHandle n("~"); n.param("gains/p", r, 1);', {"/a/gains/p": 2}, [], True, []),
         ('n.advertise<A>("chatter", 1);', {}, [("/chater", "/b")], False, [("topic", 4)]),
         ('n.advertise<A>("chatter", 1);', {}, [("/chatter", "/b")], False, []),
         ('n.advertise<A>("chatter", 1);', {}, [("/chater", "/b")], True, []),
@@ -165,6 +166,35 @@ def test_what_a_launch_file_gives_is_named_in_a_source(
     known.nodes = {"a": types.SimpleNamespace(is_up=is_up)}
     known.launches = [Launch("", nodes=[node], files=[file], params=params, file=file)]
     assert check_rules.told(unread.RULE.findings(known)) == found
+
+
+@pytest.mark.parametrize(
+    ("source", "params", "lines"),
+    [
+        ('n.param("rate", r, 1);', {"/a/rate": 2}, [3]),
+        ('n.hasParam("rate");', {"/a/rate": 2}, [3]),
+        ('ros::NodeHandle n("~");\n  n.param("rate", r, 1);', {"/a/rate": 2}, []),
+        ('n.param(ros::this_node::getName() + "/rate", r, 1);', {"/a/rate": 2}, []),
+        ('n.param("rate", r, 1);', {"/rate": 2}, []),
+        ('n.param("rate", r, 1);', {"/a/rate": 2, "/rate": 2}, []),
+    ],
+    ids=range(6),
+)
+def test_a_parameter_of_a_nodes_own_is_read_as_one(source, params, lines, tmp_path):
+    package = check_rules.make(tmp_path / "some_pkg", src__a_DOT_cpp=MAIN.format(source))
+    node = Started("some_pkg", "a", "a", "/", "", [], [], "", "", "a.launch", 2)
+    known = case(package)
+    known.facts.sources = {"a": ["src/a.cpp"]}
+    known.nodes = {"a": types.SimpleNamespace(is_up=True)}
+    known.launches = [Launch("", nodes=[node], files=[], params=params, file="a.launch")]
+    assert [one.line for one in unread.RULE.findings(known)] == lines
+
+
+@pytest.mark.parametrize(("name", "found"), [("a", []), ("b", [("messages", 2)])])
+def test_what_a_cfg_file_makes_has_its_name(name, found, tmp_path):
+    text = f'#!/usr/bin/env python\nexit(gen.generate(PACKAGE, "node", "{name}"))\n'
+    package = check_rules.make(tmp_path / "some_pkg", cfg__a_DOT_cfg=text)
+    assert check_rules.told(configured.RULE.findings(case(package))) == found
 
 
 @pytest.mark.parametrize(
@@ -379,13 +409,18 @@ def test_load_manifest_names_a_package_that_is_there(name, found, tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("line", "found"),
-    [("n = int(sys.argv[1])", [NOTE]), ("n = int(text)", [ERROR, ERROR])],
+    ("line", "kind", "found"),
+    [
+        ("n = int(sys.argv[1])", "ValueError", [NOTE]),
+        ("n = int(text)", "ValueError", [ERROR, ERROR]),
+        ("n = ask()", "KeyboardInterrupt", [ERROR]),  # that it died
+    ],
+    ids=range(3),
 )
-def test_a_node_that_reads_roslaunchs_own_argument_waits_for_its_own(line, found, tmp_path):
+def test_what_a_node_raises_under_roslaunch(line, kind, found, tmp_path):
     package = check_rules.make(tmp_path / "some_pkg", src__odd_DOT_py=f"{line}\n")
     places = types.SimpleNamespace(
-        traceback=lambda lines: (("src/odd.py", 1), "ValueError", "invalid literal"),
+        traceback=lambda lines: (("src/odd.py", 1), kind, "invalid literal"),
         sources=lambda node: ["src/odd.py"],
         of=lambda *given: ("src/odd.py", 1),
     )

@@ -64,11 +64,16 @@ def problems(output: str, copy: pathlib.Path) -> list[Problem]:
     return list(first.values())
 
 
+def is_no_header(problem: Problem) -> re.Match[str] | None:
+    """Return the match of the header that is not there, if that is what the compiler stops at."""
+    return re.match(r"(\S+): No such file or directory", problem.text)
+
+
 def absent(package: Package, problems: list[Problem]) -> dict[str, str]:
     """Return file -> the package that has the header it stops at, and is not on this machine."""
     found = {}
     for problem in problems:
-        header = re.match(r"(\S+): No such file or directory", problem.text)
+        header = is_no_header(problem)
         name = header and uses.absent_header(package, header[1])
         if name:
             found[problem.file] = name

@@ -3,16 +3,21 @@
 
 from __future__ import annotations
 
+import re
 from typing import Iterator
 
 from mrp_check import evidence
 from mrp_check.case import Case
-from mrp_check.contract.finding import Finding
+from mrp_check.contract.finding import WARNING, Finding
 from mrp_check.contract.requirements import Requirement, Rule
+from mrp_check.contract.words import line_of
 from mrp_check.student.cmake import Model
 from mrp_check.student.package import Package
 
 FILE = "CMakeLists.txt"
+_ROUND = re.compile(
+    r"^[^#\n]*\$\(((?:CATKIN|CMAKE|PROJECT|catkin)_\w+|PROJECT_NAME)\)", re.MULTILINE
+)
 _LOST = ", and its executables are put where roslaunch and rosrun do not look"
 
 
@@ -21,6 +26,7 @@ def _findings(case: Case) -> Iterator[Finding]:
         yield from _missing_calls(case.package, case.model)
         yield from _too_late(case.model)
         yield from _no_folder(case.package, case.model)
+        yield from _in_round_brackets(case.package)
     else:
         yield Finding(
             "cmake",
@@ -28,6 +34,23 @@ def _findings(case: Case) -> Iterator[Finding]:
             expected="a file CMakeLists.txt beside package.xml",
             seen="none",
             fix="Write one, as the page on building shows.",
+        )
+
+
+def _in_round_brackets(package: Package) -> Iterator[Finding]:
+    """https://cmake.org/cmake/help/latest/manual/cmake-language.7.html#variable-references"""
+    for match in _ROUND.finditer(package.text(FILE)):
+        name, line = match[1], line_of(match, 1)
+        yield Finding(
+            "cmake",
+            f"CMake reads $({name}) as a text: a variable stands in braces.",
+            FILE,
+            line,
+            WARNING,
+            expected=f"${{{name}}}",
+            seen=package.lines(FILE)[line - 1].strip(),
+            fix=f"Write ${{{name}}}.",
+            change=(f"$({name})", f"${{{name}}}"),
         )
 
 

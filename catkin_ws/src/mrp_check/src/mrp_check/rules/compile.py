@@ -32,7 +32,8 @@ def findings(case: Case) -> Iterator[Finding]:
     if not found and not absent:
         found = [configuring.unknown(package, case.built, "compile")]
     yield from found
-    yield from placeholders.findings(package, absent)
+    stopped = [p.file for p in problems if compiler.is_no_header(p)]
+    yield from placeholders.findings(package, () if case.spec.is_contract else stopped)
     if absent:
         raise CannotCheck(" ".join(uses.absent(name, "cpp") for name in sorted({*absent.values()})))
 

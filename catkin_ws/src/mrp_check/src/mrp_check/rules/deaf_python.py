@@ -51,7 +51,7 @@ def _deaf(source: Source, is_up: bool) -> tuple[int, str, str, str] | None:
                     "Ctrl-C does not end the node while it waits for the keyboard: rospy keeps"
                     " KeyboardInterrupt back, until somebody presses Enter.",
                     "rospy.init_node(..., disable_signals=True)",
-                    "Let rospy.init_node() have disable_signals=True; then Ctrl-C ends input().",
+                    "Let rospy.init_node() have disable_signals=True, and catch KeyboardInterrupt.",
                 )
     return None
 

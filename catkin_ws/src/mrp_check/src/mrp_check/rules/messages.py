@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import Iterator, Mapping
 
 from catkin_pkg.package import Package as Manifest

@@ -11,6 +11,7 @@ from mrp_check.case import Case
 from mrp_check.contract.finding import Finding
 from mrp_check.contract.requirements import Rule
 from mrp_check.sources.python_modules import is_ros, resolve
+from mrp_check.sources.python_facts import argument
 from mrp_check.sources.python_rule import PythonRule, ast_text, of_sources
 from mrp_check.sources.uses import without_comments
 
@@ -35,6 +36,29 @@ class NotCalled(PythonRule):
                 )
         yield from self._statements()
         yield from self._tests_of_main()
+        yield from self._own_callbacks()
+
+    def _own_callbacks(self) -> Iterator[Finding]:
+        """Yield a finding if a callback is asked for within itself alone."""
+        for call in self.source.nodes(ast.Call):
+            callback = argument(call, 2, "callback")
+            function = self.source.definition(callback)
+            if self.source.dotted(call.func) != "rospy.Subscriber" or callback is None:
+                continue
+            loads = [*self.source.nodes(ast.Name), *self.source.nodes(ast.Attribute)]
+            others = [node for node in loads if node is not callback and self._is(node, function)]
+            if function and self.source.function(call) is function and not others:
+                yield self.finding(
+                    "callbacks",
+                    f"The subscriber is made within {ast_text(callback)}(), which only it would"
+                    " call: no message ever arrives.",
+                    call,
+                    expected="a subscriber that is made before the loop",
+                    fix="Move this line out of the function, to below it.",
+                )
+
+    def _is(self, node: ast.Name | ast.Attribute, function: ast.AST | None) -> bool:
+        return isinstance(node.ctx, ast.Load) and self.source.definition(node) is function
 
     def _tests_of_main(self) -> Iterator[Finding]:
         """Yield a finding if the program's start stands within a function that nobody calls."""

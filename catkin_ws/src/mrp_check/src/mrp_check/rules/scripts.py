@@ -15,7 +15,7 @@ from mrp_check.building.catkin import search_path
 from mrp_check.case import Case
 from mrp_check.contract.finding import ERROR, NOTE, WARNING, Finding
 from mrp_check.contract.requirements import Requirement, Rule
-from mrp_check.contract.words import nearest, perhaps
+from mrp_check.contract.words import last_part, nearest, perhaps
 from mrp_check.sources import executables, python_modules
 from mrp_check.sources.uses import is_test
 from mrp_check.student.cmake import Model, Script

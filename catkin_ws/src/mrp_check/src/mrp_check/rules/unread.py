@@ -12,7 +12,7 @@ from mrp_check.contract.finding import WARNING, Finding
 from mrp_check.contract.requirements import ANY, Rule
 from mrp_check.contract.words import last_part
 from mrp_check.rules.launch_remap import remap_line
-from mrp_check.sources import uses
+from mrp_check.sources import asked, uses
 from mrp_check.student.launch import Launch
 
 # What reads parameters, or publishes, under names that stand in no source of the node.
@@ -21,6 +21,8 @@ _UNSEEN = re.compile(
     r"|dynamic_reconfigure|nodelet|plugin|actionlib|image_transport|camera_info|controller|diagnos"
     r"|tf2?_ros|moveit|message_filters"
 )
+# Of a node that reads a parameter of its own, or puts its own name before a parameter.
+_PRIVATE = re.compile(r"""["']~|get_name\s*\(|getName\s*\(|getNamespace|PrivateNodeHandle""")
 
 
 def _findings(case: Case) -> Iterator[Finding]:
@@ -33,6 +35,7 @@ def _findings(case: Case) -> Iterator[Finding]:
         for node in launch.nodes:
             if node.package == case.package.name and case.facts.sources.get(node.type):
                 yield from _of_params(case, launch, node, text)
+                yield from _of_own(case, launch, node, text)
                 if node.type not in case.nodes or not case.nodes[node.type].is_up:
                     yield from _of_remaps(case, node, text)
 
@@ -60,6 +63,32 @@ def _of_params(case: Case, launch: Launch, node: Started, text: str) -> Iterator
             fix=f"Read {own} in the node; or take the <param> out.",
             node=node.type,
         )
+
+
+def _of_own(case: Case, launch: Launch, node: Started, text: str) -> Iterator[Finding]:
+    """Yield a Finding about a parameter of a node's own that its sources ask for as another one."""
+    if _PRIVATE.search(text):
+        return
+    said = [*asked.of(case.package, case.facts.sources[node.type])]
+    for name in launch.params:
+        own = name[len(node.path) + 1 :] if name.startswith(f"{node.path}/") else ""
+        there = [one for one in said if one.what in ("reads", "knows") and one.name == own]
+        others = [one for one in launch.params if one != name and last_part(one) == last_part(own)]
+        if there and not others:
+            yield Finding(
+                "starts",
+                f"{node.file} sets {own} within {node.name}: that is {name}. The node reads {own}"
+                " beside it, and finds none.",
+                there[0].file,
+                there[0].line,
+                WARNING,
+                expected=f"~{own}"
+                if case.package.kind(there[0].file) == "python"
+                else 'ros::NodeHandle("~")',
+                seen=case.package.lines(there[0].file)[there[0].line - 1].strip(),
+                fix="Read it as a private parameter; or set it outside of <node>.",
+                node=node.type,
+            )
 
 
 def _of_remaps(case: Case, node: Started, text: str) -> Iterator[Finding]:
