@@ -14,20 +14,15 @@ from mrp_check.contract.finding import ERROR, NOTE, WARNING, Finding
 from mrp_check.rules import (
     arguments,
     configured,
-    deaf_loop,
-    deaf_python,
     definitions,
     global_names,
     launched,
     load_manifest,
-    types_written,
-    unbuilt,
     unread,
     unset,
     waiting,
 )
 from mrp_check.sources.facts import Facts
-from mrp_check.sources.python_source import Source
 from mrp_check.student.cmake import Model
 from mrp_check.student.launch import Launch
 
@@ -39,14 +34,6 @@ MAIN = "int main()\n{{\n  {}\n}}\n"
 def case(package):
     facts = Facts(sources={file: [file] for file in package.of_kind("cpp")})
     return types.SimpleNamespace(package=package, facts=facts, launch=None)
-
-
-def of_main(folder, body, is_up):
-    """Return a case of one C++ node, whose main() has that body, from line 4 on."""
-    text = f'int main()\n{{\n  ros::init(a, b, "a");\n  {body}\n}}\n'
-    known = case(check_rules.make(folder / "some_pkg", src__a_DOT_cpp=text))
-    known.nodes = {"src/a.cpp": types.SimpleNamespace(name="a", is_up=is_up, direct=None)}
-    return known
 
 
 @pytest.mark.parametrize(
@@ -217,124 +204,6 @@ def test_a_placeholder_is_known_though_nothing_is_compiled(begin, arguments, lin
     package = check_rules.make(tmp_path / "some_pkg", src__a_DOT_cpp=text, src__own_DOT_h=own)
     found = [*placeholders.findings(package, ["src/a.cpp"])]
     assert [one.line for one in found] == ([line] if line else [])
-
-
-@pytest.mark.parametrize(
-    ("body", "is_up", "found"),
-    [
-        ("t = n.createTimer(d, f);", False, [("spin", 4)]),
-        ("t = n.createTimer(d, f);", True, []),
-        ("t = n.createTimer(d, f);\n  ros::spin();", False, []),
-        ("if (argc != 2) { return 1; }", False, [("starts", 4)]),
-    ],
-    ids=range(4),
-)
-def test_what_the_text_of_a_node_shows_that_was_not_built(body, is_up, found, tmp_path):
-    known = of_main(tmp_path, body, is_up)
-    said = check_rules.told(unbuilt.RULE.findings(known), "warning", "note")
-    assert said == found
-
-
-@pytest.mark.parametrize(
-    ("loop", "is_up", "found"),
-    [
-        ("while True:\n    print(1)", False, [4]),
-        ("while 1:\n    time.sleep(1)", False, [4]),
-        ("while True:\n    rospy.sleep(1)", False, [4]),
-        ("while True:\n    rate.sleep()", False, [4]),
-        ("def ask():\n    return 1\nwhile True:\n    ask()", False, [6]),
-        ("while True:\n    print(1)", True, []),
-        ("while True:\n    if end():\n        break", False, []),
-        ("while not rospy.is_shutdown():\n    print(1)", False, []),
-        ("def say():\n    p.publish(1)\nwhile True:\n    say()", False, []),
-        ("while near:\n    print(1)", False, []),
-        ("while not rospy.is_shutdown():\n    print(input())", True, [5]),
-        ("def input():\n    pass\nprint(input())", True, []),
-        ("rospy.init_node('b', disable_signals=True)\nprint(input())", False, []),
-    ],
-    ids=range(13),
-)
-def test_a_loop_in_python_asks_whether_the_node_is_to_go_on(loop, is_up, found, tmp_path):
-    text = f"import rospy\nimport time\nrospy.init_node('a')\n{loop}\n"
-    package = check_rules.make(tmp_path / "some_pkg", src__a_DOT_py=text)
-    facts = Facts(sources={"a": ["src/a.py"]}, python={"src/a.py": Source("src/a.py", text)})
-    nodes = {"a": types.SimpleNamespace(is_up=is_up)}
-    known = types.SimpleNamespace(package=package, facts=facts, nodes=nodes)
-    assert [one.line for one in deaf_python.RULE.findings(known)] == found
-
-
-TAKES = "void heard(const {}& m) {{}}\n"
-PUBLISHES = 'int main() { p = n.advertise<some_pkg::Own>("/talk", 1); }\n'
-HEARS = 'int main() { n.subscribe("talk", 1, heard); }\n'
-
-
-@pytest.mark.parametrize(
-    ("publishes", "takes", "hears", "is_up", "found"),
-    [
-        (PUBLISHES, "std_msgs::String::ConstPtr", HEARS, False, [2]),
-        (PUBLISHES, "std_msgs::StringConstPtr", HEARS, False, [2]),
-        (PUBLISHES, "std_msgs::String", HEARS, False, [2]),
-        (PUBLISHES, "some_pkg::Own::ConstPtr", HEARS, False, []),
-        (PUBLISHES, "some_pkg::Own", HEARS, False, []),
-        (PUBLISHES, "std_msgs::String", HEARS, True, []),
-        (PUBLISHES.replace("some_pkg::", ""), "std_msgs::String", HEARS, False, [2]),
-        (PUBLISHES, "std_msgs::String", HEARS.replace("talk", "say"), False, []),
-        (PUBLISHES, "", HEARS.replace("scribe(", "scribe<std_msgs::Char>("), False, [2]),
-        (PUBLISHES, "", HEARS, False, []),
-    ],
-    ids=range(10),
-)
-def test_two_types_of_one_topic_in_what_did_not_run(
-    publishes, takes, hears, is_up, found, tmp_path
-):
-    files = {"src__a_DOT_cpp": publishes, "src__b_DOT_cpp": TAKES.format(takes) + hears}
-    python = "import rospy\nfrom some_pkg.msg import Own\nrospy.Publisher('talk', Own)\n"
-    package = check_rules.make(tmp_path / "some_pkg", **files, src__c_DOT_py=python)
-    known = case(package)
-    known.facts.sources["c"] = ["src/c.py"]
-    known.facts.python = {"src/c.py": Source("src/c.py", python)}
-    known.nodes = {file: types.SimpleNamespace(is_up=is_up) for file in known.facts.sources}
-    findings = [*types_written.RULE.findings(known)]
-    assert [(one.file, one.line) for one in findings] == [("src/b.cpp", line) for line in found]
-
-
-@pytest.mark.parametrize(
-    ("body", "is_up", "found"),
-    [
-        ("while (true)\n  {\n    f();\n  }", False, [WARNING]),
-        ("for (;;) { g(); }", False, [WARNING]),
-        ("while (1) { if (f()) { break; } }", False, []),
-        ("while (1) { switch (f()) { case 1: { break; } } }", False, [WARNING]),
-        ("while (1) { for (;;) { if (f()) { break; } } g(); break; }", False, []),
-        ("while (1) { f(); }", True, []),
-        ("while (ros::ok()) { f(); }", False, []),
-        ("while (std::cin >> x) { p.publish(x); }", True, [ERROR]),
-        ("while (getline(std::cin, line)) p.publish(line);", True, [ERROR]),
-        ("while (ros::ok() && cin >> x) { p.publish(x); }", True, []),
-        ("while (cin >> x) { if (!ros::ok()) { break; } }", True, []),
-        ("signal(SIGINT, end);\n  while (cin >> x) { p.publish(x); }", True, []),
-        ("while (file >> x) { p.publish(x); }", True, []),
-        ("while (1) { ros::spinOnce(); if (near()) { break; } }", True, [WARNING]),
-        ("do {\n  rate.sleep(); }\n  while (pose.x < 10.5);", True, [WARNING]),
-        ("do { rate.sleep(); } while (ros::ok() && pose.x < 10.5);", True, []),
-        ("while (n < 5) { rate.sleep(); ++n; }", True, []),
-        ("do { rate.sleep(); t1 = ros::Time::now(); } while (t1 < end);", True, []),
-    ],
-    ids=range(18),
-)
-def test_a_loop_asks_whether_the_node_is_to_go_on(body, is_up, found, tmp_path):
-    findings = [*deaf_loop.RULE.findings(of_main(tmp_path, body, is_up))]
-    line = 6 if "do {\n" in body else 4  # what it asks
-    assert [(one.id, one.line, one.severity) for one in findings] == [
-        ("exit", line, severity) for severity in found
-    ]
-
-
-def test_a_node_that_was_seen_to_go_on_is_told_of_once(tmp_path):
-    known = of_main(tmp_path, "while (std::cin >> x) { p.publish(x); }", True)
-    (node,) = known.nodes.values()
-    node.direct = types.SimpleNamespace(asked=5.0, stopped_in=None)
-    assert not [*deaf_loop.RULE.findings(known)]
 
 
 @pytest.mark.parametrize(

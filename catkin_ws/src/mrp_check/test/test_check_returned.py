@@ -94,7 +94,9 @@ ASK = """def ask():
 )
 def test_what_a_call_gives_that_failed(code, found, tmp_path):
     said = check_rules.python_findings(tmp_path, f"import rospy\n{code}\n")
-    assert [(one.severity, one.line - 1) for one in said if "returns nothing" in one.message] == found
+    assert [
+        (one.severity, one.line - 1) for one in said if "returns nothing" in one.message
+    ] == found
 
 
 @pytest.mark.parametrize(

@@ -55,7 +55,7 @@ def main() -> None:
 
 
 def _text(name: ctypes.c_char_p) -> str | None:
-    data = ctypes.c_char_p.value.__get__(name)
+    data = ctypes.cast(name, ctypes.c_char_p).value
     return None if data is None else data.decode(errors="replace")
 
 

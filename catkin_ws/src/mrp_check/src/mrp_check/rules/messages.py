@@ -86,7 +86,7 @@ def _in_cmake(case: Case, files: list[str]) -> Iterator[Finding]:
 
 
 def _is_of_action(path: str, model: Model) -> bool:
-    """Return whether a message is one of those that an action is made into: code is made of them."""
+    """Return whether a message is one that an action is made into: code is made of it."""
     named = re.fullmatch(r"(?:.*/)?(\w+?)(?:Action)?(?:Goal|Feedback|Result)?\.msg", path)
     actions = (last_part(one)[: -len(".action")] for one in model.message_files)
     return named is not None and named[1] in actions

@@ -10,8 +10,8 @@ from typing import Iterator
 from mrp_check.case import Case
 from mrp_check.contract.finding import Finding
 from mrp_check.contract.requirements import Rule
-from mrp_check.sources.python_modules import is_ros, resolve
 from mrp_check.sources.python_facts import argument
+from mrp_check.sources.python_modules import is_ros, resolve
 from mrp_check.sources.python_rule import PythonRule, ast_text, of_sources
 from mrp_check.sources.uses import without_comments
 
@@ -45,8 +45,8 @@ class NotCalled(PythonRule):
             function = self.source.definition(callback)
             if self.source.dotted(call.func) != "rospy.Subscriber" or callback is None:
                 continue
-            loads = [*self.source.nodes(ast.Name), *self.source.nodes(ast.Attribute)]
-            others = [node for node in loads if node is not callback and self._is(node, function)]
+            named = self.source.nodes(ast.expr)
+            others = [node for node in named if node is not callback and self._is(node, function)]
             if function and self.source.function(call) is function and not others:
                 yield self.finding(
                     "callbacks",
@@ -57,8 +57,9 @@ class NotCalled(PythonRule):
                     fix="Move this line out of the function, to below it.",
                 )
 
-    def _is(self, node: ast.Name | ast.Attribute, function: ast.AST | None) -> bool:
-        return isinstance(node.ctx, ast.Load) and self.source.definition(node) is function
+    def _is(self, node: ast.expr, function: ast.AST | None) -> bool:
+        is_read = isinstance(getattr(node, "ctx", None), ast.Load)
+        return is_read and self.source.definition(node) is function
 
     def _tests_of_main(self) -> Iterator[Finding]:
         """Yield a finding if the program's start stands within a function that nobody calls."""

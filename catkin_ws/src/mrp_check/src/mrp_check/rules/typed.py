@@ -69,9 +69,10 @@ class Typed(PythonRule):
         if key and stored == [None] and depth < 2:
             given = self._given(key[0], key[1])
             return self._typed(given, depth + 1) if given else None
-        return self._typed(stored[0], depth) if len(stored) == 1 and stored[0] is not node else None
+        value = stored[0] if len(stored) == 1 else None
+        return self._typed(value, depth + 1) if isinstance(value, ast.expr) and depth < 5 else None
 
-    def _given(self, function: ast.AST, name: str) -> ast.expr | None:
+    def _given(self, function: ast.AST | None, name: str) -> ast.expr | None:
         """Return what a parameter of a function is in its only call, by its place."""
         if not isinstance(function, ast.FunctionDef):
             return None

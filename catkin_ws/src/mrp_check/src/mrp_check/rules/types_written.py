@@ -22,7 +22,7 @@ _SUBSCRIBES = re.compile(
     rf'\bsubscribe\s*(?:<\s*{_TYPE}\s*>\s*)?\(\s*"(?P<topic>[^"]+)"\s*,[^,;]+,'
     r"\s*&?\s*(?:\w+::)*(?P<callback>\w+)"
 )
-# What a callback takes: std_msgs::String::ConstPtr, std_msgs::StringConstPtr, or the message itself.
+# What a callback takes: std_msgs::String::ConstPtr, std_msgs::StringConstPtr, or the message.
 _TAKES = rf"\s*\(\s*(?:const\s+)?{_TYPE}(?:(?:::)?(?:Const)?Ptr)?(?:\s+const)?\s*[&\s,)]"
 
 

@@ -27,9 +27,13 @@ class Unbound(PythonRule):
         for node in ast.walk(self.source.tree):
             for name in ("body", "orelse", "finalbody"):
                 block = getattr(node, name, None)
-                for number, one in enumerate(block) if isinstance(block, list) else ():
-                    if isinstance(one, (ast.If, ast.Try)) and not self._is_repeated(one):
-                        yield from self._after(one, block[number + 1 :])
+                if isinstance(block, list):  # that of a lambda is none
+                    yield from self._of(block)
+
+    def _of(self, block: Sequence[ast.stmt]) -> Iterator[Finding]:
+        for number, one in enumerate(block):
+            if isinstance(one, (ast.If, ast.Try)) and not self._is_repeated(one):
+                yield from self._after(one, block[number + 1 :])
 
     def _is_repeated(self, statement: ast.stmt) -> bool:
         """Return whether a loop does it: an earlier turn may have given what this one does not."""
