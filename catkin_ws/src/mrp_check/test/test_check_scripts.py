@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The checker's rules about scripts: their first lines, their modes, and what they are called."""
 
+import types
+
 import check_rules
 import pytest
 from check_rules import CMAKE, file_findings, told
