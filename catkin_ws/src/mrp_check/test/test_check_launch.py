@@ -116,6 +116,12 @@ BROKEN = {
         "/mrp/more",
     ),
     "group_written_down": ("$(arg group)", "mrp", [("launch-group", 3)], "second robot"),
+    "in_braces": (
+        NODES[1],
+        NODES[1].replace("/>", '>\n      <param name="a" value="${arg group}"/>\n    </node>'),
+        [("launch-file", 6)],
+        r"\$\(arg group\)",
+    ),
     "unknown_element": ("  <arg name", "  <prameter/>\n  <arg name", [("launch-file", 2)], "param"),
 }
 

@@ -32,7 +32,7 @@ def finding(package: Package, output: str, copy: pathlib.Path, model: Model) -> 
         return None
     block = _block(output, match)
     file, line, command = _place(match, block, copy)
-    text = " ".join(block.split("Call Stack")[0].split())
+    text = " ".join(block.split("Call Stack")[0].replace(f"{copy}/", "").split())
     if file is None or file not in package.files:
         file, line = "CMakeLists.txt", 1
     undeclared = re.search(r"package '(\w+)' which must therefore be listed as a run dep", text)

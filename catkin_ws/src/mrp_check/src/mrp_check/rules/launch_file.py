@@ -10,11 +10,13 @@ from mrp_check import evidence
 from mrp_check.case import Case
 from mrp_check.contract.finding import WARNING, Finding, Line
 from mrp_check.contract.requirements import Requirement, Rule
-from mrp_check.contract.words import last_part, nearest
+from mrp_check.contract.words import last_part, line_of, nearest
 from mrp_check.student.launch import Launch
 from mrp_check.student.xml_file import Element
 
 _TAGS = ("launch node group arg param rosparam remap include env machine test master").split()
+# https://wiki.ros.org/roslaunch/XML says what there is.
+_BRACES = re.compile(r"\$\{(?:anon|arg|dirname|env|eval|find|optenv)\b[^{}\n]*\}")
 
 
 def _findings(case: Case) -> Iterator[Finding]:
@@ -25,6 +27,25 @@ def _findings(case: Case) -> Iterator[Finding]:
             yield _error(launch, tags)
         else:
             yield from _unknown(tags)
+    for file in case.package.of_kind("launch"):
+        for match in _BRACES.finditer(case.package.text(file)):
+            yield _in_braces(file, line_of(match), match[0])
+
+
+def _in_braces(file: str, line: int, written: str) -> Finding:
+    right = f"$({written[2:-1]})"
+    return Finding(
+        "launch-file",
+        f"roslaunch reads {written} as a text: what it puts something in for stands in round"
+        " brackets.",
+        file,
+        line,
+        WARNING,
+        expected=right,
+        seen=written,
+        fix=f"Write {right}.",
+        change=(written, right),
+    )
 
 
 def _unknown(tags: Sequence[tuple[str, Element]]) -> Iterator[Finding]:
