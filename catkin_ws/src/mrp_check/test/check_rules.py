@@ -109,7 +109,7 @@ def file_findings(rule, package, **known):
     given = {"manifest": manifest.parse(package), "model": model_of(package), "launch": None}
     given.update({"spec": PUB_SUB, "started": {}, **known})
     given.setdefault("launches", [given["launch"]] if given["launch"] else [])
-    return [*rule.RULE.findings(types.SimpleNamespace(package=package, **given))]
+    return [*of(rule.RULE, types.SimpleNamespace(package=package, **given))]
 
 
 def python_findings(folder, source, **others):
@@ -122,7 +122,14 @@ def python_findings(folder, source, **others):
     one = types.SimpleNamespace(package=package, facts=known)
     rules = python_names, message_fields, rospy_calls, early_timer, not_called, not_kept, responses
     rules += (no_value, lists, early_callback, unfilled, typed, unbound, unheard)
-    return [finding for file in rules for finding in file.RULE.findings(one)]
+    return [finding for file in rules for finding in of(file.RULE, one)]
+
+
+def of(rule, one):
+    """Yield what a rule finds; it has to name each of its ids, as the checker asks for them."""
+    for finding in rule.findings(one):
+        assert finding.id in rule.ids
+        yield finding
 
 
 def node_findings(package, model, found):
@@ -130,7 +137,7 @@ def node_findings(package, model, found):
     coded = node.nodes(package, PUB_SUB, model, None, found)
     one = types.SimpleNamespace(coded=coded)
     rules = swapped_sources, node_start, node_name, spin, queue, lifetime, callbacks, counter
-    return [finding for file in rules for finding in file.RULE.findings(one)]
+    return [finding for file in rules for finding in of(file.RULE, one)]
 
 
 def python_facts_of(folder, source):

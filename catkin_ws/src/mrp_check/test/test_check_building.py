@@ -175,7 +175,10 @@ def test_what_stands_behind_a_header_that_is_not_there(tmp_path):
         model=check_rules.model_of(package),
         spec=types.SimpleNamespace(is_contract=False),
     )
-    assert check_rules.told(compile_rule.RULE.findings(known)) == [("compile", 2), ("compile", 3)]
+    assert check_rules.told(check_rules.of(compile_rule.RULE, known)) == [
+        ("compile", 2),
+        ("compile", 3),
+    ]
 
 
 def test_headers_are_looked_for_where_nothing_is_compiled(tmp_path):
@@ -184,7 +187,7 @@ def test_headers_are_looked_for_where_nothing_is_compiled(tmp_path):
     target = types.SimpleNamespace(sources=["src/a.cpp"])
     model = types.SimpleNamespace(targets={"a": target})
     case = types.SimpleNamespace(package=package, model=model, built=None)
-    found = check_rules.told(compile_rule.RULE.findings(case))
+    found = check_rules.told(check_rules.of(compile_rule.RULE, case))
     assert found == [("compile", 1), ("compile", 2)]
 
 

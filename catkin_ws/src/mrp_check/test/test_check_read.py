@@ -52,7 +52,7 @@ def case(package):
 )
 def test_a_number_without_a_value_is_found_where_a_parameter_is_read_into_it(text, line, tmp_path):
     package = check_rules.make(tmp_path / "some_pkg", src__a_DOT_cpp=text)
-    found = [(one.severity, one.line) for one in unset.RULE.findings(case(package))]
+    found = [(one.severity, one.line) for one in check_rules.of(unset.RULE, case(package))]
     assert found == ([(WARNING, line)] if line else [])
 
 
@@ -60,7 +60,7 @@ def test_a_parameter_that_a_launch_file_sets_under_a_name_like_it_is_named(tmp_p
     text = MAIN.format('int a; n.getParam("print_rate", a);')
     known = case(check_rules.make(tmp_path / "some_pkg", src__a_DOT_cpp=text))
     known.launch = types.SimpleNamespace(params={"/a/print_rat": 2})
-    (found,) = unset.RULE.findings(known)
+    (found,) = check_rules.of(unset.RULE, known)
     assert found.message.endswith("A launch file sets print_rat.")
 
 
@@ -79,7 +79,7 @@ def test_a_parameter_that_a_launch_file_sets_under_a_name_like_it_is_named(tmp_p
 def test_an_argument_is_read_where_it_may_be_missing(code, line, says, tmp_path):
     head = 'int main(int argc, char** argv)\n{\n  ros::init(argc, argv, "a");\n  '
     package = check_rules.make(tmp_path / "some_pkg", src__a_DOT_cpp=f"{head}{code}\n}}\n")
-    found = [*arguments.RULE.findings(case(package))]
+    found = [*check_rules.of(arguments.RULE, case(package))]
     assert [one.line for one in found] == ([line] if line else [])
     assert all(says in one.message and one.severity == WARNING for one in found)
 
@@ -97,7 +97,7 @@ def test_a_client_waits_in_vain_if_no_node_serves_its_action(server, expected, t
     client = MAIN.format('actionlib::SimpleActionClient<Wave> client("wave", true);')
     files = {"a_DOT_cpp": client, "b_DOT_cpp": server}
     package = check_rules.make(tmp_path / "some_pkg", **files)
-    found = [*waiting.RULE.findings(case(package))]
+    found = [*check_rules.of(waiting.RULE, case(package))]
     assert [one.message for one in found if one.severity == NOTE] == expected
 
 
@@ -152,7 +152,7 @@ def test_what_a_launch_file_gives_is_named_in_a_source(
     known.facts.sources = {"a": ["src/a.cpp"]}
     known.nodes = {"a": types.SimpleNamespace(is_up=is_up)}
     known.launches = [Launch("", nodes=[node], files=[file], params=params, file=file)]
-    assert check_rules.told(unread.RULE.findings(known)) == found
+    assert check_rules.told(check_rules.of(unread.RULE, known)) == found
 
 
 @pytest.mark.parametrize(
@@ -174,14 +174,14 @@ def test_a_parameter_of_a_nodes_own_is_read_as_one(source, params, lines, tmp_pa
     known.facts.sources = {"a": ["src/a.cpp"]}
     known.nodes = {"a": types.SimpleNamespace(is_up=True)}
     known.launches = [Launch("", nodes=[node], files=[], params=params, file="a.launch")]
-    assert [one.line for one in unread.RULE.findings(known)] == lines
+    assert [one.line for one in check_rules.of(unread.RULE, known)] == lines
 
 
 @pytest.mark.parametrize(("name", "found"), [("a", []), ("b", [("messages", 2)])])
 def test_what_a_cfg_file_makes_has_its_name(name, found, tmp_path):
     text = f'#!/usr/bin/env python\nexit(gen.generate(PACKAGE, "node", "{name}"))\n'
     package = check_rules.make(tmp_path / "some_pkg", cfg__a_DOT_cfg=text)
-    assert check_rules.told(configured.RULE.findings(case(package))) == found
+    assert check_rules.told(check_rules.of(configured.RULE, case(package))) == found
 
 
 @pytest.mark.parametrize(
@@ -227,7 +227,7 @@ def test_ros_reads_each_line_of_a_definition(name, text, said, tmp_path):
     package = check_rules.make(tmp_path / "some_pkg", **made)
     model = types.SimpleNamespace(message_files={name})
     known = types.SimpleNamespace(package=package, model=model)
-    found = [*definitions.RULE.findings(known)]
+    found = [*check_rules.of(definitions.RULE, known)]
     assert [(one.file, one.line) for one in found] == ([(name, 2)] if said else [])
     assert all(said in one.message for one in found)
 
@@ -258,13 +258,13 @@ def test_where_own_nodes_meet_is_no_global_name(published, heard, found, tmp_pat
     known = case(check_rules.make(tmp_path / "some_pkg", src__a_DOT_cpp=text))
     ends = (2, Kind.PUBLISHER, published), (3, Kind.SUBSCRIBER, heard)
     known.facts.places = [Place("src/a.cpp", *one) for one in ends]
-    assert check_rules.told(global_names.RULE.findings(known)) == found
+    assert check_rules.told(check_rules.of(global_names.RULE, known)) == found
 
 
 def test_a_service_of_a_global_name(tmp_path):
     text = 'int main()\n{ n.advertiseService("/go", f); }\n'
     known = case(check_rules.make(tmp_path / "some_pkg", src__a_DOT_cpp=text))
-    assert check_rules.told(global_names.RULE.findings(known)) == [("topic", 2)]
+    assert check_rules.told(check_rules.of(global_names.RULE, known)) == [("topic", 2)]
 
 
 @pytest.mark.parametrize(
@@ -274,7 +274,7 @@ def test_a_service_of_a_global_name(tmp_path):
 def test_load_manifest_names_a_package_that_is_there(name, found, tmp_path):
     text = f"import roslib\nroslib.load_manifest('{name}')\n  print 1\n"
     known = case(check_rules.make(tmp_path / "some_pkg", src__a_DOT_py=text))
-    assert check_rules.told(load_manifest.RULE.findings(known)) == found
+    assert check_rules.told(check_rules.of(load_manifest.RULE, known)) == found
 
 
 @pytest.mark.parametrize(
@@ -302,4 +302,4 @@ def test_what_a_node_raises_under_roslaunch(line, kind, found, tmp_path):
         nodes={"odd": types.SimpleNamespace(not_up=[])},
         observed=types.SimpleNamespace(launches=launches),
     )
-    assert [one.severity for one in launched.RULE.findings(known)] == found
+    assert [one.severity for one in check_rules.of(launched.RULE, known)] == found

@@ -38,7 +38,7 @@ def of_main(folder, body, is_up):
 )
 def test_what_the_text_of_a_node_shows_that_was_not_built(body, is_up, found, tmp_path):
     known = of_main(tmp_path, body, is_up)
-    said = check_rules.told(unbuilt.RULE.findings(known), "warning", "note")
+    said = check_rules.told(check_rules.of(unbuilt.RULE, known), "warning", "note")
     assert said == found
 
 
@@ -67,7 +67,7 @@ def test_a_loop_in_python_asks_whether_the_node_is_to_go_on(loop, is_up, found, 
     facts = Facts(sources={"a": ["src/a.py"]}, python={"src/a.py": Source("src/a.py", text)})
     nodes = {"a": types.SimpleNamespace(is_up=is_up)}
     known = types.SimpleNamespace(package=package, facts=facts, nodes=nodes)
-    assert [one.line for one in deaf_python.RULE.findings(known)] == found
+    assert [one.line for one in check_rules.of(deaf_python.RULE, known)] == found
 
 
 TAKES = "void heard(const {}& m) {{}}\n"
@@ -101,7 +101,7 @@ def test_two_types_of_one_topic_in_what_did_not_run(
     known.facts.sources["c"] = ["src/c.py"]
     known.facts.python = {"src/c.py": Source("src/c.py", python)}
     known.nodes = {file: types.SimpleNamespace(is_up=is_up) for file in known.facts.sources}
-    findings = [*types_written.RULE.findings(known)]
+    findings = [*check_rules.of(types_written.RULE, known)]
     assert [(one.file, one.line) for one in findings] == [("src/b.cpp", line) for line in found]
 
 
@@ -130,7 +130,7 @@ def test_two_types_of_one_topic_in_what_did_not_run(
     ids=range(18),
 )
 def test_a_loop_asks_whether_the_node_is_to_go_on(body, is_up, found, tmp_path):
-    findings = [*deaf_loop.RULE.findings(of_main(tmp_path, body, is_up))]
+    findings = [*check_rules.of(deaf_loop.RULE, of_main(tmp_path, body, is_up))]
     line = 6 if "do {\n" in body else 4  # what it asks
     assert [(one.id, one.line, one.severity) for one in findings] == [
         ("exit", line, severity) for severity in found
@@ -141,4 +141,4 @@ def test_a_node_that_was_seen_to_go_on_is_told_of_once(tmp_path):
     known = of_main(tmp_path, "while (std::cin >> x) { p.publish(x); }", True)
     (node,) = known.nodes.values()
     node.direct = types.SimpleNamespace(asked=5.0, stopped_in=None)
-    assert not [*deaf_loop.RULE.findings(known)]
+    assert not [*check_rules.of(deaf_loop.RULE, known)]

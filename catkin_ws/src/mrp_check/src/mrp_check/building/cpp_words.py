@@ -230,13 +230,15 @@ def _missing_header(error: Error) -> Words:
         near = nearest(header, [f"std_msgs/{name}.h" for name in _MESSAGES] + ["ros/ros.h"], 0.7)
         fix = f"Write {near}." if near else "Correct the name, or install and declare its package."
         return Words(f"there is no header {header}.{perhaps(near)}", fix)
-    own = [last_part(path)[:-4] for path in package.of_kind("message")]
+    paths = package.of_kind("message", "service")
+    own = {last_part(path)[:-4]: path for path in paths}
     name = last_part(header)[:-2]
     if name in own:
         return Words(
-            f"there is no {header} yet: it is made of {name}.msg, and the target does not wait"
-            " for that, or nothing makes it.",
-            "Look at add_message_files(), generate_messages() and add_dependencies().",
+            f"there is no {header} yet: it is made of {last_part(own[name])}, and the target does"
+            " not wait for that, or nothing makes it.",
+            f"Look at add_{package.kind(own[name])}_files(), generate_messages() and"
+            " add_dependencies().",
         )
     near = nearest(name, own, 0.5)
     hint = perhaps(near and f"{package.name}/{near}.h")

@@ -138,5 +138,5 @@ RULE = Rule(
     order=24,
     needs=("facts",),
     findings=_findings,
-    also=("python-names", "node-start", "spin", "exit"),
+    also=("python-names", "node-start", "spin", "exit", "callbacks"),
 )

@@ -69,7 +69,7 @@ def _of_own(case: Case, launch: Launch, node: Started, text: str) -> Iterator[Fi
     """Yield a Finding about a parameter of a node's own that its sources ask for as another one."""
     if _PRIVATE.search(text):
         return
-    said = [*asked.of(case.package, case.facts.sources[node.type])]
+    said = sorted(asked.of(case.package, case.facts.sources[node.type]), key=lambda one: one.line)
     for name in launch.params:
         own = name[len(node.path) + 1 :] if name.startswith(f"{node.path}/") else ""
         there = [one for one in said if one.what in ("reads", "knows") and one.name == own]
