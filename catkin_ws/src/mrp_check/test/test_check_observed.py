@@ -278,6 +278,18 @@ def test_the_observer_reads_who_has_registered_while_others_register():
     assert _said_by(_WHILE_OTHERS_REGISTER) == "registered\n"
 
 
+_ASKED = """
+import rospy
+from mrp_check.confined.observe import Observer
+with Observer():
+    print(*(len(rospy.get_param(name).split()) for name in ("rosdistro", "/rosversion")))
+"""
+
+
+def test_the_master_has_the_parameters_that_roscore_sets():
+    assert _said_by(_ASKED) == "1 1\n"
+
+
 _TOLD_TWICE = """
 import threading
 from rospy.impl.masterslave import ROSHandler

@@ -13,6 +13,7 @@ missed, however busy the machine is.
 
 import collections
 import dataclasses
+import importlib.metadata
 import io
 import logging
 import os
@@ -46,6 +47,11 @@ _LAG_TICK = 0.05  # seconds
 _HEADER = 2048  # bytes that are read at once of what a publisher says of itself
 
 
+# The parameters that roscore sets, as its roscore.xml says.
+_OF_ROSCORE = {
+    "/rosdistro": os.environ.get("ROS_DISTRO", "Debian") + "\n",
+    "/rosversion": importlib.metadata.version("rosmaster") + "\n",
+}
 _LEVELS = {
     LogMessage.DEBUG: "DEBUG",
     LogMessage.INFO: "INFO",
@@ -82,6 +88,8 @@ class Observer:
         # rosmaster says much to the root logger, which writes it to standard error.
         logging.getLogger("rosmaster").setLevel(logging.CRITICAL)
         self._handler = _Master(self)
+        for name, value in _OF_ROSCORE.items():
+            self._handler.param_server.set_param(name, value)
         self._server = rosgraph.xmlrpc.XmlRpcNode(0, self._handler)
         self._server.start()
         while not self._server.uri:

@@ -14,6 +14,7 @@ from mrp_check.sources import asked
 from mrp_check.sources.asked import Said
 
 _ALIKE = 0.8
+_OF_ROSCORE = {"rosdistro", "rosversion", "run_id"}
 
 
 class _Words(NamedTuple):
@@ -48,7 +49,7 @@ def _findings(case: Case) -> Iterator[Finding]:
     every = [one for found in said.values() for one in found]
     params = {last_part(name) for name in (case.launch.params if case.launch else {})}
     services = {one.base for one in every if one.what == "offers"}
-    given = params | {one.base for one in every if one.what == "sets"}
+    given = params | {one.base for one in every if one.what == "sets"} | _OF_ROSCORE
     yield from _lacking(said, "asks", services, every, _SERVICE)
     served = {one.base for one in every if one.what == "serves"}
     own = {file for files in case.facts.sources.values() for file in files}
