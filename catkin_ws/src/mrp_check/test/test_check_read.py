@@ -18,6 +18,7 @@ from mrp_check.rules import (
     global_names,
     launched,
     load_manifest,
+    remapped,
     unread,
     unset,
     waiting,
@@ -175,6 +176,31 @@ def test_a_parameter_of_a_nodes_own_is_read_as_one(source, params, lines, tmp_pa
     known.nodes = {"a": types.SimpleNamespace(is_up=True)}
     known.launches = [Launch("", nodes=[node], files=[], params=params, file="a.launch")]
     assert [one.line for one in check_rules.of(unread.RULE, known)] == lines
+
+
+@pytest.mark.parametrize(
+    ("remap", "topic", "found"),
+    [
+        (("~out", "b"), "/group/b", 0),
+        (("out", "group/out"), "/group/group/out", 0),
+        (("out", "/b"), "/b", 0),
+        (("ou", "b"), "/group/out", 1),
+        (("~ou", "b"), "/group/a/out", 1),
+    ],
+    ids=range(5),
+)
+def test_a_launch_file_renames_what_its_node_uses(remap, topic, found, tmp_path):
+    known = case(check_rules.make(tmp_path / "some_pkg", src__a_DOT_cpp=MAIN.format("f();")))
+    node = Started("some_pkg", "a", "a", "/group", "", [remap], [], "", "", None)
+    seen = types.SimpleNamespace(publications=[], subscriptions=[])
+    seen.publications.append(types.SimpleNamespace(node=node.path, topic=topic))
+    launched_ = types.SimpleNamespace(
+        nodes={node.path: "a"}, seen=types.SimpleNamespace(seen=seen), file="a.launch"
+    )
+    known.observed = types.SimpleNamespace(launches=[launched_])
+    known.launch = Launch("", nodes=[node], files=[], params={}, file="a.launch")
+    known.nodes = {"a": types.SimpleNamespace(is_up=True)}
+    assert len([*check_rules.of(remapped.RULE, known)]) == found
 
 
 @pytest.mark.parametrize(("name", "found"), [("a", []), ("b", [("messages", 2)])])

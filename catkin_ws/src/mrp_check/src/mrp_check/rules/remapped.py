@@ -33,8 +33,8 @@ def _of(case: Case, launched: Launched, name: str, node: Started) -> Iterator[Fi
     files = case.facts.sources.get(name, [])
     services = {one.base for one in asked.of(case.package, files)}
     for old, new in node.remaps:
-        base = last_part(old)
-        if not topics or new in topics or base in services:
+        base = last_part(old).lstrip("~")
+        if not topics or node.resolved(new) in topics or base in services:
             continue
         # It may be made only later on; a name that the sources have nowhere is not.
         used = [topic for topic in topics if last_part(topic) == base]

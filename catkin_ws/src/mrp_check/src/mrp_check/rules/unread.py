@@ -94,7 +94,7 @@ def _of_own(case: Case, launch: Launch, node: Started, text: str) -> Iterator[Fi
 def _of_remaps(case: Case, node: Started, text: str) -> Iterator[Finding]:
     """Yield those of a node that was not seen: of one that was, it is known what it uses."""
     for old, new in node.remaps:
-        if not _is_named(last_part(old), text):
+        if not _is_named(last_part(old).lstrip("~"), text):
             yield Finding(
                 "topic",
                 f"The launch file renames {old} of {node.name}, and no source of this package has"
