@@ -3,6 +3,7 @@
 
 import dataclasses
 import re
+import types
 
 import check_rules
 import pytest
@@ -178,6 +179,23 @@ def test_broken_cmake(old, new, line, says, tmp_path):
     (finding,) = [*file_findings(cmake_rule, package), *file_findings(targets, package)]
     assert (finding.file, finding.line) == ("CMakeLists.txt", line)
     assert says in finding.message
+
+
+@pytest.mark.parametrize(
+    ("comment", "source", "lines"),
+    [
+        ("# add_executable(b src/b.cpp)", "int main() {}\n", [5]),
+        ("# add_executable(b src/b.cpp)", "int other() {}\n", []),
+        ("# b.cpp is an old one", "int main() {}\n", []),
+        ("# see below\nadd_executable(b src/b.cpp)", "int main() {}\n", []),
+    ],
+    ids=range(4),
+)
+def test_a_program_of_which_a_comment_makes_a_target(comment, source, lines, tmp_path):
+    text_ = CMAKE.replace("catkin_install", f"{comment}\ncatkin_install")
+    package = check_rules.make(tmp_path, CMakeLists_DOT_txt=text_, src__b_DOT_cpp=source)
+    known = types.SimpleNamespace(is_contract=False)
+    assert [one.line for one in file_findings(targets, package, spec=known)] == lines
 
 
 def test_cmake_as_text():

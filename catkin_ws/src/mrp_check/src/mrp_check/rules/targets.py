@@ -11,12 +11,14 @@ from mrp_check import evidence
 from mrp_check.case import Case
 from mrp_check.contract.finding import NOTE, WARNING, Finding
 from mrp_check.contract.requirements import Requirement, Rule
-from mrp_check.contract.words import nearest, perhaps
+from mrp_check.contract.words import last_part, nearest, perhaps
+from mrp_check.sources import uses
 from mrp_check.student.cmake import Call, Model, parsed
 from mrp_check.student.package import Package
 
 _LAUNCH_FILE = {"add_rostest": 0, "add_rostest_gtest": 1, "add_rostest_gmock": 1}  # its place
 _NO_LAUNCH_FILES = (".cpp", ".cc", ".cxx", ".py")
+_MAIN = re.compile(r"\bint\s+main\s*\(")
 _NO_FOLDERS = ("BEFORE", "AFTER", "SYSTEM")
 
 
@@ -27,6 +29,7 @@ def _findings(case: Case) -> Iterator[Finding]:
     yield from _no_system_libraries(case.model)
     yield from _no_folders(case.model)
     yield from _no_launch_files(case.package)
+    yield from _commented_out(case) if not case.spec.is_contract else ()
 
 
 def _no_sources(case: Case) -> Iterator[Finding]:
@@ -119,6 +122,26 @@ def _no_folders(model: Model) -> Iterator[Finding]:
                 )
                 finding.severity = NOTE
                 yield finding
+
+
+def _commented_out(case: Case) -> Iterator[Finding]:
+    """Yield a warning for each program that only a comment of CMakeLists.txt makes a target of."""
+    made = {source for target in case.model.targets.values() for source in target.sources}
+    file = "CMakeLists.txt"
+    for source in {*case.package.of_kind("cpp")} - made:
+        name = re.escape(last_part(source))
+        comment = rf"^\s*#+\s*add_executable\s*\(.*[\s/(]{name}\b"
+        place = case.package.first_match([file], comment)
+        if place and _MAIN.search(uses.code(case.package, source)):
+            yield Finding(
+                "targets",
+                f"This line is a comment: nothing is made of {source}.",
+                *place,
+                WARNING,
+                expected=f"add_executable(... {source})",
+                seen=case.package.lines(file)[place[1] - 1].strip(),
+                fix="Take the # out, there and before the lines that belong to it.",
+            )
 
 
 def _no_launch_files(package: Package) -> Iterator[Finding]:
