@@ -64,9 +64,13 @@ def _is_rospys(source: Source) -> bool:
 
 def _goes_on(source: Source, loop: ast.While) -> bool:
     """Return whether a loop goes on for ever, whatever is asked of the node."""
-    if not isinstance(loop.test, ast.Constant) or not loop.test.value:
-        return False
     within = [node for one in loop.body for node in ast.walk(one)]
+    if isinstance(loop.test, ast.Constant):
+        is_endless = bool(loop.test.value)
+    else:
+        is_endless = _waits_for_others(source, loop, within)
+    if not is_endless:
+        return False
     for node in within:  # it grows: what the loop calls belongs to it
         if isinstance(node, ast.Call):
             function = source.definition(node.func)
@@ -76,6 +80,19 @@ def _goes_on(source: Source, loop: ast.While) -> bool:
         return False
     named = (node for node in within if isinstance(node, (ast.Attribute, ast.Name)))
     return not any(getattr(one, "attr", getattr(one, "id", "")) in _ENDS for one in named)
+
+
+def _waits_for_others(source: Source, loop: ast.While, within: list[ast.AST]) -> bool:
+    """Return whether a loop sleeps until a callback changes what it asks: none is called any more
+    once the node is to end."""
+    asked = [*ast.walk(loop.test)]
+    keys = {source.key(node) for node in asked} - {None}
+    given = {
+        source.key(node) for node in within if isinstance(getattr(node, "ctx", None), ast.Store)
+    }
+    calls = [getattr(node.func, "id", "") for node in asked if isinstance(node, ast.Call)]
+    sleeps = any(getattr(node, "attr", "") == "sleep" for node in within)
+    return bool(keys) and not keys & given and set(calls) <= {"len"} and sleeps
 
 
 RULE = Rule("stop", 31, ("nodes",), _findings, also=("exit",), only=ANY)
