@@ -5,8 +5,9 @@ import types
 
 import check_rules
 import pytest
+from mrp_check.confined.places import Kind, Place
 from mrp_check.contract.finding import ERROR, WARNING
-from mrp_check.rules import deaf_loop, deaf_python, types_written, unbuilt
+from mrp_check.rules import cpp_format, deaf_loop, deaf_python, same_name, types_written, unbuilt
 from mrp_check.sources.facts import Facts
 from mrp_check.sources.python_source import Source
 
@@ -73,6 +74,42 @@ def test_a_loop_in_python_asks_whether_the_node_is_to_go_on(loop, is_up, found, 
     nodes = {"a": types.SimpleNamespace(is_up=is_up)}
     known = types.SimpleNamespace(package=package, facts=facts, nodes=nodes)
     assert [one.line for one in check_rules.of(deaf_python.RULE, known)] == found
+
+
+@pytest.mark.parametrize(
+    ("logs", "found"),
+    [
+        ("ROS_INFO(msg->data.c_str());", [1]),
+        ("ROS_WARN( text.c_str() );", [1]),
+        ('ROS_INFO("%s", msg->data.c_str());', []),
+        ("ROS_INFO_STREAM(msg->data.c_str());", []),
+    ],
+    ids=range(4),
+)
+def test_what_is_logged_is_no_format(logs, found, tmp_path):
+    known = case(check_rules.make(tmp_path / "some_pkg", src__a_DOT_cpp=f"void f() {{ {logs} }}\n"))
+    assert [one.line for one in check_rules.of(cpp_format.RULE, known)] == found
+
+
+@pytest.mark.parametrize(
+    ("files", "anonymous", "found"),
+    [
+        (["a.py", "b.py"], None, ["b.py"]),
+        (["a.cpp", "b.cpp"], None, ["b.cpp"]),
+        (["a.py", "b.cpp"], None, []),
+        (["a.py", "b.py"], True, []),
+        (["a.py", "a.py"], None, []),
+    ],
+    ids=range(5),
+)
+def test_two_programs_of_one_name(files, anonymous, found, tmp_path):
+    names = {f"{file.replace('.', '_DOT_')}": "name\n" for file in files}
+    known = case(check_rules.make(tmp_path / "some_pkg", **names))
+    known.facts.sources = {f"node_{number}": [file] for number, file in enumerate(files)}
+    known.facts.places = [
+        Place(file, 1, Kind.INIT, "talker", anonymous=anonymous) for file in files
+    ]
+    assert [one.file for one in check_rules.of(same_name.RULE, known)] == found
 
 
 TAKES = "void heard(const {}& m) {{}}\n"

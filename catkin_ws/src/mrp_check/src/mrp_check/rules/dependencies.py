@@ -183,7 +183,10 @@ def _passed_on(used: Mapping[str, Use], manifest: Manifest, model: Model) -> Ite
     if call is None or not model.complete:
         return
     cpp = {n for n, use in used.items() if use.language == "cpp" and use.firm}
-    missing = sorted((cpp & declared(manifest)["build"]) - set(model.depends))
+    needed = cpp & declared(manifest)["build"]
+    if model.generate and model.message_files:
+        needed.add("message_runtime")
+    missing = sorted(needed - set(model.depends))
     if missing:
         yield Finding(
             "dependencies",
