@@ -4,6 +4,7 @@
 import pytest
 from mrp_check import causes
 from mrp_check.contract.finding import Finding
+from mrp_check.running import words
 from mrp_check.sources.facts import Facts
 
 pytestmark = pytest.mark.quick
@@ -171,3 +172,9 @@ def test_the_same_is_told_once():
     assert len(causes.told_once(findings(of_no_node, entry), facts())) == 1
     of_another = ("spin", "src/a.py", 1, "static", "b")
     assert len(causes.told_once(findings(entry, of_another), facts())) == 2
+
+
+def test_last_words_have_no_time():
+    """They are the same in each run."""
+    said = ["[ INFO] [1795624487.418407537]: yes", "[ERROR] [1795624487.5, 3.2]: no", ""]
+    assert words.last_words(said) == "ERROR: no"

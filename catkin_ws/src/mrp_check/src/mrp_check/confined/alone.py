@@ -45,12 +45,14 @@ def run(plan: DirectPlan, observer: Observer, starter: apart.Starter) -> DirectR
         node.end(signal.SIGKILL if node.plan.is_wrap or node.plan.example else plan.signal)
     while any([node.is_ending(plan.common.stop_seconds) for node in running]):
         time.sleep(TICK)
-    stuck = [node for node in running if node.program.poll() is None]
-    for node in stuck:
-        if node.plan.hook:
-            node.program.send(signal.SIGUSR1)  # the hook then prints where each thread stands
-    time.sleep(_STACK_SECONDS if stuck else 0)
     results = {node.key: node.result() for node in nodes}
+    stuck = [node for node in nodes if results[node.key].killed]
+    # The hook then prints where the node stands; and where each thread does, which may end it.
+    for number in (signal.SIGUSR1, signal.SIGUSR2) if stuck else ():
+        for node in stuck:
+            if node.plan.hook:
+                node.program.send(number)
+        time.sleep(_STACK_SECONDS)
     for node in stuck:
         node.program.kill()
     left = left_behind({node.key: node.program for node in nodes})

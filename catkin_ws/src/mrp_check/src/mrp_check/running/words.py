@@ -25,9 +25,9 @@ def few(values: Sequence[object]) -> str:
 
 
 def last_words(lines: Iterable[str]) -> str:
-    """Return the last line that says something, or an empty text."""
-    lines = [line.strip() for line in lines if PREFIX.sub("", line).strip()]
-    return lines[-1][:300] if lines else ""
+    """Return the last line that says something, without its time; or an empty text."""
+    lines = [line for line in lines if PREFIX.sub("", line).strip()]
+    return PREFIX.sub(r"\g<level>: ", lines[-1]).strip()[:300] if lines else ""
 
 
 def code_text(code: int | None) -> str:

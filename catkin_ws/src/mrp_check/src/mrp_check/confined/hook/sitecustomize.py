@@ -13,7 +13,7 @@ it near its end, and tells what follows:
     event: set, with the names of what holds the counter; or not_found
     event: after, with a value; or error, with its text, file and line
 
-On SIGUSR1 it prints where each thread stands.
+On SIGUSR1 it prints where the main thread stands, and on SIGUSR2 where each thread does.
 """
 
 import ctypes
@@ -387,6 +387,7 @@ def _local_setter(frame: types.FrameType, name: str) -> Callable[[Any], None]:
 
 
 if _HOOK:
-    faulthandler.register(signal.SIGUSR1, all_threads=True)
+    faulthandler.register(signal.SIGUSR1, all_threads=False)
+    faulthandler.register(signal.SIGUSR2, all_threads=True)
     sys.meta_path.insert(0, _AfterRospy())
     _tell_exits()
