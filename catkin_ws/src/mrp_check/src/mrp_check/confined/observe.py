@@ -46,7 +46,6 @@ _TEXT = 2000  # characters of a line
 _LAG_TICK = 0.05  # seconds
 _HEADER = 2048  # bytes that are read at once of what a publisher says of itself
 
-
 # The parameters that roscore sets, as its roscore.xml says.
 _OF_ROSCORE = {
     "/rosdistro": os.environ.get("ROS_DISTRO", "Debian") + "\n",

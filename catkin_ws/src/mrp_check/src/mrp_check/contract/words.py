@@ -29,6 +29,11 @@ def last_part(name: str) -> str:
     return name.rsplit("/", 1)[-1]
 
 
+def with_article(name: str) -> str:
+    """Return a name behind a or an, whichever it takes."""
+    return f"{'an' if name[0] in 'AEIOUaeiou' else 'a'} {name}"
+
+
 def nearest(name: str, names: Iterable[str], alike: float = 0.6) -> str | None:
     """Return the name that is most like it, or None. alike: how much at least, up to 1."""
     return next(iter(difflib.get_close_matches(name, list(names), 1, alike)), None)

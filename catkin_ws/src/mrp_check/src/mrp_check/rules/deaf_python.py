@@ -71,13 +71,10 @@ def _goes_on(source: Source, loop: ast.While) -> bool:
         is_endless = _waits_for_others(source, loop, within)
     if not is_endless:
         return False
-    for node in within:  # it grows: what the loop calls belongs to it
-        if isinstance(node, ast.Call):
-            function = source.definition(node.func)
-            if isinstance(function, ast.FunctionDef) and function not in within:
-                within += [function, *(n for n in ast.walk(function) if not isinstance(n, _LEAVES))]
     if any(isinstance(node, _LEAVES) for node in within):
         return False
+    for function in source.called(loop.body):
+        within += ast.walk(function)  # what the loop calls belongs to it
     named = (node for node in within if isinstance(node, (ast.Attribute, ast.Name)))
     return not any(getattr(one, "attr", getattr(one, "id", "")) in _ENDS for one in named)
 

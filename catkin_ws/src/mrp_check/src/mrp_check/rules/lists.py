@@ -8,6 +8,7 @@ from typing import Iterator
 
 from mrp_check.contract.finding import Finding
 from mrp_check.contract.requirements import Rule
+from mrp_check.contract.words import with_article
 from mrp_check.sources.python_rule import PythonRule, of_sources
 
 # https://docs.python.org/3/whatsnew/3.0.html#views-and-iterators-instead-of-lists
@@ -47,7 +48,7 @@ class Lists(PythonRule):
         yield self.finding(
             "python-names",
             f"In Python 3, {name}() returns no list, and {use} needs one: Python ends with"
-            f" {'an' if error[0] in 'AEIOU' else 'a'} {error} when it comes here.",
+            f" {with_article(error)} when it comes here.",
             node,
             expected=f"list(...) around what {name}() returns",
             fix=f"Write list(...) around {name}(...).",

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import re
 from typing import Iterator, Mapping
 
 from catkin_pkg.package import Package as Manifest
@@ -87,9 +86,9 @@ def _in_cmake(case: Case, files: list[str]) -> Iterator[Finding]:
 
 def _is_of_action(path: str, model: Model) -> bool:
     """Return whether a message is one that an action is made into: code is made of it."""
-    named = re.fullmatch(r"(?:.*/)?(\w+?)(?:Action)?(?:Goal|Feedback|Result)?\.msg", path)
-    actions = (last_part(one)[: -len(".action")] for one in model.message_files)
-    return named is not None and named[1] in actions
+    actions = (one for one in model.message_files if one.endswith(".action"))
+    made = {name for one in actions for name in uses.generated(one)}
+    return path.endswith(".msg") and last_part(path)[: -len(".msg")] in made
 
 
 def _elsewhere(case: Case, path: str) -> str | None:

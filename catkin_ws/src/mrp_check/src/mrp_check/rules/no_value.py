@@ -8,6 +8,7 @@ from typing import Iterator
 
 from mrp_check.contract.finding import ERROR, WARNING, Finding
 from mrp_check.contract.requirements import Rule
+from mrp_check.contract.words import with_article
 from mrp_check.rules.responses import falls_through
 from mrp_check.rules.rospy_calls import returns
 from mrp_check.sources.python_rule import PythonRule, of_sources
@@ -30,7 +31,7 @@ class NoValue(PythonRule):
             yield self.finding(
                 "python-names",
                 f"{function.name}() returns nothing{'' if always else ' after an error'}, and"
-                f" nothing has {has}: Python ends with {'an' if error[0] == 'A' else 'a'} {error}"
+                f" nothing has {has}: Python ends with {with_article(error)}"
                 " when it comes here" + ("." if always else " then."),
                 node,
                 severity=ERROR if always else WARNING,

@@ -8,6 +8,7 @@ from typing import Iterator
 
 from mrp_check.contract.finding import WARNING, Finding
 from mrp_check.contract.requirements import Rule
+from mrp_check.contract.words import with_article
 from mrp_check.rules.early_callback import may_be_inherited
 from mrp_check.sources.python_facts import argument
 from mrp_check.sources.python_rule import PythonRule, ast_text, of_sources
@@ -39,7 +40,7 @@ class Unheard(PythonRule):
             yield self.finding(
                 "callbacks",
                 f"Only a message gives {name} a value: before the first one, Python ends with"
-                f" {'a' if error[0] == 'N' else 'an'} {error} when it comes here.",
+                f" {with_article(error)} when it comes here.",
                 node,
                 severity=WARNING,
                 expected=f"a value of {name} from the beginning",
@@ -53,16 +54,8 @@ class Unheard(PythonRule):
             if self.source.dotted(call.func) == "rospy.Subscriber":
                 function = self.source.definition(argument(call, 2, "callback"))
                 if isinstance(function, ast.FunctionDef):
-                    found[function] = set()
-                    self._add(function, found[function])
+                    found[function] = {function, *self.source.called([function])}
         return found
-
-    def _add(self, function: ast.AST, called: set[ast.AST]) -> None:
-        called.add(function)
-        for call in (node for node in ast.walk(function) if isinstance(node, ast.Call)):
-            one = self.source.definition(call.func)
-            if isinstance(one, ast.FunctionDef) and one not in called:
-                self._add(one, called)
 
     def _variables(
         self, context: type[ast.expr_context]

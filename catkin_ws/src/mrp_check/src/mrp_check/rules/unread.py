@@ -21,7 +21,7 @@ _UNSEEN = re.compile(
     r"|dynamic_reconfigure|nodelet|plugin|actionlib|image_transport|camera_info|controller|diagnos"
     r"|tf2?_ros|moveit|message_filters"
 )
-# Of a node that reads a parameter of its own, or puts its own name before a parameter.
+# A node that has one of these may read its own parameters.
 _PRIVATE = re.compile(r"""["']~|get_name\s*\(|getName\s*\(|getNamespace|PrivateNodeHandle""")
 
 
@@ -41,9 +41,8 @@ def _findings(case: Case) -> Iterator[Finding]:
 
 
 def _of_params(case: Case, launch: Launch, node: Started, text: str) -> Iterator[Finding]:
-    for name in launch.params:
-        own = name[len(node.path) + 1 :] if name.startswith(f"{node.path}/") else ""
-        if not own or any(_is_named(part, text) for part in own.split("/")):
+    for own in _own(launch, node).values():
+        if any(_is_named(part, text) for part in own.split("/")):
             continue
         lines = [
             (file, element.line)
@@ -65,13 +64,18 @@ def _of_params(case: Case, launch: Launch, node: Started, text: str) -> Iterator
         )
 
 
+def _own(launch: Launch, node: Started) -> dict[str, str]:
+    """Return full name -> the rest behind the node's own, of the parameters that it is given."""
+    begin = f"{node.path}/"
+    return {name: name[len(begin) :] for name in launch.params if name.startswith(begin)}
+
+
 def _of_own(case: Case, launch: Launch, node: Started, text: str) -> Iterator[Finding]:
     """Yield a Finding about a parameter of a node's own that its sources ask for as another one."""
     if _PRIVATE.search(text):
         return
     said = sorted(asked.of(case.package, case.facts.sources[node.type]), key=lambda one: one.line)
-    for name in launch.params:
-        own = name[len(node.path) + 1 :] if name.startswith(f"{node.path}/") else ""
+    for name, own in _own(launch, node).items():
         there = [one for one in said if one.what in ("reads", "knows") and one.name == own]
         others = [one for one in launch.params if one != name and last_part(one) == last_part(own)]
         if there and not others:

@@ -51,8 +51,6 @@ _IN_PYTHON3: Sequence[tuple[str, Callable[[str], str]]] = (
     (r"Maybe you meant '=='", lambda text: _EQUAL.sub(r"\1==", text)),
     (r"inconsistent use of tabs|unindent does not match", lambda text: text.expandtabs(8)),
 )
-
-
 # What Python says -> what stands in each line of the kind.
 _OF_PYTHON2 = (("call to 'print'", _PRINT), ("multiple exception types", _EXCEPT))
 

@@ -8,7 +8,7 @@ import functools
 import importlib
 import operator
 import warnings
-from typing import Any, Callable, Iterator, Optional, Tuple, TypeVar, Union
+from typing import Any, Callable, Iterable, Iterator, Optional, Tuple, TypeVar, Union
 
 from mrp_check.contract.finding import Finding
 from mrp_check.sources import uses
@@ -252,6 +252,17 @@ class Source:
             return None
         kinds = (ast.FunctionDef, ast.ClassDef, ast.Lambda)
         return found[0] if len(found) == 1 and isinstance(found[0], kinds) else None
+
+    def called(self, parts: Iterable[ast.AST]) -> list[ast.FunctionDef]:
+        """Return the source's own functions that some parts of it call, and what those call."""
+        found: list[ast.FunctionDef] = []
+        nodes = [node for part in parts for node in ast.walk(part)]
+        for node in nodes:  # it grows
+            one = self.definition(node.func) if isinstance(node, ast.Call) else None
+            if isinstance(one, ast.FunctionDef) and one not in found:
+                found.append(one)
+                nodes += ast.walk(one)
+        return found
 
     # Which values are plain.
 
