@@ -18,6 +18,7 @@ FILE = "CMakeLists.txt"
 _ROUND = re.compile(
     r"^[^#\n]*\$\(((?:CATKIN|CMAKE|PROJECT|catkin)_\w+|PROJECT_NAME)\)", re.MULTILINE
 )
+_USES_FOUND = ("include_directories", "target_include_directories", "target_link_libraries")
 _LOST = ", and its executables are put where roslaunch and rosrun do not look"
 
 
@@ -27,6 +28,7 @@ def _findings(case: Case) -> Iterator[Finding]:
         yield from _too_late(case.model)
         yield from _no_folder(case.package, case.model)
         yield from _in_round_brackets(case.package)
+        yield from _twice(case.model)
     else:
         yield Finding(
             "cmake",
@@ -52,6 +54,31 @@ def _in_round_brackets(package: Package) -> Iterator[Finding]:
             fix=f"Write ${{{name}}}.",
             change=(f"$({name})", f"${{{name}}}"),
         )
+
+
+def _twice(model: Model) -> Iterator[Finding]:
+    """Yield a warning if catkin is found again: what the first call alone names is forgotten."""
+    finds = [call for call in model.calls if call.command == "find_package"]
+    first, *others = [call for call in finds if call.arguments[:1] == ["catkin"]] or [None]
+    for call in others[-1:]:
+        is_last = not any(c.command in _USES_FOUND for c in model.calls[model.calls.index(call) :])
+        lost = (
+            ()
+            if is_last
+            else sorted({*first.arguments} - {*call.arguments, "REQUIRED", "COMPONENTS"})
+        )
+        if lost:
+            yield Finding(
+                "cmake",
+                f"find_package(catkin ...) is called again, after line {first.line}:"
+                f" catkin_LIBRARIES has nothing of {', '.join(lost)} any more.",
+                call.file,
+                call.line,
+                WARNING,
+                expected="one call, which names all",
+                seen=f"find_package({' '.join(call.arguments)})",
+                fix=f"Write all of it into line {first.line}, and take this one out.",
+            )
 
 
 def _missing_calls(package: Package, model: Model) -> Iterator[Finding]:

@@ -46,6 +46,9 @@ def _findings(case: Case) -> Iterator[Finding]:
         yield from _several(package, manifest)
         yield from _no_packages(package, manifest, used)
         yield from _passed_on(used, manifest, model)
+        if model.catkin and not case.spec.is_contract:
+            yield from _asked_for(package, manifest, model, used)
+            yield from _not_found(model)
 
 
 def _all(manifest: Manifest, tests: bool) -> set[str]:
@@ -177,6 +180,49 @@ def _not_in_cmake(name: str, use: Use, model: Model, call: Call) -> Finding:
     )
 
 
+def _asked_for(
+    package: Package, manifest: Manifest, model: Model, used: Collection[str]
+) -> Iterator[Finding]:
+    """Yield a warning for each package that CMakeLists.txt alone names: nothing uses it."""
+    known = {*_all(manifest, tests=True), *used, "catkin", "message_generation", "genmsg"}
+    for name, call in model.components.items():
+        if name not in known and uses.is_ros_package(name):
+            yield Finding(
+                "dependencies",
+                f"CMakeLists.txt asks for {name}, and package.xml does not name it: where it is not"
+                " installed, CMake stops.",
+                call.file,
+                call.line,
+                WARNING,
+                expected=f"<build_depend>{name}</build_depend>; or no {name} in COMPONENTS",
+                seen=f"{name} in {call.file}, and not in package.xml",
+                fix=f"Take {name} out of COMPONENTS if nothing of it is used; or declare it.",
+            )
+
+
+def _of_messages(model: Model) -> list[str]:
+    """Return the packages whose messages the package's own ones have parts of."""
+    named = model.generate.arguments if model.generate else []
+    return [name for name in named if uses.is_ros_package(name)]
+
+
+def _not_found(model: Model) -> Iterator[Finding]:
+    """Yield a warning for each package that generate_messages() names, and nothing finds."""
+    for name in _of_messages(model):
+        if model.generate and name not in model.components:
+            yield Finding(
+                "dependencies",
+                f"generate_messages() names {name}, and find_package(catkin ...) does not: CMake"
+                " knows it only if another package brings it along.",
+                model.generate.file,
+                model.generate.line,
+                WARNING,
+                expected=f"{name} in find_package(catkin REQUIRED COMPONENTS ...)",
+                seen=f"generate_messages({' '.join(model.generate.arguments)})",
+                fix=f"Add {name} to the COMPONENTS of find_package().",
+            )
+
+
 def _passed_on(used: Mapping[str, Use], manifest: Manifest, model: Model) -> Iterator[Finding]:
     """Yield a finding about CATKIN_DEPENDS."""
     call = model.catkin_package
@@ -185,7 +231,7 @@ def _passed_on(used: Mapping[str, Use], manifest: Manifest, model: Model) -> Ite
     cpp = {n for n, use in used.items() if use.language == "cpp" and use.firm}
     needed = cpp & declared(manifest)["build"]
     if model.generate and model.message_files:
-        needed.add("message_runtime")
+        needed |= {"message_runtime", *_of_messages(model)}
     missing = sorted(needed - set(model.depends))
     if missing:
         yield Finding(

@@ -30,6 +30,8 @@ def names_no_program(shebang: str) -> str | None:
     words = shebang[2:].strip().split()
     if not words:
         return "nothing"
+    if not words[0].startswith("/"):
+        return words[0]
     if os.path.basename(words[0]) == "env":
         rest = [word for word in words[1:] if not word.startswith("-") and "=" not in word]
         program = rest[0] if rest else "nothing"
@@ -50,7 +52,8 @@ def _findings(case: Case) -> Iterator[Finding]:
         is_node = path in case.started or path in nodes or path in {s.path for s in model.scripts}
         if is_node or shebang and _is_node(package, path):
             # What catkin_install_python() puts beside it starts it; once installed, nothing does.
-            is_left = not shebang or "python2" in shebang
+            plain = shebang[2:].strip()
+            is_left = "python2" in shebang or not plain.startswith("/")
             runs = path in relayed and is_left and not case.spec.is_contract
             for finding in _of(package, model, path, shebang, path in relayed):
                 is_less = runs and finding.severity == ERROR

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Python: a text that has a variable's name in braces begins with f, or is filled by format()."""
+"""Python: a text with a place for a value is filled: by f before it, by format() or by %."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from mrp_check.contract.finding import WARNING, Finding
 from mrp_check.contract.requirements import Rule
 from mrp_check.sources.python_rule import PythonRule, of_sources
 
+_PERCENT = re.compile(r"%[-+0 #]*\d*(?:\.\d+)?[sdif]")
 _NAME = re.compile(r"\{([A-Za-z_]\w*)[\w.\[\]]*(?:![rsa])?(?::[^{}]*)?\}")
 
 
@@ -20,7 +21,17 @@ class Unfilled(PythonRule):
             texts = [one for one in call.args if isinstance(one, ast.Constant)]
             for text in texts if self._shows(call) else ():
                 found = _NAME.search(text.value) if isinstance(text.value, str) else None
-                if found and self._is_variable(text, found[1]):
+                if self._is_printed_beside(call, text):
+                    yield self.finding(
+                        "python-names",
+                        "print() shows the % as it stands here, and the values behind it: only a %"
+                        " between the text and them fills it.",
+                        text,
+                        severity=WARNING,
+                        expected="print(TEXT % (VALUES))",
+                        fix="Write % for the comma, and brackets around the values.",
+                    )
+                elif found and self._is_variable(text, found[1]):
                     yield self.finding(
                         "python-names",
                         f"The text shows {found[0]} as it stands here: Python puts a value there"
@@ -36,6 +47,12 @@ class Unfilled(PythonRule):
         name = self.source.dotted(call.func) or ""
         plain = getattr(call.func, "attr", getattr(call.func, "id", ""))
         return name.startswith("rospy.log") or plain in ("print", "publish")
+
+    def _is_printed_beside(self, call: ast.Call, text: ast.Constant) -> bool:
+        """Return whether print() is given a format, and as many values behind it."""
+        is_first = getattr(call.func, "id", "") == "print" and call.args[0] is text
+        places = _PERCENT.findall(text.value) if isinstance(text.value, str) else []
+        return is_first and bool(places) and len(call.args) == len(places) + 1
 
     def _is_variable(self, text: ast.Constant, name: str) -> bool:
         return any(self.source.stored((scope, name)) for scope in self.source.above(text))

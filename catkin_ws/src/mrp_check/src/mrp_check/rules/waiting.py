@@ -45,7 +45,7 @@ _PARAMETER = _Words(
 def _findings(case: Case) -> Iterator[Finding]:
     said = {node: [*asked.of(case.package, files)] for node, files in case.facts.sources.items()}
     for node, files in case.facts.sources.items():
-        yield from _unwaited(case, node, files)
+        yield from _unwaited(case, node, files, said)
     every = [one for found in said.values() for one in found]
     params = {last_part(name) for name in (case.launch.params if case.launch else {})}
     services = {one.base for one in every if one.what == "offers"}
@@ -58,10 +58,15 @@ def _findings(case: Case) -> Iterator[Finding]:
     yield from _lacking(said, "reads", given, every, _PARAMETER)
 
 
-def _unwaited(case: Case, node: str, files: list[str]) -> Iterator[Finding]:
-    """Yield a warning if a node calls a service once, and does not wait until it is there."""
+def _unwaited(
+    case: Case, node: str, files: list[str], said: dict[str, list[Said]]
+) -> Iterator[Finding]:
+    """Yield a warning if a node calls a service once, or is launched with what offers it, and does
+    not wait until it is there."""
     place = asked.unwaited(case.package, files)
-    if not place or case.facts.of(node, Kind.SPIN, Kind.LOOP) or case.facts.unread & {*files}:
+    if not place or case.facts.unread & {*files}:
+        return
+    if case.facts.of(node, Kind.SPIN, Kind.LOOP) and not _is_launched_with(case, node, said):
         return
     is_python = case.package.kind(place[0]) == "python"
     wait = "rospy.wait_for_service()" if is_python else "waitForExistence() of the client"
@@ -76,6 +81,16 @@ def _unwaited(case: Case, node: str, files: list[str]) -> Iterator[Finding]:
         fix=f"Call {wait} first.",
         node=node,
     )
+
+
+def _is_launched_with(case: Case, node: str, said: dict[str, list[Said]]) -> bool:
+    """Return whether a launch file starts a node, and one that offers what it asks for."""
+    asks = {one.base for one in said[node] if one.what == "asks"}
+    offers = {
+        n for n, found in said.items() for s in found if s.what == "offers" and s.base in asks
+    }
+    started = [{one.type for one in launch.nodes} for launch in case.launches]
+    return any(node in names and names & offers for names in started)
 
 
 def _lacking(

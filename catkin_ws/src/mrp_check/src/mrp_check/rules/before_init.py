@@ -1,0 +1,99 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What comes before the node's start: nothing is logged yet, and the arguments are not its own yet.
+
+roslaunch and remaps add arguments, such as __name:=talker, and ros::init() takes them out:
+https://wiki.ros.org/roscpp/Overview/Initialization%20and%20Shutdown
+"""
+
+from __future__ import annotations
+
+import ast
+import re
+from typing import Iterator
+
+from mrp_check.case import Case
+from mrp_check.contract.finding import NOTE, WARNING, Finding
+from mrp_check.contract.requirements import ANY, Rule
+from mrp_check.contract.words import line_of
+from mrp_check.sources import uses
+from mrp_check.sources.python_source import Source
+
+_BEFORE = re.compile(r"\bint\s+main\s*\([^)]*\)(.*?)\bros::init\s*\(", re.DOTALL)
+_COUNTS = re.compile(r"\bargc\s*[!=<>]|[!=<>]=?\s*argc\b")
+_LOGS = re.compile(r"\bROS_(?:INFO|WARN|ERROR|FATAL)(?:_STREAM)?\s*\(")
+# Python itself shows what is worse.
+_LOGGED = {"rospy.logdebug", "rospy.loginfo"}
+
+
+def _findings(case: Case) -> Iterator[Finding]:
+    launched = {started.type for launch in case.launches for started in launch.nodes}
+    for node, files in case.facts.sources.items():
+        for file in files:
+            source = case.facts.python.get(file)
+            if source:
+                counted, logged = _in_python(source)
+            elif case.package.kind(file) == "cpp":
+                counted, logged = _in_cpp(uses.code(case.package, file))
+            else:
+                continue
+            start = "rospy.init_node()" if source else "ros::init()"
+            if counted:
+                own = "rospy.myargv()" if source else "argc after ros::init()"
+                severity = WARNING if node in launched or not source else NOTE
+                yield Finding(
+                    "starts",
+                    f"{node} counts its arguments with those that are meant for ROS: roslaunch and"
+                    " a remap add some, and then the count is wrong.",
+                    file,
+                    counted,
+                    severity,
+                    expected=own,
+                    seen=case.package.lines(file)[counted - 1].strip(),
+                    fix=f"Count {own}.",
+                    node=node,
+                )
+            if logged:
+                shown = "it is not shown" if source else "it does not come to /rosout"
+                yield Finding(
+                    "node-start",
+                    f"{node} logs this before {start}: {shown}.",
+                    file,
+                    logged,
+                    WARNING,
+                    expected=f"{start} before the first line that is logged",
+                    seen=case.package.lines(file)[logged - 1].strip(),
+                    fix=f"Move it to below {start}.",
+                    node=node,
+                )
+
+
+def _in_cpp(text: str) -> tuple[int, int]:
+    """Return the lines at which main() counts arguments, and logs, before ros::init(); or 0."""
+    before = _BEFORE.search(text)
+    found = [shape.search(text, *before.span(1)) if before else None for shape in (_COUNTS, _LOGS)]
+    counted, logged = (line_of(match) if match else 0 for match in found)
+    return counted, logged
+
+
+def _in_python(source: Source) -> tuple[int, int]:
+    """Return the lines at which the arguments of ROS are counted, too, and at which something is
+    logged before rospy.init_node(); or 0."""
+    calls = [(source.dotted(call.func), call) for call in source.nodes(ast.Call)]
+    starts = [call for name, call in calls if name == "rospy.init_node"]
+    counted = [
+        call.lineno
+        for call in source.nodes(ast.Call)
+        if isinstance(call.func, ast.Name) and call.func.id == "len"
+        if call.args and source.dotted(call.args[0]) == "sys.argv"
+    ]
+    is_own = any(name == "rospy.myargv" for name, _ in calls)
+    logged = [
+        call.lineno
+        for name, call in calls
+        if name in _LOGGED and len(starts) == 1
+        if source.function(call) is source.function(starts[0]) and call.lineno < starts[0].lineno
+    ]
+    return 0 if is_own else min(counted, default=0), min(logged, default=0)
+
+
+RULE = Rule("static", 96, ("facts", "launch"), _findings, also=("starts", "node-start"), only=ANY)

@@ -1,0 +1,98 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A service looks whether what it divides by is 0: whoever asks may send anything."""
+
+from __future__ import annotations
+
+import ast
+import re
+from typing import Iterator
+
+from mrp_check.case import Case
+from mrp_check.contract.finding import WARNING, Finding
+from mrp_check.contract.requirements import ANY, Rule
+from mrp_check.contract.words import braced, line_of
+from mrp_check.sources import uses
+from mrp_check.sources.python_facts import argument
+from mrp_check.sources.python_source import Source
+from mrp_check.student.package import Package
+
+_OFFERED = re.compile(
+    r"\bbool\s+[\w:]+\s*\(\s*(?:const\s+)?(?:\w+::)*?(\w+?)(?:::)?Request\s*&\s*(\w+)[^)]*\)\s*(?=\{)"
+)
+_DIVISIONS = (ast.Div, ast.FloorDiv, ast.Mod)
+
+
+def _findings(case: Case) -> Iterator[Finding]:
+    for node, files in case.facts.sources.items():
+        for file in files:
+            source = case.facts.python.get(file)
+            if source:
+                found = _in_python(source)
+                what = "this ends the call with a ZeroDivisionError"
+            elif case.package.kind(file) == "cpp":
+                found = _in_cpp(case.package, uses.code(case.package, file))
+                what = "the program dies of it"
+            else:
+                continue
+            for field, line in found:
+                yield Finding(
+                    "services",
+                    f"Nobody looks whether {field} of the request is 0: then {what}.",
+                    file,
+                    line,
+                    WARNING,
+                    expected=f"a condition on {field} before this line",
+                    seen=case.package.lines(file)[line - 1].strip(),
+                    fix=f"Answer a request whose {field} is 0 in another way.",
+                    node=node,
+                )
+
+
+def _in_cpp(package: Package, text: str) -> Iterator[tuple[str, int]]:
+    """Yield (field, line) of each division of a service by a whole number that is not asked."""
+    for offered in _OFFERED.finditer(text):
+        kind, request = offered.groups()
+        body = braced(text, offered.end())
+        shape = re.compile(rf"[/%]=?\s*{request}\.(\w+)\b")
+        for division in shape.finditer(text, offered.end(), offered.end() + len(body)):
+            field = division[1]
+            asked = rf"{request}\.{field}\s*[!=<>]|[!<>=]\s*{request}\.{field}\b"
+            if _is_whole(package, kind, field) and not re.search(asked, body):
+                yield field, line_of(division)
+
+
+def _is_whole(package: Package, service: str, field: str) -> bool:
+    """Return whether a field of a service of this package's own is a whole number."""
+    paths = [path for path in package.of_kind("service") if path.endswith(f"/{service}.srv")]
+    shape = rf"^\s*u?int\d+\s+{field}\b"
+    return any(re.search(shape, package.text(path), re.MULTILINE) for path in paths)
+
+
+def _in_python(source: Source) -> Iterator[tuple[str, int]]:
+    """Yield (field, line) of each division of a service by what is not asked."""
+    for call in source.nodes(ast.Call):
+        offers = source.dotted(call.func) == "rospy.Service"
+        answer = source.definition(argument(call, 2, "handler")) if offers else None
+        if not isinstance(answer, ast.FunctionDef) or not answer.args.args:
+            continue
+        request = answer.args.args[-1].arg
+        tests = [one.test for one in ast.walk(answer) if isinstance(one, (ast.If, ast.IfExp))]
+        asked = {_field(source, node, request) for test in tests for node in ast.walk(test)}
+        for node in ast.walk(answer):
+            if isinstance(node, ast.BinOp) and isinstance(node.op, _DIVISIONS):
+                field = _field(source, node.right, request)
+                if field and field not in asked:
+                    if not source.is_guarded(node, "ZeroDivisionError", "ArithmeticError"):
+                        yield field, node.lineno
+
+
+def _field(source: Source, node: ast.AST, request: str) -> str | None:
+    """Return the field of the request that an expression is, or None."""
+    if isinstance(node, ast.Name):
+        stored = source.stored(source.key(node))
+        node = stored[0] if len(stored) == 1 and stored[0] else node
+    is_field = isinstance(node, ast.Attribute) and getattr(node.value, "id", "") == request
+    return node.attr if is_field and isinstance(node, ast.Attribute) else None
+
+
+RULE = Rule("static", 98, ("facts",), _findings, also=("services",), only=ANY)

@@ -1,0 +1,103 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A node that publishes right after it has made its publisher publishes to nobody.
+
+A subscriber needs a moment to connect: https://wiki.ros.org/rospy/Overview/Publishers%20and%20Subscribers
+"""
+
+from __future__ import annotations
+
+import ast
+import re
+from typing import Iterator
+
+from mrp_check.case import Case
+from mrp_check.contract.finding import WARNING, Finding
+from mrp_check.contract.requirements import ANY, Rule
+from mrp_check.contract.words import braced, line_of
+from mrp_check.sources import uses
+from mrp_check.sources.python_facts import argument
+from mrp_check.sources.python_source import Source
+
+# All that may take a moment, or is done again and again.
+_MOMENTS = re.compile(
+    r"(?i)sleep|wait|\bwhile\b|spin|getNumSubscribers|\bcin\b|get(line|ch|s)\b|scanf|Timer|usleep"
+    r"|\bcall\s*\(|\bvoid\b|\bbool\b|\bclass\b"
+)
+_MADE = re.compile(r"\b(\w+)\s*=\s*\w+(?:\.|->)advertise\s*<[^;()]*>\s*\(([^;]*)\)\s*;")
+_FOR = re.compile(r"\bfor\s*\([^{}]*\{")
+_WAITS = ("sleep", "wait", "get_num_connections", "input", "spin", "impl", "call")
+
+
+def _findings(case: Case) -> Iterator[Finding]:
+    for node, files in case.facts.sources.items():
+        for file in files:
+            source = case.facts.python.get(file)
+            if source:
+                lines = _in_python(source)
+            elif case.package.kind(file) == "cpp":
+                lines = _in_cpp(uses.code(case.package, file))
+            else:
+                continue
+            for line in lines:
+                yield Finding(
+                    "topic",
+                    f"{node} publishes this at once after it has made its publisher: no subscriber"
+                    " is connected yet, and nobody hears it.",
+                    file,
+                    line,
+                    WARNING,
+                    expected="a wait until somebody is connected; or latch",
+                    seen=case.package.lines(file)[line - 1].strip(),
+                    fix=f"Wait first until {_asked(source)} is more than 0.",
+                    node=node,
+                )
+
+
+def _asked(source: Source | None) -> str:
+    return "get_num_connections()" if source else "getNumSubscribers()"
+
+
+def _in_cpp(text: str) -> Iterator[int]:
+    """Yield the line of the first publish() after each publisher that is made just before."""
+    for made in _MADE.finditer(text):
+        name, given = made.groups()
+        first = re.compile(rf"\b{name}\s*\.\s*publish\s*\(").search(text, made.end())
+        if first and "true" not in given:
+            loop = _FOR.search(text, made.end(), first.start())
+            within = braced(text, loop.end() - 1) if loop else text[made.end() : first.start()]
+            if not _MOMENTS.search(text, made.end(), first.start()) and "sleep" not in within:
+                yield line_of(first)
+
+
+def _in_python(source: Source) -> Iterator[int]:
+    """Yield the same of a source in Python."""
+    calls = sorted(source.nodes(ast.Call), key=lambda call: (call.lineno, call.col_offset))
+    for made in calls:
+        given = source.parents.get(made)
+        is_made = source.dotted(made.func) == "rospy.Publisher" and isinstance(given, ast.Assign)
+        if is_made and isinstance(given, ast.Assign) and argument(made, 6, "latch") is None:
+            key, block = source.key(given.targets[0]), source.parents[given]
+            for call in calls[calls.index(made) + 1 :]:
+                name = getattr(call.func, "attr", getattr(call.func, "id", ""))
+                above = [*source.above(call)]
+                if block not in above or isinstance(source.function(call), ast.Lambda):
+                    continue
+                inside = above[: above.index(block)]
+                if any(word in name for word in _WAITS) or any(map(_repeats, inside)):
+                    break
+                if source.definition(call.func) or source.function(call) is not source.function(
+                    made
+                ):
+                    break
+                if name == "publish" and source.key(getattr(call.func, "value", call)) == key:
+                    yield call.lineno
+                    break
+
+
+def _repeats(one: ast.AST) -> bool:
+    """Return whether a loop may publish the message again, a moment later."""
+    calls = {getattr(node, "attr", "") for node in ast.walk(one)}
+    return isinstance(one, ast.While) or isinstance(one, ast.For) and "sleep" in calls
+
+
+RULE = Rule("static", 100, ("facts",), _findings, also=("topic",), only=ANY)

@@ -1,0 +1,91 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""An action server looks whether its goal has been cancelled, and starts when it is ready.
+
+https://wiki.ros.org/actionlib/DetailedDescription; both libraries warn of auto_start themselves.
+"""
+
+from __future__ import annotations
+
+import ast
+import re
+from typing import Iterator
+
+from mrp_check.case import Case
+from mrp_check.contract.finding import WARNING, Finding
+from mrp_check.contract.requirements import ANY, Rule
+from mrp_check.contract.words import line_of
+from mrp_check.sources import uses
+from mrp_check.sources.python_facts import argument
+from mrp_check.sources.python_source import Source
+
+_SERVER = re.compile(r"\bSimpleActionServer\s*<")
+_STARTED = re.compile(r"\bSimpleActionServer\s*<[^;{}]*>\s*\w+\s*\([^;{}]*,\s*true\s*\)")
+_ASKS = re.compile(r"isPreemptRequested|setPreempted|registerPreemptCallback")
+_FUNCTION = re.compile(r"\bvoid\s+[\w:]+\s*\([^)]*\)")
+_LOOP = re.compile(r"\b(?:for|while)\s*\(")
+_LASTS = re.compile(r"\bpublishFeedback\s*\(|\bsleep\s*\(")
+_LASTING = {"sleep", "publish_feedback"}
+
+
+def _findings(case: Case) -> Iterator[Finding]:
+    for node, files in case.facts.sources.items():
+        for file in files:
+            source = case.facts.python.get(file)
+            if source:
+                loop, started = _in_python(source)
+            elif case.package.kind(file) == "cpp":
+                loop, started = _in_cpp(uses.code(case.package, file))
+            else:
+                continue
+            asked = "is_preempt_requested()" if source else "isPreemptRequested()"
+            if loop:
+                said = "This loop does not ask whether its goal has been cancelled: it goes on."
+                place = file, loop, WARNING, f"{asked} in the loop"
+                seen = case.package.lines(file)[loop - 1].strip()
+                fix = f"Ask {asked} in each turn, and end the goal as preempted."
+                yield Finding("callbacks", said, *place, seen, fix, node=node)
+            if started:
+                said = "The action server starts when it is made: a goal may come too early."
+                wanted = "auto_start=False" if source else "false as the last argument"
+                place = file, started, WARNING, f"{wanted}, and start()"
+                seen = case.package.lines(file)[started - 1].strip()
+                fix = f"Give it {wanted}, and call its start() when all else is made."
+                yield Finding("callbacks", said, *place, seen, fix, node=node)
+
+
+def _in_cpp(text: str) -> tuple[int, int]:
+    """Return the lines of a loop that should ask, and of a server that starts at once; or 0."""
+    if not _SERVER.search(text):
+        return 0, 0
+    started, end = _STARTED.search(text), text.find("setSucceeded")
+    functions = [*_FUNCTION.finditer(text, 0, max(end, 0))]
+    begin = functions[-1].end() if functions else 0
+    loop = _LOOP.search(text, begin, max(end, 0))
+    asks = _ASKS.search(text) or not loop or not _LASTS.search(text, loop.end(), end)
+    return 0 if asks or not loop else line_of(loop), line_of(started) if started else 0
+
+
+def _in_python(source: Source) -> tuple[int, int]:
+    """Return the same of a source in Python."""
+    loop = started = 0
+    for call in source.nodes(ast.Call):
+        if source.dotted(call.func) != "actionlib.SimpleActionServer":
+            continue
+        if argument(call, 3, "auto_start") is None or source.value(call.args[-1]) is True:
+            started = call.lineno
+        work = source.definition(argument(call, 2, "execute_cb"))
+        if isinstance(work, ast.FunctionDef) and not _asks(source):
+            lasting = (one for one in ast.walk(work) if isinstance(one, (ast.For, ast.While)))
+            loop = next((one.lineno for one in lasting if _LASTING & _attributes(one)), 0)
+    return loop, started
+
+
+def _asks(source: Source) -> bool:
+    return bool({"is_preempt_requested", "set_preempted"} & _attributes(source.tree))
+
+
+def _attributes(within: ast.AST) -> set[str]:
+    return {node.attr for node in ast.walk(within) if isinstance(node, ast.Attribute)}
+
+
+RULE = Rule("static", 97, ("facts",), _findings, also=("callbacks",), only=ANY)

@@ -1,0 +1,231 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What works by chance, or until somebody starts it in another way: what beginners are used to."""
+
+import types
+
+import check_rules
+import pytest
+from mrp_check.contract.finding import NOTE, WARNING
+from mrp_check.rules import (
+    before_init,
+    cmake,
+    dependencies,
+    divided,
+    first_message,
+    goals,
+    overwritten,
+    readme,
+    scripts,
+    swallowed,
+    unfilled,
+    unseeded,
+    unused_rate,
+    waiting,
+)
+from mrp_check.sources.facts import Facts
+from mrp_check.sources.python_source import Source
+
+pytestmark = pytest.mark.quick
+
+SPEC = types.SimpleNamespace(is_contract=False, topics={}, nodes={})
+# The start of a file with that ending, and what stands around its lines, which begin in line 4.
+AROUND = {
+    "cpp": ("#include <ros/ros.h>\nint main(int argc, char** argv)\n{{\n{}\n}}\n"),
+    "py": "import actionlib, rospy, sys\nfrom std_msgs.msg import String\n\n{}\n",
+}
+
+
+def case(folder, ending, lines, launched=(), **files):
+    """Return a case of a node of one source."""
+    file, text = f"src/a.{ending}", AROUND[ending].format(lines)
+    package = check_rules.make(folder / "some_pkg", **{f"src__a_DOT_{ending}": text}, **files)
+    python = {file: Source(file, text)} if ending == "py" else {}
+    facts = Facts(sources={"a": [file]}, python=python, relevant=[*python])
+    nodes = [types.SimpleNamespace(type=name) for name in launched]
+    model = check_rules.model_of(package)
+    launches = [types.SimpleNamespace(nodes=nodes)]
+    return types.SimpleNamespace(
+        package=package, facts=facts, launches=launches, launch=None, model=model, spec=SPEC
+    )
+
+
+def lines_of(rule, known, severity=WARNING):
+    return [one.line for one in check_rules.of(rule.RULE, known) if one.severity == severity]
+
+
+INIT = 'ros::init(argc, argv, "a");'
+START = "rospy.init_node('a')"
+MAKE = 'ros::Publisher p = n.advertise<std_msgs::String>("a", 1);'
+MADE = "p = rospy.Publisher('a', String, queue_size=1)"
+SERVER = "s = actionlib.SimpleActionServer('a', A, work, auto_start=False)"
+WORK = "def work(goal):\n    for i in range(9):\n        "
+
+
+@pytest.mark.parametrize(
+    ("rule", "ending", "lines", "found"),
+    [
+        (before_init, "cpp", f"if (argc != 2) {{ return 1; }}\n{INIT}", [4]),
+        (before_init, "cpp", f"{INIT}\nif (argc != 2) {{ return 1; }}", []),
+        (before_init, "cpp", f'ROS_INFO("a");\n{INIT}', [4]),
+        (before_init, "cpp", f'{INIT}\nROS_INFO("a");', []),
+        (before_init, "py", f"rospy.loginfo('a')\n{START}", [4]),
+        (before_init, "py", f"rospy.logerr('a')\n{START}", []),
+        (before_init, "py", f"def say():\n    rospy.loginfo('a')\n{START}", []),
+        (goals, "py", f"{WORK}rospy.sleep(1)\n{SERVER}", [5]),
+        (goals, "py", f"{WORK}rospy.sleep(s.is_preempt_requested())\n{SERVER}", []),
+        (goals, "py", f"{WORK}print(i)\n{SERVER}", []),
+        (goals, "py", "s = actionlib.SimpleActionServer('a', A, work)", [4]),
+        (goals, "py", "s = actionlib.SimpleActionServer('a', A, work, False)", []),
+        (goals, "cpp", 'actionlib::SimpleActionServer<A> s(n, "a", f, true);', [4]),
+        (goals, "cpp", 'actionlib::SimpleActionServer<A> s(n, "a", f, false);', []),
+        (overwritten, "cpp", 'n.setParam("a", 1);\nn.getParam("a", b);', [4]),
+        (overwritten, "cpp", 'n.setParam("a", b);\nn.getParam("a", b);', []),
+        (overwritten, "cpp", 'n.getParam("a", b);\nn.setParam("a", 1);', []),
+        (overwritten, "py", "rospy.set_param('~a', 1)\nb = rospy.get_param('~a')", [4]),
+        (swallowed, "py", "try:\n    a()\nexcept:\n    pass", [6]),
+        (swallowed, "py", "try:\n    a()\nexcept Exception as e:\n    print('no')", [6]),
+        (swallowed, "py", "try:\n    a()\nexcept Exception as e:\n    print(e)", []),
+        (swallowed, "py", "try:\n    a()\nexcept Exception:\n    raise", []),
+        (swallowed, "py", "try:\n    a()\nexcept ValueError:\n    pass", []),
+        (swallowed, "py", "try:\n    import a\nexcept:\n    import b", []),
+        (first_message, "cpp", f"{MAKE}\np.publish(m);", [5]),
+        (first_message, "cpp", f"{MAKE}\nfor (;;) {{\np.publish(m); }}", [6]),
+        (first_message, "cpp", f"{MAKE}\nfor (;;) {{\np.publish(m); r.sleep(); }}", []),
+        (first_message, "cpp", f"{MAKE}\nwhile (ros::ok()) {{ p.publish(m); }}", []),
+        (first_message, "cpp", f"{MAKE}\nsleep(1);\np.publish(m);", []),
+        (first_message, "cpp", f"{MAKE.replace('1)', '1, true)')}\np.publish(m);", []),
+        (first_message, "py", f"{MADE}\np.publish('a')", [5]),
+        (first_message, "py", f"{MADE}\nrospy.sleep(1)\np.publish('a')", []),
+        (first_message, "py", f"{MADE}\nwhile True:\n    p.publish('a')", []),
+        (first_message, "py", f"{MADE}\ndef hear(m):\n    p.publish(m)", []),
+        (first_message, "py", f"{MADE[:-1]}1, latch=True)\np.publish('a')", []),
+        (unused_rate, "cpp", "ros::Rate r(10);", [4]),
+        (unused_rate, "cpp", "ros::Rate r(10);\nr.sleep();", []),
+        (unused_rate, "py", "r = rospy.Rate(10)", [4]),
+        (unused_rate, "py", "r = rospy.Rate(10)\nr.sleep()", []),
+        (unseeded, "cpp", "int a = rand() % 9;", [4]),
+        (unseeded, "cpp", "srand(time(NULL));\nint a = rand() % 9;", []),
+        (unseeded, "cpp", "while (a) {\n  srand(time(NULL));\n  b = rand();\n}", [5]),
+        (unfilled, "py", "print('%s, %d', a, b)", [4]),
+        (unfilled, "py", "print('%s, %d' % (a, b))", []),
+        (unfilled, "py", "print('100 %', a)", []),
+    ],
+    ids=range(45),
+)
+def test_what_beginners_are_used_to(rule, ending, lines, found, tmp_path):
+    assert lines_of(rule, case(tmp_path, ending, lines)) == found
+
+
+def test_arguments_are_counted_wrongly_where_a_launch_file_starts_the_node(tmp_path):
+    lines = f"if len(sys.argv) != 2:\n    sys.exit()\n{START}"
+    assert lines_of(before_init, case(tmp_path / "a", "py", lines, ["a"])) == [4]
+    assert lines_of(before_init, case(tmp_path / "b", "py", lines), NOTE) == [4]
+    own = lines.replace("sys.argv", "rospy.myargv()")
+    assert lines_of(before_init, case(tmp_path / "c", "py", own, ["a"])) == []
+
+
+DIVIDES = "bool f(some_pkg::Half::Request& q, some_pkg::Half::Response& s)\n{\n"
+
+
+@pytest.mark.parametrize(
+    ("kind", "lines", "found"),
+    [
+        ("int64", "s.c = q.a / q.b;", [5]),
+        ("float64", "s.c = q.a / q.b;", []),
+        ("int64", "if (q.b == 0) { return false; }\ns.c = q.a / q.b;", []),
+    ],
+    ids=range(3),
+)
+def test_a_service_in_cpp_divides(kind, lines, found, tmp_path):
+    package = check_rules.make(
+        tmp_path / "some_pkg",
+        src__a_DOT_cpp=f"\n\n{DIVIDES}{lines}\n}}\n",
+        srv__Half_DOT_srv=f"{kind} a\n{kind} b\n---\n{kind} c\n",
+    )
+    facts = Facts(sources={"a": ["src/a.cpp"]})
+    assert lines_of(divided, types.SimpleNamespace(package=package, facts=facts)) == found
+
+
+@pytest.mark.parametrize(
+    ("lines", "found"),
+    [
+        ("return q.a / q.b", [5]),
+        ("b = q.b\n    return q.a % b", [6]),
+        ("if q.b == 0:\n        return 0\n    return q.a / q.b", []),
+        ("return q.a / 2", []),
+        ("try:\n        return q.a / q.b\n    except ZeroDivisionError:\n        return 0", []),
+    ],
+    ids=range(5),
+)
+def test_a_service_in_python_divides(lines, found, tmp_path):
+    service = f"def f(q):\n    {lines}\nrospy.Service('a', A, f)"
+    assert lines_of(divided, case(tmp_path, "py", service)) == found
+
+
+@pytest.mark.parametrize(
+    ("command", "found"),
+    [
+        ("rosrun some_pkg b.py", ["starts"]),
+        ("rosrun some_pkg a.py", []),
+        ("rosrun other_pkg a.py", ["package-name"]),
+        ("rosrun other_pkg b.py", []),
+        ("rosrun turtlesim a.py", []),
+        ("roslaunch some_pkg b.launch", ["starts"]),
+        ("roslaunch some_pkg a.launch", []),
+        ("rosrun some_pkg <program>", []),
+    ],
+    ids=range(8),
+)
+def test_what_a_readme_says_can_be_typed(command, found, tmp_path):
+    known = case(
+        tmp_path,
+        "py",
+        "",
+        README_DOT_md=f"Type:\n    {command}\n",
+        launch__a_DOT_launch="<launch/>",
+    )
+    said = [(one.id, one.line) for one in check_rules.of(readme.RULE, known)]
+    assert said == [(id_, 2) for id_ in found]
+
+
+@pytest.mark.parametrize(
+    ("lines", "found"),
+    [
+        ("find_package(catkin REQUIRED COMPONENTS tf)\ntarget_link_libraries(a b)", 1),
+        ("find_package(catkin REQUIRED COMPONENTS tf)", 0),
+        ("find_package(catkin REQUIRED COMPONENTS roscpp rospy std_msgs)\nadd_library(a b)", 0),
+    ],
+    ids=range(3),
+)
+def test_catkin_is_found_twice(lines, found, tmp_path):
+    text = check_rules.CMAKE + lines
+    package = check_rules.make(tmp_path / "some_pkg", CMakeLists_DOT_txt=text)
+    said = [one.message for one in check_rules.file_findings(cmake, package)]
+    assert sum("called again" in one for one in said) == found
+
+
+def test_what_cmake_alone_names(tmp_path):
+    text = check_rules.CMAKE.replace("rospy std", "rospy rostest std", 1)
+    text += "generate_messages(DEPENDENCIES std_msgs roslib)\n"
+    package = check_rules.make(tmp_path / "some_pkg", CMakeLists_DOT_txt=text)
+    said = check_rules.file_findings(dependencies, package, spec=SPEC)
+    said = [one.message.split(",")[0] for one in said if one.severity == WARNING]
+    assert said == ["CMakeLists.txt asks for rostest", "generate_messages() names roslib"]
+
+
+def test_a_first_line_without_its_slash(tmp_path):
+    assert scripts.names_no_program("#!usr/bin/env python3") == "usr/bin/env"
+    assert scripts.names_no_program("#!/usr/bin/env python3") is None
+
+
+CALLS = 'ros::ServiceClient c = n.serviceClient<A>("add");\nwhile (ros::ok()) { c.call(s); }'
+
+
+@pytest.mark.parametrize(("launched", "found"), [(["a", "b"], [5]), (["a"], []), ([], [])])
+def test_a_client_that_is_launched_with_its_service(launched, found, tmp_path):
+    offers = AROUND["cpp"].format('n.advertiseService("add", f);')
+    known = case(tmp_path, "cpp", CALLS, launched, src__b_DOT_cpp=offers)
+    known.facts.sources["b"] = ["src/b.cpp"]
+    known.facts.of = lambda node, *kinds: ["a loop"]
+    known.nodes = {}
+    assert lines_of(waiting, known) == found
