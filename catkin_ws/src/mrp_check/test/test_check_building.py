@@ -74,6 +74,26 @@ def test_a_function_that_returns_nothing_is_found_though_it_compiles(tmp_path):
     assert (finding.severity, finding.file, finding.line) == ("error", "src/a.cpp", 4)
 
 
+def test_what_compiles_and_does_something_else(tmp_path):
+    lines = (
+        '#include <cstdio>\nint half(int a)\n{\n  if (a) return a / 2;\n}\n'
+        "int main(int argc, char **)\n{\n  long much = 3;\n  int a;\n"
+        '  printf("%d", much);\n  if (a = argc) half(a);\n  if (argc);\n  argc == a;\n'
+        "  unsigned left = 2;\n  while (left >= 0) left -= half(2);\n"
+        "  if (argc == 2 || (argc == 3 && a == 1)) return 0;\n}\n"
+    )
+    package = check_rules.make(tmp_path / "src" / "some_pkg", src__a_DOT_cpp=lines)
+    command = ["g++", *compiler.DOUBTING.split(), "-c", "-o", tmp_path / "a.o"]
+    done = subprocess.run(
+        [*command, package.root / "src" / "a.cpp"], stderr=subprocess.PIPE, text=True
+    )
+    found = [*compiler.doubts(package, done.stderr, package.root)]
+    assert {one.severity for one in found} == {"warning"}
+    assert sorted((one.line, one.message.split()[0]) for one in found) == [
+        *((5, "In"), (10, "The"), (11, "Perhaps"), (12, "A"), (13, "This"), (15, "This"))
+    ]
+
+
 def test_error_in_a_header_of_ros_is_where_the_package_uses_it(tmp_path):
     package = check_rules.make(tmp_path / "src" / "some_pkg", src__a_DOT_cpp=CPP)
     output = (

@@ -11,6 +11,7 @@ import stat
 from concurrent.futures import Future
 from typing import Any
 
+from mrp_check.building import compiler
 from mrp_check.case import Case
 from mrp_check.contract.finding import Finding
 from mrp_check.contract.spec import Spec
@@ -35,6 +36,9 @@ class AnyCase(Case):
 
     def __init__(self, package: Package, *given: Any) -> None:
         super().__init__(package, *given)
+        # Where a package wants no warnings, CMake's files say which.
+        if not package.first_match(package.of_kind("cmake"), "-Werror"):
+            self.compiler_flags = compiler.DOUBTING
         # CMake stops where one is missing, and a rule says so: the rest is to be checked, too.
         for file in {"CMakeLists.txt"} & {*package.files}:
             for name in re.findall(_INCLUDED, package.text(file)):

@@ -78,7 +78,7 @@ class Catkin:
 
     def _run(self, *command: str) -> confine.Result:
         """Run a command that may call the compiler."""
-        environment = self._compiler()
+        environment = {**self._compiler(), "CXXFLAGS": self.workspace.compiler_flags}
         cache = environment.get("CCACHE_DIR")
         if cache:
             os.makedirs(cache, exist_ok=True)  # within the confinement it could not be made

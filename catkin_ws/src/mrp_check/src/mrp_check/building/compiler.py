@@ -6,10 +6,11 @@ from __future__ import annotations
 import os
 import pathlib
 import re
+from typing import Iterator
 
 from mrp_check.building import cpp_words
 from mrp_check.building.cpp_words import Problem
-from mrp_check.contract.finding import Finding, Line
+from mrp_check.contract.finding import WARNING, Finding, Line
 from mrp_check.sources import uses
 from mrp_check.student.cmake import relative
 from mrp_check.student.package import Package
@@ -20,6 +21,27 @@ _ERROR = re.compile(
 _NO_RETURN = re.compile(
     r"^(?P<file>[^\s:][^:]*):(?P<line>\d+):(?:\d+:)? warning: no return statement in function"
 )
+_DOUBT = re.compile(
+    r"^(?P<file>[^\s:][^:]*):(?P<line>\d+):\d+: warning: (?P<text>.*) \[-W(?P<name>[\w-]+)=?\]$"
+)
+# Options of g++ -> what is wrong where it warns: all these compile, and do something else.
+# https://gcc.gnu.org/onlinedocs/gcc/Warning-Options.html
+_DOUBTS = {
+    "div-by-zero": "Here something is divided by 0.",
+    "empty-body": "A semicolon ends this line: what follows is done in each case.",
+    "format": "The format does not fit what it is given: what is shown may be any number.",
+    "format-extra-args": "The format has no place for all that it is given.",
+    "maybe-uninitialized": "A variable is read here, and in some case has no value before.",
+    "misleading-indentation": "The indented lines do not all belong to the line above them.",
+    "overflow": "The number is too large for its type.",
+    "parentheses": "Perhaps = stands here for ==, or brackets are missing.",
+    "return-type": "In some case this function ends without a return: what it gives is any value.",
+    "tautological-compare": "This comparison is always true, or never.",
+    "type-limits": "This comparison is always true, or never.",
+    "uninitialized": "A variable is read here that has no value.",
+    "unused-value": "This line computes something, and does nothing with it.",
+}
+DOUBTING = "-Wall -Wempty-body -Wtype-limits"  # what g++ is called with to say so
 _FROM = re.compile(r"^(?P<file>[^\s:][^:]*):(?P<line>\d+):\d+:\s+required from")
 _INCLUDED = re.compile(r"^(?:In file included from| +from) (?P<file>[^:]+):(?P<line>\d+)")
 
@@ -86,6 +108,19 @@ def without_return(package: Package, output: str, copy: pathlib.Path) -> list[Fi
     matches = map(_NO_RETURN.match, output.splitlines())
     places = dict.fromkeys(_place(match, copy) for match in matches if match)
     return [_no_return(package, *place) for place in places if place]
+
+
+def doubts(package: Package, output: str, copy: pathlib.Path) -> Iterator[Finding]:
+    """Yield a warning for each line of the package's own that g++ takes, and warns of."""
+    told = set()
+    for match in filter(None, map(_DOUBT.match, output.splitlines())):
+        place, said = _place(match, copy), _DOUBTS.get(match["name"])
+        if place and said and place not in told and "no return statement" not in match["text"]:
+            told.add(place)
+            line = package.lines(place[0])[place[1] - 1].strip()
+            expected = "C++ that the compiler has no doubts about"
+            seen = f"{line}  (g++: {match['text']})"
+            yield Finding("compile", said, *place, WARNING, expected, seen)
 
 
 def _no_return(package: Package, file: str, line: int) -> Finding:

@@ -23,6 +23,8 @@ def findings(case: Case) -> Iterator[Finding]:
         return
     output, package = case.built.output, case.package
     yield from compiler.without_return(package, output, case.package_folder)
+    if not case.spec.is_contract:
+        yield from compiler.doubts(package, output, case.package_folder)
     if case.built.ok:
         return
     problems = compiler.problems(output, case.package_folder)

@@ -36,7 +36,7 @@ def _findings(case: Case) -> Iterator[Finding]:
                 continue
             for field, line in found:
                 yield Finding(
-                    "services",
+                    "callbacks",
                     f"Nobody looks whether {field} of the request is 0: then {what}.",
                     file,
                     line,
@@ -95,4 +95,4 @@ def _field(source: Source, node: ast.AST, request: str) -> str | None:
     return node.attr if is_field and isinstance(node, ast.Attribute) else None
 
 
-RULE = Rule("static", 98, ("facts",), _findings, also=("services",), only=ANY)
+RULE = Rule("static", 98, ("facts",), _findings, also=("callbacks",), only=ANY)

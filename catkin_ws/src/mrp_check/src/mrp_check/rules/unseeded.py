@@ -38,7 +38,7 @@ def _findings(case: Case) -> Iterator[Finding]:
                 continue
             seen = case.package.lines(file)[place - 1].strip()
             fix = f"Write {wanted}." if number and not seeded else "Move it to before the loop."
-            yield Finding("values", said, file, place, WARNING, wanted, seen, fix, node=node)
+            yield Finding("starts", said, file, place, WARNING, wanted, seen, fix, node=node)
 
 
 def _is_repeated(seed: re.Match[str]) -> bool:
@@ -51,4 +51,4 @@ def _is_repeated(seed: re.Match[str]) -> bool:
     return False
 
 
-RULE = Rule("static", 102, ("facts",), _findings, also=("values",), only=ANY)
+RULE = Rule("static", 102, ("facts",), _findings, also=("starts",), only=ANY)

@@ -29,7 +29,7 @@ def _findings(case: Case) -> Iterator[Finding]:
                 continue
             for name, line in found:
                 yield Finding(
-                    "rate",
+                    "spin",
                     f"Nobody calls {name}.sleep(): this rate changes nothing.",
                     file,
                     line,
@@ -59,4 +59,4 @@ def _in_python(source: Source) -> Iterator[tuple[str, int]]:
                 yield name, call.lineno
 
 
-RULE = Rule("static", 101, ("facts",), _findings, also=("rate",), only=ANY)
+RULE = Rule("static", 101, ("facts",), _findings, also=("spin",), only=ANY)

@@ -55,8 +55,11 @@ class Workspace:
     made: the same of make, if there is nothing that it would make again
     compiles_again: whether a C++ file is different from that of the last check
     timeout: seconds that the whole check may take
+    compiler_flags: those of C++ besides the package's own
     progress: called with a sentence that says what is being done
     """
+
+    compiler_flags = ""
 
     def __init__(
         self,
