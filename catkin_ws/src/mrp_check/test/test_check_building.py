@@ -76,7 +76,7 @@ def test_a_function_that_returns_nothing_is_found_though_it_compiles(tmp_path):
 
 def test_what_compiles_and_does_something_else(tmp_path):
     lines = (
-        '#include <cstdio>\nint half(int a)\n{\n  if (a) return a / 2;\n}\n'
+        "#include <cstdio>\nint half(int a)\n{\n  if (a) return a / 2;\n}\n"
         "int main(int argc, char **)\n{\n  long much = 3;\n  int a;\n"
         '  printf("%d", much);\n  if (a = argc) half(a);\n  if (argc);\n  argc == a;\n'
         "  unsigned left = 2;\n  while (left >= 0) left -= half(2);\n"

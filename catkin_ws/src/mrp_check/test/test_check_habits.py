@@ -5,7 +5,7 @@ import types
 
 import check_rules
 import pytest
-from mrp_check.contract.finding import NOTE, WARNING
+from mrp_check.contract.finding import ERROR, NOTE, WARNING
 from mrp_check.rules import (
     before_init,
     cmake,
@@ -13,21 +13,29 @@ from mrp_check.rules import (
     divided,
     first_message,
     goals,
+    launch_words,
+    long_loop,
     overwritten,
     readme,
     scripts,
     swallowed,
+    unadvertised,
     unfilled,
+    unparsed,
     unseeded,
     unused_rate,
     waiting,
 )
 from mrp_check.sources.facts import Facts
 from mrp_check.sources.python_source import Source
+from mrp_check.student.cmake import parsed
+from mrp_check.student.launch import Launch
 
 pytestmark = pytest.mark.quick
 
-SPEC = types.SimpleNamespace(is_contract=False, topics={}, nodes={})
+SPEC = types.SimpleNamespace(
+    is_contract=False, topics={}, nodes={}, shutdown=types.SimpleNamespace(seconds=5)
+)
 # The start of a file with that ending, and what stands around its lines, which begin in line 4.
 AROUND = {
     "cpp": ("#include <ros/ros.h>\nint main(int argc, char** argv)\n{{\n{}\n}}\n"),
@@ -49,8 +57,9 @@ def case(folder, ending, lines, launched=(), **files):
     )
 
 
-def lines_of(rule, known, severity=WARNING):
-    return [one.line for one in check_rules.of(rule.RULE, known) if one.severity == severity]
+def lines_of(rule, known, *severities):
+    severities = severities or (ERROR, WARNING)
+    return [one.line for one in check_rules.of(rule.RULE, known) if one.severity in severities]
 
 
 INIT = 'ros::init(argc, argv, "a");'
@@ -106,11 +115,22 @@ WORK = "def work(goal):\n    for i in range(9):\n        "
         (unseeded, "cpp", "int a = rand() % 9;", [4]),
         (unseeded, "cpp", "srand(time(NULL));\nint a = rand() % 9;", []),
         (unseeded, "cpp", "while (a) {\n  srand(time(NULL));\n  b = rand();\n}", [5]),
+        (long_loop, "cpp", "for (int i = 0; i < 9; i++) {\n  sleep(1);\n}", [4]),
+        (long_loop, "cpp", "for (int i = 0; i < 9; i++) {\n  ros::ok(); sleep(1);\n}", []),
+        (long_loop, "cpp", "for (int i = 0; i < 9; i++) {\n  usleep(1);\n}", []),
+        (long_loop, "cpp", "ros::Rate r(2);\nfor (i = 0; i <= 11; ++i) { r.sleep(); }", [5]),
+        (long_loop, "cpp", "ros::Rate r(9);\nfor (i = 0; i < 11; ++i) { r.sleep(); }", []),
+        (long_loop, "py", "for i in range(9):\n    rospy.sleep(1)", [4]),
+        (long_loop, "py", "r = rospy.Rate(1)\nfor i in range(9):\n    r.sleep()", [5]),
+        (long_loop, "py", "for i in range(9):\n    rospy.sleep(0.1)", []),
+        (unadvertised, "cpp", "ros::Publisher p;\np.publish(m);", [5]),
+        (unadvertised, "cpp", "ros::Publisher p;\np = n.advertise<A>(b, 1);\np.publish(m);", []),
+        (unadvertised, "cpp", "ros::Publisher p;\nmake(p);\np.publish(m);", []),
         (unfilled, "py", "print('%s, %d', a, b)", [4]),
         (unfilled, "py", "print('%s, %d' % (a, b))", []),
         (unfilled, "py", "print('100 %', a)", []),
     ],
-    ids=range(45),
+    ids=range(56),
 )
 def test_what_beginners_are_used_to(rule, ending, lines, found, tmp_path):
     assert lines_of(rule, case(tmp_path, ending, lines)) == found
@@ -173,14 +193,17 @@ def test_a_service_in_python_divides(lines, found, tmp_path):
         ("roslaunch some_pkg b.launch", ["starts"]),
         ("roslaunch some_pkg a.launch", []),
         ("rosrun some_pkg <program>", []),
+        ("rosservice call /up_speed 1", ["topic"]),
+        ("rosservice call /speed_up 1", []),
+        ("rosservice call /other 1", []),
     ],
-    ids=range(8),
+    ids=range(11),
 )
 def test_what_a_readme_says_can_be_typed(command, found, tmp_path):
     known = case(
         tmp_path,
         "py",
-        "",
+        "rospy.Service('speed_up', A, f)",
         README_DOT_md=f"Type:\n    {command}\n",
         launch__a_DOT_launch="<launch/>",
     )
@@ -229,3 +252,36 @@ def test_a_client_that_is_launched_with_its_service(launched, found, tmp_path):
     known.facts.of = lambda node, *kinds: ["a loop"]
     known.nodes = {}
     assert lines_of(waiting, known) == found
+
+
+def test_behind_what_python_cannot_read(tmp_path):
+    known = case(tmp_path, "py", "rospy.info('a')\nrospy.loginfo('b')")
+    assert lines_of(unparsed, known) == []
+    known.facts.unread.add("src/a.py")
+    assert lines_of(unparsed, known) == [4]
+
+
+@pytest.mark.parametrize(
+    ("text", "args", "found"),
+    [
+        ("a few words", "$(arg said)", [3]),
+        ("a few words", "'$(arg said)'", []),
+        ("words", "$(arg said)", []),
+        ("1 2 3", "$(arg said)", []),
+        ("-d speed:=2", "$(arg said)", []),
+    ],
+    ids=range(5),
+)
+def test_a_text_with_spaces_is_several_arguments(text, args, found, tmp_path):
+    node = f'<node pkg="some_pkg" type="a" name="a" args="{args}"/>'
+    lines = f'<launch>\n<arg name="said" default="{text}"/>\n{node}\n</launch>'
+    package = check_rules.make(tmp_path / "some_pkg", launch__a_DOT_launch=lines)
+    launches = [Launch("", file="launch/a.launch")]
+    known = types.SimpleNamespace(package=package, launches=launches)
+    assert lines_of(launch_words, known) == found
+
+
+def test_where_a_word_of_a_call_stands(tmp_path):
+    lines = ["find_package(catkin REQUIRED", "  roscpp  # tf", "  tf", ")", "project(std_msgs)"]
+    (call, _) = parsed("\n".join(lines), "CMakeLists.txt")
+    assert [call.line_of(lines, word) for word in ("tf", "roscpp", "std_msgs")] == [3, 2, 1]

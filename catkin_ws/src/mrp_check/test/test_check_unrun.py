@@ -54,7 +54,8 @@ def test_what_the_text_of_a_node_shows_that_was_not_built(body, is_up, found, tm
         ("while True:\n    print(1)", True, []),
         ("while True:\n    if end():\n        break", False, []),
         ("while not rospy.is_shutdown():\n    print(1)", False, []),
-        ("def say():\n    p.publish(1)\nwhile True:\n    say()", False, []),
+        ("def say():\n    p.publish(1)\nwhile True:\n    say()", False, [6]),
+        ("def say():\n    rospy.spin()\nwhile True:\n    say()", False, []),
         ("while near:\n    print(1)", False, []),
         ("while near is None:\n    rospy.sleep(1)", False, [4]),
         ("while len(near) < 2:\n    rate.sleep()", False, [4]),
@@ -65,7 +66,7 @@ def test_what_the_text_of_a_node_shows_that_was_not_built(body, is_up, found, tm
         ("def input():\n    pass\nprint(input())", True, []),
         ("rospy.init_node('b', disable_signals=True)\nprint(input())", False, []),
     ],
-    ids=range(18),
+    ids=range(19),
 )
 def test_a_loop_in_python_asks_whether_the_node_is_to_go_on(loop, is_up, found, tmp_path):
     text = f"import rospy\nimport time\nrospy.init_node('a')\n{loop}\n"

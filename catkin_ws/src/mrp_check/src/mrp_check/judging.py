@@ -9,6 +9,7 @@ from typing import Iterable
 
 from mrp_check.case import Case
 from mrp_check.contract.finding import ERROR, NOTE, WARNING, Finding, Line
+from mrp_check.contract.words import last_part
 from mrp_check.rules.deaf_loop import ASKS_KEYBOARD
 from mrp_check.rules.definitions import UNREADABLE
 from mrp_check.rules.python_names import OLD_NAME
@@ -50,6 +51,7 @@ _WANTED = (
     r"argument \w+ has no value|requires the '\w+' arg|environment variable \S+ is not set"
     r"|is not there: \S+\."
 )
+_OF_ACTIONS = {"feedback", "result", "status"}
 _ENDED = ("KeyboardInterrupt", "ROSInterruptException")
 
 
@@ -221,7 +223,12 @@ def _source(node: Node, finding: Finding) -> str:
 
 def _is_left_alone(node: Node) -> bool:
     """Return whether a node ended that was to be called back."""
-    return bool(node.seen_alone.subscriptions)
+    heard = {one.topic for one in node.seen_alone.subscriptions}
+    files = node.places.sources(node.name)
+    if node.package.first_match(files, r"\bSimpleActionClient\b"):
+        # Those of the client itself call nothing of the node's.
+        heard = {topic for topic in heard if last_part(topic) not in _OF_ACTIONS}
+    return bool(heard)
 
 
 def _is_unbuilt(case: Case, finding: Finding, stops: bool) -> bool:

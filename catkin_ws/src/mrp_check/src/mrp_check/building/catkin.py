@@ -29,6 +29,7 @@ TOOLS = {
     "make": "make",
     "roslaunch": "python3-roslaunch",
 }
+WANTS_TESTS = "is not available when tests are not enabled"  # what catkin says of its own macros
 # An executable of an earlier build must not stand in for one that cannot be built now.
 _ANEW = 'find "$0/devel/lib" -type f -newer "$0/build/Makefile" -delete; exec "$@"'
 _KEEP_GOING = ("--no-print-directory", "-k", "-j2")
@@ -58,8 +59,11 @@ class Catkin:
         self.folder = workspace.folder
         self._building: concurrent.futures.Future[Step] | None = None
 
-    def _configure(self) -> confine.Result:
-        """Run catkin_make up to its last step, which is `make`."""
+    def _configure(self, tests: str = "OFF") -> confine.Result:
+        """Run catkin_make up to its last step, which is `make`.
+
+        tests: whether there are to be tests, too
+        """
         trace = self.folder / "trace.json"
         package = self.workspace.package_folder
         files = [*package.rglob("CMakeLists.txt"), *package.rglob("*.cmake")]
@@ -69,7 +73,7 @@ class Catkin:
             *("-C", str(self.folder)),
             "--cmake-args",
             "-DPYTHON_EXECUTABLE=/usr/bin/python3",
-            "-DCATKIN_ENABLE_TESTING=OFF",
+            f"-DCATKIN_ENABLE_TESTING={tests}",
             "-DCMAKE_EXPORT_COMPILE_COMMANDS=ON",
             "-Wno-dev",
             *("--trace-expand", "--trace-format=json-v1", f"--trace-redirect={trace}", *sources),
@@ -131,7 +135,12 @@ class Catkin:
         if self.workspace.configured:
             return Step(*self.workspace.configured)
         self.workspace.progress("configuring with CMake")
-        return self._step(self._configure())
+        step = self._step(self._configure())
+        if not step.ok and WANTS_TESTS in " ".join(step.output.split()):
+            # So a package is built that Debian could not build; a rule says so.
+            again = self._step(self._configure("ON"))
+            return again._replace(output=f"{step.output}\n{again.output}") if again.ok else again
+        return step
 
     @functools.cached_property
     def model(self) -> cmake.Model:
@@ -164,7 +173,8 @@ class Catkin:
         own = rf"error: {re.escape(workspace.package.name)}/\S+: No such"
         if not step.ok and re.search(own, step.output):
             # Now there is what it makes of its messages: so its nodes can run all the same.
-            self._run(*make)
+            again = self._run(*make)
+            step = step._replace(output=f"{step.output}\n{again.output}\n{again.errors}")
         if result.ended_by is None:
             workspace.keep(self.configured, step)
         return step

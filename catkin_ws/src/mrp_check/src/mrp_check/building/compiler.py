@@ -47,7 +47,8 @@ _INCLUDED = re.compile(r"^(?:In file included from| +from) (?P<file>[^:]+):(?P<l
 
 
 def problems(output: str, copy: pathlib.Path) -> list[Problem]:
-    """Return, for each source of the package, the first error that the compiler found in it."""
+    """Return, for each source of the package, the first error that the compiler found in it; and
+    the first one behind a header of its own messages, where it was built a second time."""
     lines = output.splitlines()
     found: list[Problem] = []
     chain: list[Line | None] = []  # of "required from"; None for a place in a header of others
@@ -80,9 +81,15 @@ def problems(output: str, copy: pathlib.Path) -> list[Problem]:
         chain, included = [], []
         if own is not None:
             found.append(Problem(*own, error.group("text"), after))
-    first: dict[str, Problem] = {}
+    return _first(found, copy)
+
+
+def _first(found: list[Problem], copy: pathlib.Path) -> list[Problem]:
+    first: dict[tuple[str, bool], Problem] = {}
     for problem in found:
-        first.setdefault(problem.file, problem)
+        header = is_no_header(problem)
+        is_own = bool(header and header[1].startswith(f"{copy.name}/"))
+        first.setdefault((problem.file, is_own), problem)
     return list(first.values())
 
 

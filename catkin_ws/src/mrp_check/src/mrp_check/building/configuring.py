@@ -7,7 +7,7 @@ import pathlib
 import re
 from typing import Callable, Sequence, Tuple
 
-from mrp_check.building.catkin import Step
+from mrp_check.building.catkin import WANTS_TESTS, Step
 from mrp_check.contract import resources
 from mrp_check.contract.finding import Finding
 from mrp_check.contract.words import nearest, perhaps
@@ -208,6 +208,15 @@ def _no_script(package: Package, model: Model, match: re.Match[str], text: str) 
 # (command or None for any, what CMake says) -> what it means and what to do: these words, or a
 # function that says them; and the entry of the page why.
 _WORDS: Sequence[tuple[str | None, str, Callable[..., _Said] | _Said, str]] = (
+    (
+        None,
+        WANTS_TESTS,
+        (
+            "it makes a test where no tests are wanted, as where Debian builds a package.",
+            "Put it between if(CATKIN_ENABLE_TESTING) and endif().",
+        ),
+        "",
+    ),
     (None, r'Unknown CMake command "(\w+)"', _unknown_command, "cmake-unknown-command"),
     *(("find_package", shape, _no_package, "package-config-not-found") for shape in _NOT_FOUND),
     (

@@ -230,8 +230,8 @@ def _missing_header(error: Error) -> Words:
         near = nearest(header, [f"std_msgs/{name}.h" for name in _MESSAGES] + ["ros/ros.h"], 0.7)
         fix = f"Write {near}." if near else "Correct the name, or install and declare its package."
         return Words(f"there is no header {header}.{perhaps(near)}", fix)
-    paths = package.of_kind("message", "service")
-    own = {last_part(path)[:-4]: path for path in paths}
+    paths = package.of_kind(*uses.DEFINITIONS)
+    own = {name: path for path in paths for name in uses.generated(path)}
     name = last_part(header)[:-2]
     if name in own:
         return Words(

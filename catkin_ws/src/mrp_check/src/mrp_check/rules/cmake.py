@@ -59,15 +59,11 @@ def _in_round_brackets(package: Package) -> Iterator[Finding]:
 def _twice(model: Model) -> Iterator[Finding]:
     """Yield a warning if catkin is found again: what the first call alone names is forgotten."""
     finds = [call for call in model.calls if call.command == "find_package"]
-    first, *others = [call for call in finds if call.arguments[:1] == ["catkin"]] or [None]
-    for call in others[-1:]:
-        is_last = not any(c.command in _USES_FOUND for c in model.calls[model.calls.index(call) :])
-        lost = (
-            ()
-            if is_last
-            else sorted({*first.arguments} - {*call.arguments, "REQUIRED", "COMPONENTS"})
-        )
-        if lost:
+    finds = [call for call in finds if call.arguments[:1] == ["catkin"]]
+    for first, call in [(finds[0], finds[-1])] if finds[1:] else []:
+        rest = model.calls[model.calls.index(call) :]
+        lost = sorted({*first.arguments} - {*call.arguments, "REQUIRED", "COMPONENTS"})
+        if lost and any(later.command in _USES_FOUND for later in rest):
             yield Finding(
                 "cmake",
                 f"find_package(catkin ...) is called again, after line {first.line}:"
@@ -96,7 +92,8 @@ def _missing_calls(package: Package, model: Model) -> Iterator[Finding]:
     ):
         if not found:
             is_package = needed.startswith("catkin_package")
-            commented = is_package and package.first_match([FILE], r"^\s*#+\s*catkin_package\(")
+            before = model.generate or before if is_package else before
+            commented = is_package and package.first_match([FILE], r"^\s*#\s?catkin_package\(")
             yield Finding(
                 "cmake",
                 f"CMakeLists.txt does not call {needed}: {why}.",
@@ -140,7 +137,7 @@ def _no_folder(package: Package, model: Model) -> Iterator[Finding]:
                     f"catkin_package() names the folder {name} in INCLUDE_DIRS, and there is no"
                     " such folder: CMake stops.",
                     model.catkin_package.file,
-                    model.catkin_package.line,
+                    model.catkin_package.line_of(package.lines(model.catkin_package.file), name),
                     expected="a folder of the package",
                     seen=f"INCLUDE_DIRS {name}",
                     fix=f"Take INCLUDE_DIRS {name} out; or make the folder, with a file in it, as"

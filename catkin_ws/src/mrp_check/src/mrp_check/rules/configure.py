@@ -7,17 +7,19 @@ from typing import Iterator
 
 from mrp_check import evidence
 from mrp_check.building import configuring
+from mrp_check.building.catkin import WANTS_TESTS
 from mrp_check.case import Case
 from mrp_check.contract.errors import CannotCheck
-from mrp_check.contract.finding import Finding
+from mrp_check.contract.finding import WARNING, Finding
 from mrp_check.contract.requirements import Requirement, Rule
 from mrp_check.sources import uses
 
 
 def findings(case: Case) -> Iterator[Finding]:
-    if case.built is not None:
-        return
     package, step = case.package, case.catkin.configured
+    if case.built is not None:
+        yield from _wants_tests(case)
+        return
     missing = configuring.absent(package, step.output, case.spec.is_contract)
     if missing:
         # CMake stops at the first.
@@ -30,6 +32,17 @@ def findings(case: Case) -> Iterator[Finding]:
     output = "" if step.why_ended else step.output
     finding = configuring.finding(package, output, case.package_folder, case.catkin.model)
     yield finding or configuring.unknown(package, step, "configure")
+
+
+def _wants_tests(case: Case) -> Iterator[Finding]:
+    """Yield a warning if CMake went on only as tests were made, too."""
+    output = case.catkin.configured.output
+    if WANTS_TESTS in " ".join(output.split()):
+        found = configuring.finding(case.package, output, case.package_folder, case.catkin.model)
+        if found:
+            found.severity = WARNING
+            found.message += " With catkin_make, which makes tests, it goes on."
+            yield found
 
 
 RULE = Rule(

@@ -143,7 +143,10 @@ def _not_in_manifest(
     near = _misspelt(name, _all(manifest, tests=True), used)
     line = (near and package.find_line(FILE, f">{near}<")) or last_dependency(package)
     text = package.lines(FILE)[line - 1]
-    added = f"{text}\n{text[: len(text) - len(text.lstrip())]}<depend>{name}</depend>"
+    tags = f"<depend>{name}</depend>"
+    if manifest is not None and manifest.package_format < 2:  # which knows no <depend>
+        tags = f"<build_depend>{name}</build_depend> <run_depend>{name}</run_depend>"
+    added = f"{text}\n{text[: len(text) - len(text.lstrip())]}{tags}"
     return Finding(
         "dependencies",
         f"package.xml does not name {name}, which {use.file} uses in line {use.line}."
@@ -151,9 +154,9 @@ def _not_in_manifest(
         FILE,
         line,
         severity="error" if use.firm else WARNING,
-        expected=f"<depend>{name}</depend>",
+        expected=tags,
         seen=f"<depend>{near}</depend>" if near else f"no dependency on {name}",
-        fix=f"Write {name} for {near}." if near else f"Add the line <depend>{name}</depend>.",
+        fix=f"Write {name} for {near}." if near else f"Add the line {tags}.",
         change=(f">{near}<", f">{name}<") if near else (text, added) if "depend>" in text else None,
     )
 
@@ -192,7 +195,7 @@ def _asked_for(
                 f"CMakeLists.txt asks for {name}, and package.xml does not name it: where it is not"
                 " installed, CMake stops.",
                 call.file,
-                call.line,
+                call.line_of(package.lines(call.file), name),
                 WARNING,
                 expected=f"<build_depend>{name}</build_depend>; or no {name} in COMPONENTS",
                 seen=f"{name} in {call.file}, and not in package.xml",
@@ -226,7 +229,7 @@ def _not_found(model: Model) -> Iterator[Finding]:
 def _passed_on(used: Mapping[str, Use], manifest: Manifest, model: Model) -> Iterator[Finding]:
     """Yield a finding about CATKIN_DEPENDS."""
     call = model.catkin_package
-    if call is None or not model.complete:
+    if call is None:
         return
     cpp = {n for n, use in used.items() if use.language == "cpp" and use.firm}
     needed = cpp & declared(manifest)["build"]

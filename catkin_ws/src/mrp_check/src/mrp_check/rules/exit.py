@@ -20,6 +20,7 @@ from mrp_check.running.places import Traceback
 from mrp_check.running.words import code_text, last_words
 
 _BEFORE = 0.1  # seconds: what is printed so shortly before it is asked belongs to its end, too
+_PATIENCE = 15  # seconds that roslaunch gives a node after Ctrl-C
 # What rospy itself may say when a message is published at the very moment of the end.
 _AT_THE_END = ("closed topic", "closed during publish", "ROSInterruptException: rospy shutdown")
 
@@ -41,8 +42,9 @@ def _of(node: Node, direct: Alone, asked: float, shutdown: Shutdown) -> Iterator
 
     code, traceback = direct.code, places.traceback(lines)
     if direct.stopped_in is None:
-        # If roslaunch could end it, the machine was too busy.
-        if all(_needs_force(name, launch) for name, launch in _runs(node)):
+        # If roslaunch could end it, and never had to use force, the machine was too busy.
+        force = [_needs_force(name, launch) for name, launch in _runs(node)]
+        if True in force or False not in force:
             yield finding(
                 f"{node.name} does not end on Ctrl-C: it was still there after"
                 f" {shutdown.seconds:g} s.",
@@ -113,14 +115,15 @@ def _runs(node: Node) -> list[tuple[str, LaunchResult | None]]:
     return own or [(node.name, observed.launch)]
 
 
-def _needs_force(name: str, launch: LaunchResult | None) -> bool:
-    """Return whether roslaunch, too, needed more than Ctrl-C to end a node, or did not run it."""
-    if not launch:
-        return True
-    lines = [text for _, _, text in launch.lines]
-    started = any(re.search(rf"\bprocess\[(\S+/)?{name}-\d+\]: started", text) for text in lines)
+def _needs_force(name: str, launch: LaunchResult | None) -> bool | None:
+    """Return whether roslaunch, too, needed more than Ctrl-C to end a node; None if it did not
+    run it."""
+    lines = [text for _, _, text in launch.lines] if launch else []
+    if not any(re.search(rf"\bprocess\[(\S+/)?{name}-\d+\]: started", text) for text in lines):
+        return None
     forced = any(re.search(rf"[\[/]{name}-\d+\] escalating", text) for text in lines)
-    return forced or not started or launch.stopped_in is None
+    # What a node prints without end may hide that.
+    return forced or not launch or launch.stopped_in is None or launch.stopped_in >= _PATIENCE
 
 
 def _waits(node: Node) -> Where:

@@ -23,7 +23,7 @@ class Swallowed(PythonRule):
                     "python-names",
                     "This catches every error, a misspelt name among them, and does not say which"
                     " one it was.",
-                    handler,
+                    handler.lineno,
                     severity=WARNING,
                     expected="except and the error that is expected, such as"
                     " rospy.ROSInterruptException",

@@ -24,10 +24,10 @@ _NO_FOLDERS = ("BEFORE", "AFTER", "SYSTEM")
 
 def _findings(case: Case) -> Iterator[Finding]:
     yield from _no_sources(case)
-    yield from _no_dependencies(case.model)
-    yield from _no_libraries(case.model)
-    yield from _no_system_libraries(case.model)
-    yield from _no_folders(case.model)
+    yield from _no_dependencies(case.package, case.model)
+    yield from _no_libraries(case.package, case.model)
+    yield from _no_system_libraries(case.package, case.model)
+    yield from _no_folders(case.package, case.model)
     yield from _no_launch_files(case.package)
     yield from _commented_out(case) if not case.spec.is_contract else ()
 
@@ -48,13 +48,14 @@ def _no_sources(case: Case) -> Iterator[Finding]:
             )
 
 
-def _missing(call: Call, name: str, message: str, expected: str, fix: str) -> Finding:
-    return Finding(
-        "targets", message, call.file, call.line, WARNING, expected=expected, seen=name, fix=fix
-    )
+def _missing(
+    package: Package, call: Call, name: str, message: str, expected: str, fix: str
+) -> Finding:
+    line = call.line_of(package.lines(call.file), name)
+    return Finding("targets", message, call.file, line, WARNING, expected, name, fix)
 
 
-def _no_dependencies(model: Model) -> Iterator[Finding]:
+def _no_dependencies(package: Package, model: Model) -> Iterator[Finding]:
     """Yield a warning for each target that is waited for, and that nothing makes. CMake says so
     only where cmake_minimum_required() names version 3.0 or later: then it stops."""
     for call in model.calls:
@@ -63,6 +64,7 @@ def _no_dependencies(model: Model) -> Iterator[Finding]:
                 of_messages = "_generate_messages" in name and not model.generate
                 near = None if of_messages else nearest(name, model.made)
                 yield _missing(
+                    package,
                     call,
                     name,
                     f"add_dependencies() lets {call.arguments[0]} wait for {name}, and there is no"
@@ -73,7 +75,7 @@ def _no_dependencies(model: Model) -> Iterator[Finding]:
                 )
 
 
-def _no_libraries(model: Model) -> Iterator[Finding]:
+def _no_libraries(package: Package, model: Model) -> Iterator[Finding]:
     call, targets = model.catkin_package, model.targets
     if not call or any("$" in name for name in targets):
         return
@@ -83,6 +85,7 @@ def _no_libraries(model: Model) -> Iterator[Finding]:
         if re.fullmatch(r"\w+", name) and name not in libraries | others:
             near = nearest(name, libraries)
             yield _missing(
+                package,
                 call,
                 name,
                 f"catkin_package() names the library {name} in LIBRARIES, and CMakeLists.txt makes"
@@ -93,11 +96,12 @@ def _no_libraries(model: Model) -> Iterator[Finding]:
             )
 
 
-def _no_system_libraries(model: Model) -> Iterator[Finding]:
+def _no_system_libraries(package: Package, model: Model) -> Iterator[Finding]:
     call = model.catkin_package
     for name in dict.fromkeys(model.not_found):
         if call:
             yield _missing(
+                package,
                 call,
                 name,
                 f"catkin_package() names {name} in DEPENDS, and no find_package() has found it:"
@@ -107,12 +111,13 @@ def _no_system_libraries(model: Model) -> Iterator[Finding]:
             )
 
 
-def _no_folders(model: Model) -> Iterator[Finding]:
+def _no_folders(package: Package, model: Model) -> Iterator[Finding]:
     for call in model.calls:
         for name in call.arguments if call.command == "include_directories" else ():
             path = model.path(name, call) if "$" not in name else None
             if path and name not in _NO_FOLDERS and not os.path.isdir(model.folder / path):
                 finding = _missing(
+                    package,
                     call,
                     name,
                     f"include_directories() names the folder {path}, and there is no such folder:"
@@ -155,6 +160,7 @@ def _no_launch_files(package: Package) -> Iterator[Finding]:
         for name in names:
             if name.endswith(_NO_LAUNCH_FILES):
                 yield _missing(
+                    package,
                     call,
                     name,
                     f"{call.command}() takes the launch file of a test here, and {name} is a"

@@ -54,7 +54,7 @@ class Said(typing.NamedTuple):
 
 # What calls a service; and what waits for one, or looks whether it is there.
 _CALLS = r"(\.|->)call\s*\(", r"\bserviceClient\b", r"\bServiceProxy\b"
-_WAITS = r"\b(wait_for_service|waitForService|waitForExistence|exists)\s*\("
+_WAITS = r"\b(wait_for_serv(?:ice|er)|waitForServ(?:ice|er)|waitForExistence|exists)\s*\("
 
 
 def unwaited(package: Package, files: Sequence[str]) -> Line | None:

@@ -13,10 +13,12 @@ import os
 import pathlib
 import re
 import typing
-from typing import Collection, Iterable, Mapping
+from typing import Collection, Iterable, Mapping, Sequence
 
 from mrp_check.confined import written
 from mrp_check.contract.words import line_of
+
+_CALLED = re.compile(r"^\s*\w+\s*\(")  # where a call begins
 
 
 class Call(typing.NamedTuple):
@@ -24,6 +26,16 @@ class Call(typing.NamedTuple):
     arguments: list[str]
     file: str  # relative to the package
     line: int
+
+    def line_of(self, lines: Sequence[str], word: str) -> int:
+        """Return the line of the file's lines in which a word of the call stands; or its first."""
+        is_word = re.compile(rf"^[^#]*(?<![\w-]){re.escape(word)}(?![\w-])")
+        for number, text in enumerate(lines[self.line - 1 :], self.line):
+            if number > self.line and _CALLED.match(text):
+                break
+            if is_word.search(text):
+                return number
+        return self.line
 
 
 @dataclasses.dataclass
