@@ -26,10 +26,12 @@ from mrp_check.rules import (
     unused_rate,
     waiting,
 )
+from mrp_check.sources import python_read
 from mrp_check.sources.facts import Facts
 from mrp_check.sources.python_source import Source
 from mrp_check.student.cmake import parsed
 from mrp_check.student.launch import Launch
+from mrp_testing.proves import proves
 
 pytestmark = pytest.mark.quick
 
@@ -70,6 +72,10 @@ SERVER = "s = actionlib.SimpleActionServer('a', A, work, auto_start=False)"
 WORK = "def work(goal):\n    for i in range(9):\n        "
 
 
+@proves(
+    "What works only by chance is a warning, such as a message that is published before any "
+    "subscriber is connected."
+)
 @pytest.mark.parametrize(
     ("rule", "ending", "lines", "found"),
     [
@@ -182,6 +188,7 @@ def test_a_service_in_python_divides(lines, found, tmp_path):
     assert lines_of(divided, case(tmp_path, "py", service)) == found
 
 
+@proves("So is a README that names a program, a launch file or a service that the package has not.")
 @pytest.mark.parametrize(
     ("command", "found"),
     [
@@ -285,3 +292,13 @@ def test_where_a_word_of_a_call_stands(tmp_path):
     lines = ["find_package(catkin REQUIRED", "  roscpp  # tf", "  tf", ")", "project(std_msgs)"]
     (call, _) = parsed("\n".join(lines), "CMakeLists.txt")
     assert [call.line_of(lines, word) for word in ("tf", "roscpp", "std_msgs")] == [3, 2, 1]
+
+
+def test_tabs_among_spaces(tmp_path):
+    lines = "def f():\n\ta = 1\n    b = 2\n    c = 3\n    print a\nf()\n"
+    package = check_rules.make(tmp_path / "some_pkg", src__a_DOT_py=lines)
+    _, finding = python_read.read(package, "src/a.py")
+    assert finding.line == 3 and "Lines with tabs: 2." in finding.message
+    # Behind them it reads on, with as many spaces for a tab as the author saw.
+    source, further = python_read.further(package, "src/a.py")
+    assert source is not None and [one.line for one in further] == [5]

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import ast
 import re
 from typing import Callable, Sequence
 
@@ -30,6 +31,7 @@ _SYNTAX = (
         " perhaps it was copied from a page or a document.",
     ),
 )
+_SHOWN = 12  # lines that a hint names
 # What Python says -> the entry of the page why.
 _WHY = (
     (r"indented block|unindent does not|unexpected indent", "python-indent"),
@@ -49,7 +51,7 @@ _IN_PYTHON3: Sequence[tuple[str, Callable[[str], str]]] = (
     (r"call to 'print'", lambda text: _PRINT.sub(_printed, text)),
     (r"multiple exception types|^invalid syntax$", lambda text: _EXCEPT.sub(r"\1 as \2:", text)),
     (r"Maybe you meant '=='", lambda text: _EQUAL.sub(r"\1==", text)),
-    (r"inconsistent use of tabs|unindent does not match", lambda text: text.expandtabs(8)),
+    (r"inconsistent use of tabs|unindent does not match", lambda text: _untabbed(text)),
 )
 # What Python says -> what stands in each line of the kind.
 _OF_PYTHON2 = (("call to 'print'", _PRINT), ("multiple exception types", _EXCEPT))
@@ -60,6 +62,35 @@ def _printed(statement: re.Match[str]) -> str:
     code = _NO_COMMENT.match(rest)
     end = code.end() if code else len(rest)
     return f"{before}print({rest[:end].rstrip()})  {rest[end:]}"
+
+
+def _untabbed(text: str) -> str:
+    """Return a text with spaces for its tabs, as many as let Python read most of it."""
+    return max((text.expandtabs(size) for size in (8, 4)), key=_lines_read)
+
+
+def _lines_read(text: str) -> float:
+    try:
+        compile(text, "", "exec", ast.PyCF_ONLY_AST)
+    except SyntaxError as error:
+        return error.lineno or 0
+    except (ValueError, RecursionError, MemoryError):
+        return 0
+    return float("inf")
+
+
+def _tabs(lines: Sequence[str]) -> str:
+    """Return a hint if some lines are indented with tabs and others with spaces, or nothing."""
+    by = {
+        kind: [str(number) for number, text in enumerate(lines, 1) if re.match(shape, text)]
+        for kind, shape in (("tabs", r"\t+\S"), ("spaces", r" +\S"))
+    }
+    kind, fewer = min(by.items(), key=lambda item: len(item[1]))
+    if not fewer:
+        return ""
+    more = ", ..." if len(fewer) > _SHOWN else ""
+    shown = ", ".join(fewer[:_SHOWN]) + more
+    return f"Tabs and spaces are mixed: use four spaces for each level. Lines with {kind}: {shown}."
 
 
 def further(package: Package, file: str) -> tuple[Source | None, list[Finding]]:
@@ -114,6 +145,8 @@ def _syntax(package: Package, file: str, error: SyntaxError) -> Finding:
     line = min(line, len(lines))
     shown = lines[line - 1].strip()
     hint = next((said for shape, said in _SYNTAX if re.search(shape, text)), "")
+    if re.search(r"inconsistent use|unindent|unexpected indent", text):
+        hint = _tabs(lines) or hint
     if text == "invalid syntax":
         if shown.startswith("//"):
             hint = "A comment begins with # in Python, not with //."
