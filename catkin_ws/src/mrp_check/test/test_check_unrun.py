@@ -6,8 +6,18 @@ import types
 import check_rules
 import pytest
 from mrp_check.confined.places import Kind, Place
+from mrp_check.confined.seen import Registration, Seen
 from mrp_check.contract.finding import ERROR, WARNING
-from mrp_check.rules import cpp_format, deaf_loop, deaf_python, same_name, types_written, unbuilt
+from mrp_check.rules import (
+    cpp_format,
+    deaf_loop,
+    deaf_python,
+    meeting,
+    same_name,
+    types_written,
+    unbuilt,
+)
+from mrp_check.running.observing import Launched
 from mrp_check.sources.facts import Facts
 from mrp_check.sources.python_source import Source
 
@@ -185,3 +195,23 @@ def test_a_node_that_was_seen_to_go_on_is_told_of_once(tmp_path):
     (node,) = known.nodes.values()
     node.direct = types.SimpleNamespace(asked=5.0, stopped_in=None)
     assert not [*check_rules.of(deaf_loop.RULE, known)]
+
+
+def launched(file, topic, *names):
+    """Return what was seen under a launch file, where hear subscribes to a topic."""
+    said = [Registration("/say", "/say/raw", "std_msgs/String", 1)]
+    heard = [Registration("/hear", topic, "std_msgs/String", 1)]
+    seen = types.SimpleNamespace(seen=Seen(publications=said, subscriptions=heard))
+    return Launched(file, {f"/{name}": name for name in names}, seen)
+
+
+@pytest.mark.parametrize(("files", "found"), [([], [ERROR]), (["launch/a.launch"], [])])
+def test_names_that_a_launch_file_may_give(files, found):
+    """Without one, all nodes run together; with one, it has renamed what they need."""
+    runs = [launched(file, "/say/raw", "hear") for file in files]
+    runs.append(launched("", "/hear/raw", "hear", "say"))
+    observed = types.SimpleNamespace(launches=runs, direct=None)
+    places = types.SimpleNamespace(of_topic=lambda *_: ("src/a.cpp", 1))
+    known = types.SimpleNamespace(observed=observed, places=places, nodes={})
+    said = check_rules.of(meeting.RULE, known)
+    assert [one.severity for one in said if one.severity == ERROR] == found

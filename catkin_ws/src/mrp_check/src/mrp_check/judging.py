@@ -73,7 +73,7 @@ def judged(case: Case, findings: Iterable[Finding], seen: Iterable[Finding]) -> 
             finding.consequence_of = None
     failed = [f for f in seen if f.stage in _SEEN and f.severity == ERROR]
     confirmed: set[tuple[str | None, str | None]] = {(f.id, f.file) for f in failed}
-    confirmed |= {(f.consequence_of, None) for f in findings if f.stage in _SEEN}
+    confirmed |= {(f.consequence_of, None) for f in failed}
     kept = []
     stops = any(f.id in _OF_CMAKE and f.severity == ERROR for f in findings)
     for finding in findings:

@@ -49,13 +49,15 @@ def _findings(case: Case) -> Iterator[Finding]:
 
 def _graphs(case: Case) -> Iterator[tuple[Graph, set[str]]]:
     """Yield what was seen under each launch file, and of each by itself, with the nodes that it
-    is asked of: each by itself only of those that no launch file starts."""
+    is asked of: all of them, and each by itself, only of those that no launch file starts, as that
+    may give them other names."""
     together: set[str] = set()
     for launched in case.observed.launches:
-        together.update(launched.nodes.values())
+        nodes = {*launched.nodes.values()} - (set() if launched.file else together)
+        together |= nodes
         where = f"Under {launched.file}" if launched.file else "When all nodes run together"
         graph = _graph(where, launched.seen.seen, launched.nodes, lambda topic: topic)
-        yield graph, {*launched.nodes.values()}
+        yield graph, nodes
     direct = case.observed.direct
     if direct:
         alone = {one.name: key for key, one in direct.nodes.items() if one.name}
