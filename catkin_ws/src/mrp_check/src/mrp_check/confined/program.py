@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """A program that runs under observation: its output, its end, and what it leaves behind."""
 
+import collections
 import os
 import re
 import signal
 import subprocess
 import threading
 import time
-from typing import IO, List, Mapping, Optional, Sequence
+from typing import IO, Deque, List, Mapping, Optional, Sequence, Tuple
 
 import psutil
 
@@ -16,7 +17,7 @@ from mrp_check.confined.seen import Left, Line
 
 _ESCAPES = re.compile(r"\x1b\[[0-9;]*m|\x1b\][^\x07]*\x07")
 _NOT_EXECUTED = re.compile(r"(bwrap: execvp|setpriv: failed to execute) ")
-_LINES = 5000  # that are kept of a program's output
+_LINES, _LAST_LINES = 5000, 500  # that are kept of a program's output, at its begin and its end
 _LINE_BYTES = 4096  # a longer line is cut into several
 _REST_SECONDS = 1.0  # that the rest of an output is waited for
 
@@ -37,6 +38,7 @@ class Program:
         merge: bool = False,
     ) -> None:
         self.lines: List[Line] = []
+        self._last: Deque[Tuple[float, str, bytes]] = collections.deque(maxlen=_LAST_LINES)
         self.line_count = 0
         self.started = time.monotonic()
         self.ended: Optional[float] = None
@@ -70,8 +72,9 @@ class Program:
                 return
             self.line_count += 1
             if len(self.lines) < _LINES:
-                text = _ESCAPES.sub("", data.decode("utf-8", "replace")).rstrip("\r\n")
-                self.lines.append((time.monotonic() - self.started, name, text))
+                self.lines.append((time.monotonic() - self.started, name, _text(data)))
+            else:
+                self._last.append((time.monotonic() - self.started, name, data))
 
     def poll(self) -> Optional[int]:
         """Return the exit code, or None while it runs."""
@@ -107,11 +110,15 @@ class Program:
         return not any(_NOT_EXECUTED.match(text) for _, _, text in self.lines[:1])
 
     def all_lines(self) -> List[Line]:
-        """Wait until all output is read, and return its lines; not for ever: a child may keep the
-        pipe open."""
+        """Wait until all output is read, and return the lines that are kept; not for ever: a child
+        may keep the pipe open."""
         for reader in self._readers:
             reader.join(_REST_SECONDS)
-        return list(self.lines)
+        return [*self.lines, *((at, name, _text(data)) for at, name, data in list(self._last))]
+
+
+def _text(data: bytes) -> str:
+    return _ESCAPES.sub("", data.decode("utf-8", "replace")).rstrip("\r\n")
 
 
 def _send(pid: int, number: int) -> None:

@@ -26,16 +26,15 @@ def _findings(case: Case) -> Iterator[Finding]:
     for name, files in case.facts.sources.items():
         node = case.nodes.get(name)
         for source in filter(None, map(case.facts.python.get, files)):
-            deaf = _deaf(source, bool(node and node.is_up)) if _is_rospys(source) else None
-            if deaf:
-                line, said, expected, fix = deaf
+            is_up = bool(node and node.is_up)
+            for line, said, expected, fix in _deaf(source, is_up) if _is_rospys(source) else ():
                 seen = case.package.lines(source.file)[line - 1].strip()
                 place = source.file, line, WARNING
                 yield Finding("exit", said, *place, expected, seen, fix, node=name)
 
 
-def _deaf(source: Source, is_up: bool) -> tuple[int, str, str, str] | None:
-    """Return (line, what is wrong, what is expected, what to do) of the first place, or None.
+def _deaf(source: Source, is_up: bool) -> Iterator[tuple[int, str, str, str]]:
+    """Yield (line, what is wrong, what is expected, what to do) of each loop, and of one input().
 
     is_up: whether the node ran; then it was seen what its loops do
     """
@@ -43,18 +42,18 @@ def _deaf(source: Source, is_up: bool) -> tuple[int, str, str, str] | None:
         if not is_up and _goes_on(source, loop):
             wanted = "while not rospy.is_shutdown():"
             said = "This loop never ends: it does not ask rospy.is_shutdown(), so Ctrl-C does not"
-            return loop.lineno, f"{said} end the node.", wanted, f"Write {wanted}"
+            yield loop.lineno, f"{said} end the node.", wanted, f"Write {wanted}"
     for call in source.nodes(ast.Call):
         if isinstance(call.func, ast.Name) and call.func.id == "input":
             if not source.definition(call.func) and "input" not in source.imports:
-                return (
+                yield (
                     call.lineno,
                     "Ctrl-C does not end the node while it waits for the keyboard: rospy keeps"
                     " KeyboardInterrupt back, until somebody presses Enter.",
                     "rospy.init_node(..., disable_signals=True)",
                     "Let rospy.init_node() have disable_signals=True, and catch KeyboardInterrupt.",
                 )
-    return None
+                return
 
 
 def _is_rospys(source: Source) -> bool:

@@ -20,7 +20,6 @@ from mrp_check.running.places import Traceback
 from mrp_check.running.words import code_text, last_words
 
 _BEFORE = 0.1  # seconds: what is printed so shortly before it is asked belongs to its end, too
-_PATIENCE = 15  # seconds that roslaunch gives a node after Ctrl-C
 # What rospy itself may say when a message is published at the very moment of the end.
 _AT_THE_END = ("closed topic", "closed during publish", "ROSInterruptException: rospy shutdown")
 
@@ -122,8 +121,7 @@ def _needs_force(name: str, launch: LaunchResult | None) -> bool | None:
     if not any(re.search(rf"\bprocess\[(\S+/)?{name}-\d+\]: started", text) for text in lines):
         return None
     forced = any(re.search(rf"[\[/]{name}-\d+\] escalating", text) for text in lines)
-    # What a node prints without end may hide that.
-    return forced or not launch or launch.stopped_in is None or launch.stopped_in >= _PATIENCE
+    return forced or not launch or launch.stopped_in is None
 
 
 def _waits(node: Node) -> Where:

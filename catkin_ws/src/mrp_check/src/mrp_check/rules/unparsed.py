@@ -19,7 +19,8 @@ _NAMED = re.compile(r"\brospy\.(\w+)")
 def _findings(case: Case) -> Iterator[Finding]:
     everything, missing = resolve("rospy")
     for node, files in case.facts.sources.items():
-        for file in set(files) & case.facts.unread if missing is None else ():
+        unread = case.facts.unread - {*case.facts.python} if missing is None else set()
+        for file in unread & {*files}:
             for match in _NAMED.finditer(uses.code(case.package, file)):
                 name, line = match[1], line_of(match)
                 if not hasattr(everything, name) and case.package.kind(file) == "python":
