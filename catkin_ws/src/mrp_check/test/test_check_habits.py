@@ -265,6 +265,8 @@ def test_behind_what_python_cannot_read(tmp_path):
     known = case(tmp_path, "py", "rospy.info('a')\nrospy.loginfo('b')")
     assert lines_of(unparsed, known) == []
     known.facts.unread.add("src/a.py")
+    assert lines_of(unparsed, known) == []  # it was read as if it were corrected
+    known.facts.python.clear()
     assert lines_of(unparsed, known) == [4]
 
 
