@@ -91,6 +91,7 @@ WORK = "def work(goal):\n    for i in range(9):\n        "
         (goals, "py", f"{WORK}print(i)\n{SERVER}", []),
         (goals, "py", "s = actionlib.SimpleActionServer('a', A, work)", [4]),
         (goals, "py", "s = actionlib.SimpleActionServer('a', A, work, False)", []),
+        (goals, "py", "s = actionlib.SimpleActionServer(name='a', auto_start=False)", []),
         (goals, "cpp", 'actionlib::SimpleActionServer<A> s(n, "a", f, true);', [4]),
         (goals, "cpp", 'actionlib::SimpleActionServer<A> s(n, "a", f, false);', []),
         (overwritten, "cpp", 'n.setParam("a", 1);\nn.getParam("a", b);', [4]),
@@ -136,7 +137,7 @@ WORK = "def work(goal):\n    for i in range(9):\n        "
         (unfilled, "py", "print('%s, %d' % (a, b))", []),
         (unfilled, "py", "print('100 %', a)", []),
     ],
-    ids=range(56),
+    ids=range(57),
 )
 def test_what_beginners_are_used_to(rule, ending, lines, found, tmp_path):
     assert lines_of(rule, case(tmp_path, ending, lines)) == found

@@ -15,7 +15,7 @@ from mrp_check.case import Case
 from mrp_check.contract.finding import NOTE, WARNING, Finding
 from mrp_check.contract.requirements import ANY, Rule
 from mrp_check.contract.words import line_of
-from mrp_check.sources import uses
+from mrp_check.sources import in_both
 from mrp_check.sources.python_source import Source
 
 _BEFORE = re.compile(r"\bint\s+main\s*\([^)]*\)(.*?)\bros::init\s*\(", re.DOTALL)
@@ -27,44 +27,37 @@ _LOGGED = {"rospy.logdebug", "rospy.loginfo"}
 
 def _findings(case: Case) -> Iterator[Finding]:
     launched = {started.type for launch in case.launches for started in launch.nodes}
-    for node, files in case.facts.sources.items():
-        for file in files:
-            source = case.facts.python.get(file)
-            if source:
-                counted, logged = _in_python(source)
-            elif case.package.kind(file) == "cpp":
-                counted, logged = _in_cpp(uses.code(case.package, file))
-            else:
-                continue
-            start = "rospy.init_node()" if source else "ros::init()"
-            if counted:
-                own = "rospy.myargv()" if source else "argc after ros::init()"
-                severity = WARNING if node in launched or not source else NOTE
-                yield Finding(
-                    "starts",
-                    f"{node} counts its arguments with those that are meant for ROS: roslaunch and"
-                    " a remap add some, and then the count is wrong.",
-                    file,
-                    counted,
-                    severity,
-                    expected=own,
-                    seen=case.package.lines(file)[counted - 1].strip(),
-                    fix=f"Count {own}.",
-                    node=node,
-                )
-            if logged:
-                shown = "it is not shown" if source else "it does not come to /rosout"
-                yield Finding(
-                    "node-start",
-                    f"{node} logs this before {start}: {shown}.",
-                    file,
-                    logged,
-                    WARNING,
-                    expected=f"{start} before the first line that is logged",
-                    seen=case.package.lines(file)[logged - 1].strip(),
-                    fix=f"Move it to below {start}.",
-                    node=node,
-                )
+    for node, file, source, text in in_both.each(case):
+        counted, logged = _in_python(source) if source else _in_cpp(text)
+        start = "rospy.init_node()" if source else "ros::init()"
+        if counted:
+            own = "rospy.myargv()" if source else "argc after ros::init()"
+            severity = WARNING if node in launched or not source else NOTE
+            yield Finding(
+                "starts",
+                f"{node} counts its arguments with those that are meant for ROS: roslaunch and"
+                " a remap add some, and then the count is wrong.",
+                file,
+                counted,
+                severity,
+                expected=own,
+                seen=case.package.lines(file)[counted - 1].strip(),
+                fix=f"Count {own}.",
+                node=node,
+            )
+        if logged:
+            shown = "it is not shown" if source else "it does not come to /rosout"
+            yield Finding(
+                "node-start",
+                f"{node} logs this before {start}: {shown}.",
+                file,
+                logged,
+                WARNING,
+                expected=f"{start} before the first line that is logged",
+                seen=case.package.lines(file)[logged - 1].strip(),
+                fix=f"Move it to below {start}.",
+                node=node,
+            )
 
 
 def _in_cpp(text: str) -> tuple[int, int]:

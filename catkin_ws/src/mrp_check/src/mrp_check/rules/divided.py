@@ -11,7 +11,7 @@ from mrp_check.case import Case
 from mrp_check.contract.finding import WARNING, Finding
 from mrp_check.contract.requirements import ANY, Rule
 from mrp_check.contract.words import braced, line_of
-from mrp_check.sources import uses
+from mrp_check.sources import in_both
 from mrp_check.sources.python_facts import argument
 from mrp_check.sources.python_source import Source
 from mrp_check.student.package import Package
@@ -23,29 +23,21 @@ _DIVISIONS = (ast.Div, ast.FloorDiv, ast.Mod)
 
 
 def _findings(case: Case) -> Iterator[Finding]:
-    for node, files in case.facts.sources.items():
-        for file in files:
-            source = case.facts.python.get(file)
-            if source:
-                found = _in_python(source)
-                what = "this ends the call with a ZeroDivisionError"
-            elif case.package.kind(file) == "cpp":
-                found = _in_cpp(case.package, uses.code(case.package, file))
-                what = "the program dies of it"
-            else:
-                continue
-            for field, line in found:
-                yield Finding(
-                    "callbacks",
-                    f"Nobody looks whether {field} of the request is 0: then {what}.",
-                    file,
-                    line,
-                    WARNING,
-                    expected=f"a condition on {field} before this line",
-                    seen=case.package.lines(file)[line - 1].strip(),
-                    fix=f"Answer a request whose {field} is 0 in another way.",
-                    node=node,
-                )
+    for node, file, source, text in in_both.each(case):
+        found = _in_python(source) if source else _in_cpp(case.package, text)
+        dies = "this ends the call with a ZeroDivisionError" if source else "the program dies of it"
+        for field, line in found:
+            yield Finding(
+                "callbacks",
+                f"Nobody looks whether {field} of the request is 0: then {dies}.",
+                file,
+                line,
+                WARNING,
+                expected=f"a condition on {field} before this line",
+                seen=case.package.lines(file)[line - 1].strip(),
+                fix=f"Answer a request whose {field} is 0 in another way.",
+                node=node,
+            )
 
 
 def _in_cpp(package: Package, text: str) -> Iterator[tuple[str, int]]:

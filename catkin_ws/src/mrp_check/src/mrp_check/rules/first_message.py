@@ -14,7 +14,7 @@ from mrp_check.case import Case
 from mrp_check.contract.finding import WARNING, Finding
 from mrp_check.contract.requirements import ANY, Rule
 from mrp_check.contract.words import braced, line_of
-from mrp_check.sources import uses
+from mrp_check.sources import in_both
 from mrp_check.sources.python_facts import argument
 from mrp_check.sources.python_source import Source
 
@@ -29,28 +29,20 @@ _WAITS = ("sleep", "wait", "get_num_connections", "input", "spin", "impl", "call
 
 
 def _findings(case: Case) -> Iterator[Finding]:
-    for node, files in case.facts.sources.items():
-        for file in files:
-            source = case.facts.python.get(file)
-            if source:
-                lines = _in_python(source)
-            elif case.package.kind(file) == "cpp":
-                lines = _in_cpp(uses.code(case.package, file))
-            else:
-                continue
-            for line in lines:
-                yield Finding(
-                    "topic",
-                    f"{node} publishes this at once after it has made its publisher: no subscriber"
-                    " is connected yet, and nobody hears it.",
-                    file,
-                    line,
-                    WARNING,
-                    expected="a wait until somebody is connected; or latch",
-                    seen=case.package.lines(file)[line - 1].strip(),
-                    fix=f"Wait first until {_asked(source)} is more than 0.",
-                    node=node,
-                )
+    for node, file, source, text in in_both.each(case):
+        for line in _in_python(source) if source else _in_cpp(text):
+            yield Finding(
+                "topic",
+                f"{node} publishes this at once after it has made its publisher: no subscriber"
+                " is connected yet, and nobody hears it.",
+                file,
+                line,
+                WARNING,
+                expected="a wait until somebody is connected; or latch",
+                seen=case.package.lines(file)[line - 1].strip(),
+                fix=f"Wait first until {_asked(source)} is more than 0.",
+                node=node,
+            )
 
 
 def _asked(source: Source | None) -> str:

@@ -14,7 +14,7 @@ from mrp_check.case import Case
 from mrp_check.contract.finding import WARNING, Finding
 from mrp_check.contract.requirements import ANY, Rule
 from mrp_check.contract.words import line_of
-from mrp_check.sources import uses
+from mrp_check.sources import in_both
 from mrp_check.sources.python_facts import argument
 from mrp_check.sources.python_source import Source
 
@@ -28,29 +28,22 @@ _LASTING = {"sleep", "publish_feedback"}
 
 
 def _findings(case: Case) -> Iterator[Finding]:
-    for node, files in case.facts.sources.items():
-        for file in files:
-            source = case.facts.python.get(file)
-            if source:
-                loop, started = _in_python(source)
-            elif case.package.kind(file) == "cpp":
-                loop, started = _in_cpp(uses.code(case.package, file))
-            else:
-                continue
-            asked = "is_preempt_requested()" if source else "isPreemptRequested()"
-            if loop:
-                said = "This loop does not ask whether its goal has been cancelled: it goes on."
-                place = file, loop, WARNING, f"{asked} in the loop"
-                seen = case.package.lines(file)[loop - 1].strip()
-                fix = f"Ask {asked} in each turn, and end the goal as preempted."
-                yield Finding("callbacks", said, *place, seen, fix, node=node)
-            if started:
-                said = "The action server starts when it is made: a goal may come too early."
-                wanted = "auto_start=False" if source else "false as the last argument"
-                place = file, started, WARNING, f"{wanted}, and start()"
-                seen = case.package.lines(file)[started - 1].strip()
-                fix = f"Give it {wanted}, and call its start() when all else is made."
-                yield Finding("callbacks", said, *place, seen, fix, node=node)
+    for node, file, source, text in in_both.each(case):
+        loop, started = _in_python(source) if source else _in_cpp(text)
+        asked = "is_preempt_requested()" if source else "isPreemptRequested()"
+        if loop:
+            said = "This loop does not ask whether its goal has been cancelled: it goes on."
+            place = file, loop, WARNING, f"{asked} in the loop"
+            seen = case.package.lines(file)[loop - 1].strip()
+            fix = f"Ask {asked} in each turn, and end the goal as preempted."
+            yield Finding("callbacks", said, *place, seen, fix, node=node)
+        if started:
+            said = "The action server starts when it is made: a goal may come too early."
+            wanted = "auto_start=False" if source else "false as the last argument"
+            place = file, started, WARNING, f"{wanted}, and start()"
+            seen = case.package.lines(file)[started - 1].strip()
+            fix = f"Give it {wanted}, and call its start() when all else is made."
+            yield Finding("callbacks", said, *place, seen, fix, node=node)
 
 
 def _in_cpp(text: str) -> tuple[int, int]:
@@ -71,7 +64,8 @@ def _in_python(source: Source) -> tuple[int, int]:
     for call in source.nodes(ast.Call):
         if source.dotted(call.func) != "actionlib.SimpleActionServer":
             continue
-        if argument(call, 3, "auto_start") is None or source.value(call.args[-1]) is True:
+        at_once = argument(call, 3, "auto_start")
+        if at_once is None or source.value(at_once) is True:
             started = call.lineno
         work = source.definition(argument(call, 2, "execute_cb"))
         if isinstance(work, ast.FunctionDef) and not _asks(source):

@@ -14,7 +14,7 @@ from mrp_check.case import Case
 from mrp_check.contract.finding import WARNING, Finding
 from mrp_check.contract.requirements import ANY, Rule
 from mrp_check.contract.words import braced, line_of
-from mrp_check.sources import uses
+from mrp_check.sources import in_both
 from mrp_check.sources.python_source import Source
 
 _COUNTS = re.compile(
@@ -27,29 +27,22 @@ _ASKS = re.compile(r"\bok\s*\(|\bisShuttingDown\b|\bbreak\b|\breturn\b|\bexit\s*
 
 def _findings(case: Case) -> Iterator[Finding]:
     limit = case.spec.shutdown.seconds
-    for node, files in case.facts.sources.items():
-        for file in files:
-            source = case.facts.python.get(file)
-            if source:
-                loops, asked = _in_python(source), "rospy.is_shutdown()"
-            elif case.package.kind(file) == "cpp":
-                loops, asked = _in_cpp(uses.code(case.package, file)), "ros::ok()"
-            else:
-                continue
-            for line, seconds in loops:
-                if seconds > limit:
-                    yield Finding(
-                        "exit",
-                        f"This loop does not ask {asked}: after Ctrl-C it goes on to its end,"
-                        f" which takes up to {seconds:.0f} s.",
-                        file,
-                        line,
-                        WARNING,
-                        expected=f"{asked} in the loop",
-                        seen=case.package.lines(file)[line - 1].strip(),
-                        fix=f"Ask {asked} in each turn, and leave the loop then.",
-                        node=node,
-                    )
+    for node, file, source, text in in_both.each(case):
+        asked = "rospy.is_shutdown()" if source else "ros::ok()"
+        for line, seconds in _in_python(source) if source else _in_cpp(text):
+            if seconds > limit:
+                yield Finding(
+                    "exit",
+                    f"This loop does not ask {asked}: after Ctrl-C it goes on to its end,"
+                    f" which takes up to {seconds:.0f} s.",
+                    file,
+                    line,
+                    WARNING,
+                    expected=f"{asked} in the loop",
+                    seen=case.package.lines(file)[line - 1].strip(),
+                    fix=f"Ask {asked} in each turn, and leave the loop then.",
+                    node=node,
+                )
 
 
 def _in_cpp(text: str) -> Iterator[tuple[int, float]]:

@@ -11,34 +11,26 @@ from mrp_check.case import Case
 from mrp_check.contract.finding import WARNING, Finding
 from mrp_check.contract.requirements import ANY, Rule
 from mrp_check.contract.words import line_of
-from mrp_check.sources import uses
+from mrp_check.sources import in_both
 from mrp_check.sources.python_source import Source
 
 _MADE = re.compile(r"\bros::(?:Wall)?Rate\s+(\w+)\s*[({][^;]*;")
 
 
 def _findings(case: Case) -> Iterator[Finding]:
-    for node, files in case.facts.sources.items():
-        for file in files:
-            source = case.facts.python.get(file)
-            if source:
-                found = _in_python(source)
-            elif case.package.kind(file) == "cpp":
-                found = _in_cpp(uses.code(case.package, file))
-            else:
-                continue
-            for name, line in found:
-                yield Finding(
-                    "spin",
-                    f"Nobody calls {name}.sleep(): this rate changes nothing.",
-                    file,
-                    line,
-                    WARNING,
-                    expected=f"{name}.sleep() in the loop",
-                    seen=case.package.lines(file)[line - 1].strip(),
-                    fix=f"Call {name}.sleep() at the end of the loop; or take the rate out.",
-                    node=node,
-                )
+    for node, file, source, text in in_both.each(case):
+        for name, line in _in_python(source) if source else _in_cpp(text):
+            yield Finding(
+                "spin",
+                f"Nobody calls {name}.sleep(): this rate changes nothing.",
+                file,
+                line,
+                WARNING,
+                expected=f"{name}.sleep() in the loop",
+                seen=case.package.lines(file)[line - 1].strip(),
+                fix=f"Call {name}.sleep() at the end of the loop; or take the rate out.",
+                node=node,
+            )
 
 
 def _in_cpp(text: str) -> Iterator[tuple[str, int]]:

@@ -1,0 +1,33 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The sources of a package's nodes, for rules that say the same of Python and of C++."""
+
+from __future__ import annotations
+
+from typing import Iterator, NamedTuple
+
+from mrp_check.sources import uses
+from mrp_check.sources.python_rule import HasFacts
+from mrp_check.sources.python_source import Source
+
+
+class OfNode(NamedTuple):
+    """A source of a node.
+
+    python: what it says, if it is in Python; code: its text without comments, if it is in C++
+    """
+
+    node: str
+    file: str
+    python: Source | None
+    code: str
+
+
+def each(case: HasFacts) -> Iterator[OfNode]:
+    """Yield each source in Python that could be read, and each in C++; headers are left out."""
+    for node, files in case.facts.sources.items():
+        for file in files:
+            source = case.facts.python.get(file)
+            if source:
+                yield OfNode(node, file, source, "")
+            elif case.package.kind(file) == "cpp":
+                yield OfNode(node, file, None, uses.code(case.package, file))
