@@ -5,13 +5,15 @@ import types
 
 import check_rules
 import pytest
+from mrp_check import judging
 from mrp_check.confined.places import Kind, Place
 from mrp_check.confined.seen import Registration, Seen
-from mrp_check.contract.finding import ERROR, WARNING
+from mrp_check.contract.finding import ERROR, NOTE, WARNING, Finding
 from mrp_check.rules import (
     cpp_format,
     deaf_loop,
     deaf_python,
+    long_loop,
     meeting,
     same_name,
     types_written,
@@ -215,3 +217,12 @@ def test_names_that_a_launch_file_may_give(files, found):
     known = types.SimpleNamespace(observed=observed, places=places, nodes={})
     said = check_rules.of(meeting.RULE, known)
     assert [one.severity for one in said if one.severity == ERROR] == found
+
+
+@pytest.mark.parametrize(("node", "found"), [("a", 1), ("b", 2)])
+def test_a_long_loop_says_the_same_however_long_the_node_is_watched(node, found):
+    loop = Finding("exit", f"This loop does not ask: {long_loop.GOES_ON}.", severity=WARNING)
+    end = Finding("spin", "a does its work, and ends: in peace", severity=NOTE, node=node)
+    loop.node = "a"
+    case = types.SimpleNamespace(built=None)
+    assert len(judging.judged(case, [loop, end], [])) == found

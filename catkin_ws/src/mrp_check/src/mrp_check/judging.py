@@ -12,6 +12,7 @@ from mrp_check.contract.finding import ERROR, NOTE, WARNING, Finding, Line
 from mrp_check.contract.words import last_part
 from mrp_check.rules.deaf_loop import ASKS_KEYBOARD
 from mrp_check.rules.definitions import UNREADABLE
+from mrp_check.rules.long_loop import GOES_ON
 from mrp_check.rules.python_names import OLD_NAME
 from mrp_check.rules.responses import NO_RESPONSE
 from mrp_check.rules.unbuilt import COUNTS
@@ -45,6 +46,7 @@ _WAITS = (
 # Beside the line at which a program ends, it misses some of the arguments that it counts.
 _COUNTS = re.compile(COUNTS)
 _ENDS = re.compile(r"\bexit\s*\(|\bquit\s*\(|\breturn\s+(-?[1-9]|EXIT_FAILURE)")
+_ENDS_IN_PEACE = "does its work, and ends"
 _FEW = 6  # lines
 # The same of a launch file: an argument, a variable of the environment, or another's launch file.
 _WANTED = (
@@ -75,6 +77,7 @@ def judged(case: Case, findings: Iterable[Finding], seen: Iterable[Finding]) -> 
     confirmed: set[tuple[str | None, str | None]] = {(f.id, f.file) for f in failed}
     confirmed |= {(f.consequence_of, None) for f in failed}
     kept = []
+    late = {finding.node for finding in findings if GOES_ON in finding.message}
     stops = any(f.id in _OF_CMAKE and f.severity == ERROR for f in findings)
     for finding in findings:
         is_seen = {(finding.id, finding.file), (finding.id, None)} & confirmed
@@ -84,7 +87,9 @@ def judged(case: Case, findings: Iterable[Finding], seen: Iterable[Finding]) -> 
                 finding.severity = NOTE if wants else WARNING
         if finding.severity != ERROR:
             finding.consequence_of = None
-        if not _is_unbuilt(case, finding, stops):
+        # Only on a busy machine is such a node watched until its loop ends.
+        is_late = _ENDS_IN_PEACE in finding.message and finding.node in late
+        if not _is_unbuilt(case, finding, stops) and not is_late:
             kept.append(finding)
     errors = {f.id for f in kept if f.severity == ERROR}
     for finding in kept:
@@ -177,7 +182,7 @@ def _of_start(case: Case, node: Node, finding: Finding) -> None:
         return
     if node.direct and node.direct.code == 0 and not _is_left_alone(node):
         finding.severity = NOTE
-        finding.message = f"{node.name} does its work, and ends: {last_words(lines) or 'in peace'}"
+        finding.message = f"{node.name} {_ENDS_IN_PEACE}: {last_words(lines) or 'in peace'}"
 
 
 def _works_under(case: Case, node: Node) -> str | None:

@@ -17,6 +17,7 @@ from mrp_check.contract.words import braced, line_of
 from mrp_check.sources import in_both
 from mrp_check.sources.python_source import Source
 
+GOES_ON = "after Ctrl-C it goes on to its end"
 _COUNTS = re.compile(
     r"\bfor\s*\(\s*(?:\w+\s+)*(\w+)\s*=\s*(\d+)\s*;\s*\1\s*<=?\s*(\d+)\s*;[^;{}]*(?=\{)"
 )
@@ -33,8 +34,8 @@ def _findings(case: Case) -> Iterator[Finding]:
             if seconds > limit:
                 yield Finding(
                     "exit",
-                    f"This loop does not ask {asked}: after Ctrl-C it goes on to its end,"
-                    f" which takes up to {seconds:.0f} s.",
+                    f"This loop does not ask {asked}: {GOES_ON}, which takes up to"
+                    f" {seconds:.0f} s.",
                     file,
                     line,
                     WARNING,
