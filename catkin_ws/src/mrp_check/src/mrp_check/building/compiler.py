@@ -119,11 +119,11 @@ def without_return(package: Package, output: str, copy: pathlib.Path) -> list[Fi
 
 def doubts(package: Package, output: str, copy: pathlib.Path) -> Iterator[Finding]:
     """Yield a warning for each line of the package's own that g++ takes, and warns of."""
-    told = set()
+    found = set()
     for match in filter(None, map(_DOUBT.match, output.splitlines())):
         place, said = _place(match, copy), _DOUBTS.get(match["name"])
-        if place and said and place not in told and "no return statement" not in match["text"]:
-            told.add(place)
+        if place and said and place not in found and "no return statement" not in match["text"]:
+            found.add(place)
             line = package.lines(place[0])[place[1] - 1].strip()
             expected = "C++ that the compiler has no doubts about"
             seen = f"{line}  (g++: {match['text']})"

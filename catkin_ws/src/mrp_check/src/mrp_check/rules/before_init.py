@@ -27,36 +27,29 @@ _LOGGED = {"rospy.logdebug", "rospy.loginfo"}
 
 def _findings(case: Case) -> Iterator[Finding]:
     launched = {started.type for launch in case.launches for started in launch.nodes}
-    for node, file, source, text in in_both.each(case):
-        counted, logged = _in_python(source) if source else _in_cpp(text)
-        start = "rospy.init_node()" if source else "ros::init()"
+    for one in in_both.each(case):
+        counted, logged = _in_python(one.python) if one.python else _in_cpp(one.code)
+        start = "rospy.init_node()" if one.python else "ros::init()"
         if counted:
-            own = "rospy.myargv()" if source else "argc after ros::init()"
-            severity = WARNING if node in launched or not source else NOTE
-            yield Finding(
+            own = "rospy.myargv()" if one.python else "argc after ros::init()"
+            severity = WARNING if one.node in launched or not one.python else NOTE
+            yield one.finding(
                 "starts",
-                f"{node} counts its arguments with those that are meant for ROS: roslaunch and"
+                f"{one.node} counts its arguments with those that are meant for ROS: roslaunch and"
                 " a remap add some, and then the count is wrong.",
-                file,
                 counted,
-                severity,
                 expected=own,
-                seen=case.package.lines(file)[counted - 1].strip(),
                 fix=f"Count {own}.",
-                node=node,
+                severity=severity,
             )
         if logged:
-            shown = "it is not shown" if source else "it does not come to /rosout"
-            yield Finding(
+            shown = "it is not shown" if one.python else "it does not come to /rosout"
+            yield one.finding(
                 "node-start",
-                f"{node} logs this before {start}: {shown}.",
-                file,
+                f"{one.node} logs this before {start}: {shown}.",
                 logged,
-                WARNING,
                 expected=f"{start} before the first line that is logged",
-                seen=case.package.lines(file)[logged - 1].strip(),
                 fix=f"Move it to below {start}.",
-                node=node,
             )
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A service looks whether what it divides by is 0: whoever asks may send anything."""
+"""A service checks that what it divides by is not 0: a client may send any number."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import re
 from typing import Iterator
 
 from mrp_check.case import Case
-from mrp_check.contract.finding import WARNING, Finding
+from mrp_check.contract.finding import Finding
 from mrp_check.contract.requirements import ANY, Rule
 from mrp_check.contract.words import braced, line_of
 from mrp_check.sources import in_both
@@ -19,24 +19,21 @@ from mrp_check.student.package import Package
 _OFFERED = re.compile(
     r"\bbool\s+[\w:]+\s*\(\s*(?:const\s+)?(?:\w+::)*?(\w+?)(?:::)?Request\s*&\s*(\w+)[^)]*\)\s*(?=\{)"
 )
+_RAISES = "this ends the call with a ZeroDivisionError"
 _DIVISIONS = (ast.Div, ast.FloorDiv, ast.Mod)
 
 
 def _findings(case: Case) -> Iterator[Finding]:
-    for node, file, source, text in in_both.each(case):
-        found = _in_python(source) if source else _in_cpp(case.package, text)
-        dies = "this ends the call with a ZeroDivisionError" if source else "the program dies of it"
+    for one in in_both.each(case):
+        found = _in_python(one.python) if one.python else _in_cpp(one.package, one.code)
+        dies = _RAISES if one.python else "the program dies of it"
         for field, line in found:
-            yield Finding(
+            yield one.finding(
                 "callbacks",
                 f"Nobody looks whether {field} of the request is 0: then {dies}.",
-                file,
                 line,
-                WARNING,
                 expected=f"a condition on {field} before this line",
-                seen=case.package.lines(file)[line - 1].strip(),
                 fix=f"Answer a request whose {field} is 0 in another way.",
-                node=node,
             )
 
 

@@ -11,7 +11,7 @@ import re
 from typing import Iterator
 
 from mrp_check.case import Case
-from mrp_check.contract.finding import WARNING, Finding
+from mrp_check.contract.finding import Finding
 from mrp_check.contract.requirements import ANY, Rule
 from mrp_check.contract.words import braced, line_of
 from mrp_check.sources import in_both
@@ -29,19 +29,15 @@ _WAITS = ("sleep", "wait", "get_num_connections", "input", "spin", "impl", "call
 
 
 def _findings(case: Case) -> Iterator[Finding]:
-    for node, file, source, text in in_both.each(case):
-        for line in _in_python(source) if source else _in_cpp(text):
-            yield Finding(
+    for one in in_both.each(case):
+        for line in _in_python(one.python) if one.python else _in_cpp(one.code):
+            yield one.finding(
                 "topic",
-                f"{node} publishes this at once after it has made its publisher: no subscriber"
+                f"{one.node} publishes this at once after it has made its publisher: no subscriber"
                 " is connected yet, and nobody hears it.",
-                file,
                 line,
-                WARNING,
                 expected="a wait until somebody is connected; or latch",
-                seen=case.package.lines(file)[line - 1].strip(),
-                fix=f"Wait first until {_asked(source)} is more than 0.",
-                node=node,
+                fix=f"Wait first until {_asked(one.python)} is more than 0.",
             )
 
 
@@ -64,12 +60,12 @@ def _in_cpp(text: str) -> Iterator[int]:
 def _in_python(source: Source) -> Iterator[int]:
     """Yield the same of a source in Python."""
     calls = sorted(source.nodes(ast.Call), key=lambda call: (call.lineno, call.col_offset))
-    for made in calls:
+    for number, made in enumerate(calls, 1):
         given = source.parents.get(made)
         is_made = source.dotted(made.func) == "rospy.Publisher" and isinstance(given, ast.Assign)
         if is_made and isinstance(given, ast.Assign) and argument(made, 6, "latch") is None:
             key, block = source.key(given.targets[0]), source.parents[given]
-            for call in calls[calls.index(made) + 1 :]:
+            for call in calls[number:]:
                 name = getattr(call.func, "attr", getattr(call.func, "id", ""))
                 above = [*source.above(call)]
                 if block not in above or isinstance(source.function(call), ast.Lambda):

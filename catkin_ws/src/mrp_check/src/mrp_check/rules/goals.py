@@ -11,7 +11,7 @@ import re
 from typing import Iterator
 
 from mrp_check.case import Case
-from mrp_check.contract.finding import WARNING, Finding
+from mrp_check.contract.finding import Finding
 from mrp_check.contract.requirements import ANY, Rule
 from mrp_check.contract.words import line_of
 from mrp_check.sources import in_both
@@ -28,22 +28,18 @@ _LASTING = {"sleep", "publish_feedback"}
 
 
 def _findings(case: Case) -> Iterator[Finding]:
-    for node, file, source, text in in_both.each(case):
-        loop, started = _in_python(source) if source else _in_cpp(text)
-        asked = "is_preempt_requested()" if source else "isPreemptRequested()"
+    for one in in_both.each(case):
+        loop, started = _in_python(one.python) if one.python else _in_cpp(one.code)
+        asked = "is_preempt_requested()" if one.python else "isPreemptRequested()"
         if loop:
             said = "This loop does not ask whether its goal has been cancelled: it goes on."
-            place = file, loop, WARNING, f"{asked} in the loop"
-            seen = case.package.lines(file)[loop - 1].strip()
             fix = f"Ask {asked} in each turn, and end the goal as preempted."
-            yield Finding("callbacks", said, *place, seen, fix, node=node)
+            yield one.finding("callbacks", said, loop, f"{asked} in the loop", fix)
         if started:
             said = "The action server starts when it is made: a goal may come too early."
-            wanted = "auto_start=False" if source else "false as the last argument"
-            place = file, started, WARNING, f"{wanted}, and start()"
-            seen = case.package.lines(file)[started - 1].strip()
+            wanted = "auto_start=False" if one.python else "false as the last argument"
             fix = f"Give it {wanted}, and call its start() when all else is made."
-            yield Finding("callbacks", said, *place, seen, fix, node=node)
+            yield one.finding("callbacks", said, started, f"{wanted}, and start()", fix)
 
 
 def _in_cpp(text: str) -> tuple[int, int]:

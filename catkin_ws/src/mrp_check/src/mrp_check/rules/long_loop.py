@@ -11,7 +11,7 @@ import re
 from typing import Iterator
 
 from mrp_check.case import Case
-from mrp_check.contract.finding import WARNING, Finding
+from mrp_check.contract.finding import Finding
 from mrp_check.contract.requirements import ANY, Rule
 from mrp_check.contract.words import braced, line_of
 from mrp_check.sources import in_both
@@ -28,21 +28,17 @@ _ASKS = re.compile(r"\bok\s*\(|\bisShuttingDown\b|\bbreak\b|\breturn\b|\bexit\s*
 
 def _findings(case: Case) -> Iterator[Finding]:
     limit = case.spec.shutdown.seconds
-    for node, file, source, text in in_both.each(case):
-        asked = "rospy.is_shutdown()" if source else "ros::ok()"
-        for line, seconds in _in_python(source) if source else _in_cpp(text):
+    for one in in_both.each(case):
+        asked = "rospy.is_shutdown()" if one.python else "ros::ok()"
+        for line, seconds in _in_python(one.python) if one.python else _in_cpp(one.code):
             if seconds > limit:
-                yield Finding(
+                yield one.finding(
                     "exit",
                     f"This loop does not ask {asked}: {GOES_ON}, which takes up to"
                     f" {seconds:.0f} s.",
-                    file,
                     line,
-                    WARNING,
                     expected=f"{asked} in the loop",
-                    seen=case.package.lines(file)[line - 1].strip(),
                     fix=f"Ask {asked} in each turn, and leave the loop then.",
-                    node=node,
                 )
 
 

@@ -8,7 +8,7 @@ import re
 from typing import Iterator
 
 from mrp_check.case import Case
-from mrp_check.contract.finding import WARNING, Finding
+from mrp_check.contract.finding import Finding
 from mrp_check.contract.requirements import ANY, Rule
 from mrp_check.contract.words import line_of
 from mrp_check.sources import in_both
@@ -18,18 +18,14 @@ _MADE = re.compile(r"\bros::(?:Wall)?Rate\s+(\w+)\s*[({][^;]*;")
 
 
 def _findings(case: Case) -> Iterator[Finding]:
-    for node, file, source, text in in_both.each(case):
-        for name, line in _in_python(source) if source else _in_cpp(text):
-            yield Finding(
+    for one in in_both.each(case):
+        for name, line in _in_python(one.python) if one.python else _in_cpp(one.code):
+            yield one.finding(
                 "spin",
                 f"Nobody calls {name}.sleep(): this rate changes nothing.",
-                file,
                 line,
-                WARNING,
                 expected=f"{name}.sleep() in the loop",
-                seen=case.package.lines(file)[line - 1].strip(),
                 fix=f"Call {name}.sleep() at the end of the loop; or take the rate out.",
-                node=node,
             )
 
 

@@ -5,9 +5,11 @@ from __future__ import annotations
 
 from typing import Iterator, NamedTuple
 
+from mrp_check.contract.finding import WARNING, Finding
 from mrp_check.sources import uses
 from mrp_check.sources.python_rule import HasFacts
 from mrp_check.sources.python_source import Source
+from mrp_check.student.package import Package
 
 
 class OfNode(NamedTuple):
@@ -16,10 +18,19 @@ class OfNode(NamedTuple):
     python: what it says, if it is in Python; code: its text without comments, if it is in C++
     """
 
+    package: Package
     node: str
     file: str
     python: Source | None
     code: str
+
+    def finding(
+        self, id_: str, message: str, line: int, expected: str, fix: str, severity: str = WARNING
+    ) -> Finding:
+        """Return the Finding about a line of it."""
+        seen = self.package.lines(self.file)[line - 1].strip()
+        place = self.file, line, severity
+        return Finding(id_, message, *place, expected, seen, fix, node=self.node)
 
 
 def each(case: HasFacts) -> Iterator[OfNode]:
@@ -28,6 +39,6 @@ def each(case: HasFacts) -> Iterator[OfNode]:
         for file in files:
             source = case.facts.python.get(file)
             if source:
-                yield OfNode(node, file, source, "")
+                yield OfNode(case.package, node, file, source, "")
             elif case.package.kind(file) == "cpp":
-                yield OfNode(node, file, None, uses.code(case.package, file))
+                yield OfNode(case.package, node, file, None, uses.code(case.package, file))

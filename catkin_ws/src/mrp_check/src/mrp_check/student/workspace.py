@@ -55,7 +55,7 @@ class Workspace:
     made: the same of make, if there is nothing that it would make again
     compiles_again: whether a C++ file is different from that of the last check
     timeout: seconds that the whole check may take
-    compiler_flags: those of C++ besides the package's own
+    compiler_flags: what g++ is called with, in addition to the package's own flags
     progress: called with a sentence that says what is being done
     """
 
