@@ -159,6 +159,24 @@ def test_a_missing_header_follows_from_its_own_package(said, cause):
     assert failed.consequence_of == cause
 
 
+@pytest.mark.parametrize(
+    ("said", "file", "cause"),
+    [
+        ("there is no header some_pkg/Num.h.", "CMakeLists.txt", "messages"),
+        ("a semicolon is missing at its end.", "CMakeLists.txt", None),
+        ("nothing is called num.", "msg/Num.msg", "messages"),
+    ],
+    ids=range(3),
+)
+def test_what_stands_behind_a_header_that_is_not_made_stands_for_itself(said, file, cause):
+    unmade, failed = findings(
+        ("messages", file, 9, "files", None), ("compile", "src/a.cpp", 1, "build", None)
+    )
+    failed.message = f"The compiler stops at line 1 of src/a.cpp: {said}"
+    causes.told_once([unmade, failed])
+    assert failed.consequence_of == cause
+
+
 def test_what_one_line_lacks_is_told_of_each():
     first, second = findings(*[("dependencies", "package.xml", 9, "files", None)] * 2)
     first.expected, second.expected = "<depend>std_msgs</depend>", "<depend>std_srvs</depend>"

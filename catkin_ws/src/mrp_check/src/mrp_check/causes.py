@@ -108,10 +108,12 @@ _HEADER = re.compile(r"there is no (?:header )?([\w./+-]+\.h\w*)|includes (/\S+)
 
 
 def _is_of_another(cause, finding):
-    """Return whether a source does not compile for another reason than an undeclared package."""
-    if cause.id != "dependencies" or finding.id != "compile":
+    """Return whether a source does not compile for another reason than this cause."""
+    if cause.id not in ("dependencies", "messages") or finding.id != "compile":
         return False
     header = _HEADER.search(finding.message)
+    if cause.id == "messages":  # g++ stops at a header that is not made: this is behind it
+        return cause.file == "CMakeLists.txt" and header is None
     package = header and uses.package_of_header(header[1] or header[2])
     return package not in re.findall(r"\w+", cause.message)
 

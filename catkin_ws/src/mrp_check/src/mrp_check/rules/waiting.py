@@ -14,6 +14,7 @@ from mrp_check.sources import asked
 from mrp_check.sources.asked import Said
 
 _ALIKE = 0.8
+_GIVES = "offers", "serves", "sets"
 _OF_ROSCORE = {"rosdistro", "rosversion", "run_id"}
 
 
@@ -46,14 +47,16 @@ def _findings(case: Case) -> Iterator[Finding]:
     said = {node: [*asked.of(case.package, files)] for node, files in case.facts.sources.items()}
     for node, files in case.facts.sources.items():
         yield from _unwaited(case, node, files, said)
-    every = [one for found in said.values() for one in found]
+    # What no node is made of may be built one day: it gives what it says, and asks for nothing.
+    sources = sorted(case.package.of_kind("cpp", "header", "python"))
+    beside = [one for one in asked.of(case.package, sources) if one.what in _GIVES]
+    every = [one for found in said.values() for one in found] + beside
     params = {last_part(name) for name in (case.launch.params if case.launch else {})}
     services = {one.base for one in every if one.what == "offers"}
     given = params | {one.base for one in every if one.what == "sets"} | _OF_ROSCORE
     yield from _lacking(said, "asks", services, every, _SERVICE)
     served = {one.base for one in every if one.what == "serves"}
-    own = {file for files in case.facts.sources.values() for file in files}
-    if served or not case.package.first_match(own, r"\bSimpleActionServer\b"):
+    if served or not case.package.first_match(sources, r"\bSimpleActionServer\b"):
         yield from _lacking(said, "commands", served, every, _ACTION)
     yield from _lacking(said, "reads", given, every, _PARAMETER)
 
