@@ -9,6 +9,7 @@ from mrp_check.contract.finding import ERROR, NOTE, WARNING
 from mrp_check.rules import (
     before_init,
     cmake,
+    copied,
     dependencies,
     divided,
     first_message,
@@ -41,6 +42,10 @@ SPEC = types.SimpleNamespace(
 # The start of a file with that ending, and what stands around its lines, which begin in line 4.
 AROUND = {
     "cpp": ("#include <ros/ros.h>\nint main(int argc, char** argv)\n{{\n{}\n}}\n"),
+    "heard.cpp": (
+        "bool b;\nvoid hear(const std_msgs::Bool::ConstPtr& m) {{ b = m->data; }}\nint main() {{\n{}"
+        '\nn.subscribe("a", 1, hear);\nwhile (ros::ok())\n{{\n  send(a);\n}}\n}}\n'
+    ),
     "py": "import actionlib, rospy, sys\nfrom std_msgs.msg import String\n\n{}\n",
 }
 
@@ -133,11 +138,17 @@ WORK = "def work(goal):\n    for i in range(9):\n        "
         (unadvertised, "cpp", "ros::Publisher p;\np.publish(m);", [5]),
         (unadvertised, "cpp", "ros::Publisher p;\np = n.advertise<A>(b, 1);\np.publish(m);", []),
         (unadvertised, "cpp", "ros::Publisher p;\nmake(p);\np.publish(m);", []),
+        (copied, "heard.cpp", "bool a = b;", [4]),
+        (copied, "heard.cpp", "int a = 1;\na = int(b);", [5]),
+        (copied, "heard.cpp", "ros::spinOnce();\nbool a = b;", []),
+        (copied, "heard.cpp", "bool& a = b;", []),
+        (copied, "heard.cpp", "bool a = c;", []),
+        (copied, "heard.cpp", "bool a = b; while (ros::ok()) { a = b; }", []),
         (unfilled, "py", "print('%s, %d', a, b)", [4]),
         (unfilled, "py", "print('%s, %d' % (a, b))", []),
         (unfilled, "py", "print('100 %', a)", []),
     ],
-    ids=range(57),
+    ids=range(63),
 )
 def test_what_beginners_are_used_to(rule, ending, lines, found, tmp_path):
     assert lines_of(rule, case(tmp_path, ending, lines)) == found
