@@ -43,8 +43,8 @@ SPEC = types.SimpleNamespace(
 AROUND = {
     "cpp": ("#include <ros/ros.h>\nint main(int argc, char** argv)\n{{\n{}\n}}\n"),
     "heard.cpp": (
-        "bool b;\nvoid hear(const std_msgs::Bool::ConstPtr& m) {{ b = m->data; }}\nint main() {{\n{}"
-        '\nn.subscribe("a", 1, hear);\nwhile (ros::ok())\n{{\n  send(a);\n}}\n}}\n'
+        "bool b;\nvoid hear(const std_msgs::Bool::ConstPtr& m) {{ b = m->data; }}\nint main() {{\n"
+        '{}\nn.subscribe("a", 1, hear);\nwhile (ros::ok())\n{{\n  send(a);\n}}\n}}\n'
     ),
     "py": "import actionlib, rospy, sys\nfrom std_msgs.msg import String\n\n{}\n",
 }

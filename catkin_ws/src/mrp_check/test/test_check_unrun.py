@@ -55,6 +55,10 @@ def test_what_the_text_of_a_node_shows_that_was_not_built(body, is_up, found, tm
     assert said == found
 
 
+HEARD = "rospy.Subscriber('b', A, hear)\n"
+HEAR = f"def hear(m):\n    global far\n    far = m.data\n{HEARD}"
+
+
 @pytest.mark.parametrize(
     ("loop", "is_up", "found"),
     [
@@ -74,11 +78,16 @@ def test_what_the_text_of_a_node_shows_that_was_not_built(body, is_up, found, tm
         ("while far < 2:\n    rate.sleep()\n    far += 1", False, []),
         ("while not is_near():\n    rate.sleep()", False, []),
         ("while not near and not rospy.is_shutdown():\n    rate.sleep()", False, []),
+        (f"{HEAR}while True:\n    d = abs(far)\n    if d < 1:\n        break", True, [8]),
+        (f"{HEAR}while True:\n    d = far - time.time()\n    if d < 1:\n        break", True, []),
+        (f"{HEAR}while True:\n    n += 1\n    if far < n:\n        break", True, []),
+        ("while far:\n    far.pop()\n    rate.sleep()", False, []),
+        ("def hear(m):\n    while True:\n        print(1)\n" + HEARD, False, []),
         ("while not rospy.is_shutdown():\n    print(input())", True, [5]),
         ("def input():\n    pass\nprint(input())", True, []),
         ("rospy.init_node('b', disable_signals=True)\nprint(input())", False, []),
     ],
-    ids=range(19),
+    ids=range(24),
 )
 def test_a_loop_in_python_asks_whether_the_node_is_to_go_on(loop, is_up, found, tmp_path):
     text = f"import rospy\nimport time\nrospy.init_node('a')\n{loop}\n"

@@ -14,12 +14,14 @@ from typing import Iterator
 from mrp_check.case import Case
 from mrp_check.contract.finding import WARNING, Finding
 from mrp_check.contract.requirements import ANY, Rule
-from mrp_check.sources.python_source import Source
+from mrp_check.rules.unheard import callbacks
+from mrp_check.sources.python_source import Source, Variable
 
 _LEAVES = (ast.Break, ast.Raise, ast.Return)
 # What asks, what ends the program, and what raises an error of rospy's once the node is to end.
 # publish() gives up in silence then.
 _ENDS = "_exit exit is_shutdown kill quit signal_shutdown spin wait_for_message".split()
+_COMPUTES = {"math", "abs", "float", "int", "len", "max", "min", "numpy", "pow", "round", "sqrt"}
 
 
 def _findings(case: Case) -> Iterator[Finding]:
@@ -38,9 +40,20 @@ def _deaf(source: Source, is_up: bool) -> Iterator[tuple[int, str, str, str]]:
 
     is_up: whether the node ran; then it was seen what its loops do
     """
+    others = callbacks(source, Service=2, Timer=1).values()
+    in_threads = {function for one in others for function in one}  # which end with the program
     for loop in source.nodes(ast.While):
-        if not is_up and _goes_on(source, loop):
-            wanted = "while not rospy.is_shutdown():"
+        asked = None if source.function(loop) in in_threads else _asks_others(source, loop)
+        wanted = "while not rospy.is_shutdown():"
+        if asked:
+            yield (
+                loop.lineno,
+                f"Ctrl-C does not end this loop: no message changes {asked} any more then, and the"
+                " loop does not ask rospy.is_shutdown().",
+                "rospy.is_shutdown() in the loop",
+                "Let the loop end when rospy.is_shutdown(), too.",
+            )
+        elif not is_up and source.function(loop) not in in_threads and _goes_on(source, loop):
             said = "This loop never ends: it does not ask rospy.is_shutdown(), so Ctrl-C does not"
             yield loop.lineno, f"{said} end the node.", wanted, f"Write {wanted}"
     for call in source.nodes(ast.Call):
@@ -65,11 +78,7 @@ def _is_rospys(source: Source) -> bool:
 def _goes_on(source: Source, loop: ast.While) -> bool:
     """Return whether a loop goes on for ever, whatever is asked of the node."""
     within = [node for one in loop.body for node in ast.walk(one)]
-    if isinstance(loop.test, ast.Constant):
-        is_endless = bool(loop.test.value)
-    else:
-        is_endless = _waits_for_others(source, loop, within)
-    if not is_endless:
+    if not isinstance(loop.test, ast.Constant) or not loop.test.value:
         return False
     if any(isinstance(node, _LEAVES) for node in within):
         return False
@@ -79,17 +88,59 @@ def _goes_on(source: Source, loop: ast.While) -> bool:
     return not any(getattr(one, "attr", getattr(one, "id", "")) in _ENDS for one in named)
 
 
-def _waits_for_others(source: Source, loop: ast.While, within: list[ast.AST]) -> bool:
-    """Return whether a loop sleeps until a callback changes what it asks: none is called any more
-    once the node is to end."""
-    asked = [*ast.walk(loop.test)]
-    keys = {source.key(node) for node in asked} - {None}
-    given = {
-        source.key(node) for node in within if isinstance(getattr(node, "ctx", None), ast.Store)
-    }
-    calls = [getattr(node.func, "id", "") for node in asked if isinstance(node, ast.Call)]
-    sleeps = any(getattr(node, "attr", "") == "sleep" for node in within)
-    return bool(keys) and not keys & given and set(calls) <= {"len"} and sleeps
+def _asks_others(source: Source, loop: ast.While) -> str | None:
+    """Return the name of what a loop asks before it ends, if it is others that change it all."""
+    within = [node for one in loop.body for node in ast.walk(one)]
+    asks = [] if isinstance(loop.test, ast.Constant) else [loop.test]
+    for leaf in (node for node in within if isinstance(node, _LEAVES)):
+        tests = [
+            one.test for one in source.above(leaf) if isinstance(one, ast.If) and one in within
+        ]
+        asks += tests[:1] or [ast.Constant(True)]
+    named = {getattr(node, "attr", getattr(node, "id", "")) for node in within}
+    heard = {key for function in callbacks(source) for key in _keys(source, function, ast.Store)}
+    found = [_depends_on(source, within, ask) for ask in asks]
+    is_heard = all(keys & heard for keys in found) or all(found) and "sleep" in named
+    if not found or not is_heard or named & {*_ENDS}:
+        return None
+    return min(key[1] for key in found[0] & heard or found[0])
+
+
+def _depends_on(source: Source, within: list[ast.AST], ask: ast.expr) -> set[Variable]:
+    """Return what a condition depends on; nothing if the loop may change that by itself."""
+    parts, known = [ask], {*source.imports, *_COMPUTES}
+    found: set[Variable] = set()
+    for part in parts:  # it grows
+        if any(isinstance(n, ast.Call) and not _only_computes(source, n) for n in ast.walk(part)):
+            return set()
+        keys = _keys(source, part, ast.Load) - found
+        for key in (one for one in keys if one[1].partition(".")[0] not in known):
+            found.add(key)
+            for node in within:
+                given, value = source.parents[node], getattr(node, "value", None)
+                if isinstance(getattr(node, "ctx", None), ast.Store) and source.key(node) == key:
+                    if not isinstance(given, ast.Assign):
+                        return set()  # it is counted up, say
+                    parts.append(given.value)
+                elif value is not None and source.key(value) == key and _changes(node, given):
+                    return set()
+    return found
+
+
+def _changes(node: ast.AST, above: ast.AST) -> bool:
+    """Return whether a part of something is changed, or a method of it is called."""
+    is_called = isinstance(above, ast.Call) and above.func is node
+    return is_called or isinstance(getattr(node, "ctx", None), ast.Store)
+
+
+def _only_computes(source: Source, call: ast.Call) -> bool:
+    named = source.dotted(call.func) or str(getattr(call.func, "id", ""))
+    return named.split(".")[0] in _COMPUTES
+
+
+def _keys(source: Source, within: ast.AST, context: type[ast.expr_context]) -> set[Variable]:
+    nodes = (one for one in ast.walk(within) if isinstance(getattr(one, "ctx", None), context))
+    return {key for key in map(source.key, nodes) if key}
 
 
 RULE = Rule("stop", 31, ("nodes",), _findings, also=("exit",), only=ANY)

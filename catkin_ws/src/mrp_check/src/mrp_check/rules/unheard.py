@@ -12,7 +12,7 @@ from mrp_check.contract.words import with_article
 from mrp_check.rules.early_callback import may_be_inherited
 from mrp_check.sources.python_facts import argument
 from mrp_check.sources.python_rule import PythonRule, ast_text, of_sources
-from mrp_check.sources.python_source import Variable
+from mrp_check.sources.python_source import Source, Variable
 
 # A source that names one of these knows that there may be no message yet.
 _KNOWS = {"hasattr", "getattr", "globals", "wait_for_message", "setattr"}
@@ -22,16 +22,16 @@ class Unheard(PythonRule):
     def findings(self) -> Iterator[Finding]:
         if _KNOWS & self.source.names():
             return
-        callbacks = self._callbacks()
+        heard = callbacks(self.source)
         given: dict[Variable, set[ast.AST]] = {}
         for key, node in self._variables(ast.Store):
             given.setdefault(key, set()).add(self.source.function(node))
         said: set[Variable] = set()
         for key, node in self._variables(ast.Load):
             setters = given.get(key, set())
-            if key in said or not setters or not setters <= callbacks.keys():
+            if key in said or not setters or not setters <= heard.keys():
                 continue
-            called = {function for one in setters for function in callbacks[one]}
+            called = {function for one in setters for function in heard[one]}
             error = "NameError" if isinstance(node, ast.Name) else "AttributeError"
             if self.source.function(node) in called or self.source.is_guarded(node, error):
                 continue
@@ -47,16 +47,6 @@ class Unheard(PythonRule):
                 fix=f"Give {name} a value before the subscriber is made, such as None.",
             )
 
-    def _callbacks(self) -> dict[ast.AST, set[ast.AST]]:
-        """Return the callbacks of subscribers; and of each what it calls, and itself."""
-        found: dict[ast.AST, set[ast.AST]] = {}
-        for call in self.source.nodes(ast.Call):
-            if self.source.dotted(call.func) == "rospy.Subscriber":
-                function = self.source.definition(argument(call, 2, "callback"))
-                if isinstance(function, ast.FunctionDef):
-                    found[function] = {function, *self.source.called([function])}
-        return found
-
     def _variables(
         self, context: type[ast.expr_context]
     ) -> Iterator[tuple[Variable, ast.Name | ast.Attribute]]:
@@ -69,6 +59,22 @@ class Unheard(PythonRule):
                 if key and (is_kept or isinstance(owner, ast.ClassDef)) and "." not in key[1]:
                     if not may_be_inherited(key):
                         yield key, node
+
+
+def callbacks(source: Source, **others: int) -> dict[ast.AST, set[ast.AST]]:
+    """Return the callbacks of subscribers; and of each what it calls, and itself.
+
+    others: what else of rospy's is handed a callback -> at which place
+    """
+    found: dict[ast.AST, set[ast.AST]] = {}
+    places = {f"rospy.{name}": place for name, place in {"Subscriber": 2, **others}.items()}
+    for call in source.nodes(ast.Call):
+        place = places.get(source.dotted(call.func) or "")
+        given = None if place is None else argument(call, place, "callback")
+        function = source.definition(given or argument(call, place or 0, "handler"))
+        if place is not None and isinstance(function, ast.FunctionDef):
+            found[function] = {function, *source.called([function])}
+    return found
 
 
 RULE = Rule("static", 37, ("facts",), of_sources(Unheard), also=("callbacks",))
