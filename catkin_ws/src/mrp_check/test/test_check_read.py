@@ -10,6 +10,7 @@ from mrp_check import check
 from mrp_check.building import configuring, placeholders
 from mrp_check.confined.launch_dump import Started
 from mrp_check.confined.places import Kind, Place
+from mrp_check.confined.seen import LaunchResult, Seen
 from mrp_check.contract.finding import ERROR, NOTE, WARNING, Finding
 from mrp_check.rules import (
     arguments,
@@ -307,23 +308,25 @@ def test_load_manifest_names_a_package_that_is_there(name, found, tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("line", "kind", "found"),
+    ("line", "kind", "time", "found"),
     [
-        ("n = int(sys.argv[1])", "ValueError", [NOTE]),
-        ("n = int(text)", "ValueError", [ERROR, ERROR]),
-        ("n = ask()", "KeyboardInterrupt", [ERROR]),  # that it died
+        ("n = int(sys.argv[1])", "ValueError", 1, [NOTE]),
+        ("n = int(text)", "ValueError", 1, [ERROR, ERROR]),
+        ("n = int(text)", "ValueError", 5.1, [ERROR]),  # it was asked to end by then
+        ("n = ask()", "KeyboardInterrupt", 1, [ERROR]),  # that it died
     ],
-    ids=range(3),
+    ids=range(4),
 )
-def test_what_a_node_raises_under_roslaunch(line, kind, found, tmp_path):
+def test_what_a_node_raises_under_roslaunch(line, kind, time, found, tmp_path):
     package = check_rules.make(tmp_path / "some_pkg", src__odd_DOT_py=f"{line}\n")
     places = types.SimpleNamespace(
-        traceback=lambda lines: (("src/odd.py", 1), kind, "invalid literal"),
+        traceback=lambda lines: (("src/odd.py", 1), kind, "no") if kind in lines else None,
         sources=lambda node: ["src/odd.py"],
         of=lambda *given: ("src/odd.py", 1),
     )
     died = "[odd-1] process has died [pid 7, exit code 1, cmd odd.py __name:=odd]."
-    seen = types.SimpleNamespace(until_asked=lambda: [died], ending="enough")
+    lines = [(time, "err", kind), (4, "out", died)]
+    seen = LaunchResult(ending="enough", asked=5, lines=lines, seen=Seen())
     launches = [types.SimpleNamespace(nodes={"/odd": "odd"}, file="", seen=seen)]
     known = types.SimpleNamespace(
         package=package,

@@ -117,9 +117,12 @@ class LaunchResult:
     latched: Dict[str, List[str]] = dataclasses.field(default_factory=dict)
     waited: Dict[str, float] = dataclasses.field(default_factory=dict)
 
-    def until_asked(self) -> List[str]:
-        """Return the lines that were printed before it was asked to end, or just then."""
-        return [text for time, _, text in self.lines if time <= self.asked + _AFTER]
+    def until_asked(self, after: float = _AFTER) -> List[str]:
+        """Return the lines that were printed before it was asked to end, or just then.
+
+        after: how long after that; 0 for what the nodes say, which may follow from being asked
+        """
+        return [text for time, _, text in self.lines if time <= self.asked + after]
 
 
 @dataclasses.dataclass

@@ -21,7 +21,7 @@ def _findings(case: Case) -> Iterator[Finding]:
     for launched in case.observed.launches:
         lines = launched.seen.until_asked()
         yield from _gave_up(case, launched, lines)
-        raised = [*_raised(case, launched, lines)]
+        raised = [*_raised(case, launched, launched.seen.until_asked(0))]
         yield from raised
         waiting = {one.node for one in raised if one.severity == NOTE}
         for path, code in ends(lines).items():
