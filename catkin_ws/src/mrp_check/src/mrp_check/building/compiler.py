@@ -124,7 +124,7 @@ def doubts(package: Package, output: str, copy: pathlib.Path) -> Iterator[Findin
         place, said = _place(match, copy), _DOUBTS.get(match["name"])
         if place and said and place not in found and "no return statement" not in match["text"]:
             found.add(place)
-            line = package.lines(place[0])[place[1] - 1].strip()
+            line = package.line(place[0], place[1])
             expected = "C++ that the compiler has no doubts about"
             seen = f"{line}  (g++: {match['text']})"
             yield Finding("compile", said, *place, WARNING, expected, seen)
@@ -138,7 +138,7 @@ def _no_return(package: Package, file: str, line: int) -> Finding:
         file,
         line,
         expected="return, with a value",
-        seen=f"{package.lines(file)[line - 1].strip()}  (g++: no return statement in function)",
+        seen=f"{package.line(file, line)}  (g++: no return statement in function)",
         fix="Return a value there: true, in the callback of a service that did its work.",
     )
 
@@ -182,7 +182,7 @@ def _old_standard(package: Package, needed: str, problem: Problem) -> Finding:
         file,
         line,
         expected="set(CMAKE_CXX_STANDARD 17), or no such line",
-        seen=f"{package.lines(file)[line - 1].strip()}  (g++: {problem.text})",
+        seen=f"{package.line(file, line)}  (g++: {problem.text})",
         fix="Set the standard to 17.",
         why="old-standard",
     )

@@ -53,7 +53,7 @@ def finding(package: Package, output: str, copy: pathlib.Path, model: Model) -> 
         file,
         line,
         expected="a CMakeLists.txt that CMake can follow",
-        seen=f"{package.lines(file)[line - 1].strip()}  (CMake: {text[:300]})",
+        seen=f"{package.line(file, line)}  (CMake: {text[:300]})",
         fix=fix,
         why=why,
     )
@@ -85,9 +85,7 @@ def _undeclared(package: Package, name: str, text: str) -> Finding:
         "package.xml",
         line or package.find_line("package.xml", "depend>", 1),
         expected=f"<depend>{name}</depend>, which is for building and for running",
-        seen=package.lines("package.xml")[line - 1].strip()
-        if line
-        else f"no {name}; CMake: {text}",
+        seen=package.line("package.xml", line) if line else f"no {name}; CMake: {text}",
         fix=f"Write <depend>{name}</depend>.",
         why="catkin-package-depends",
     )

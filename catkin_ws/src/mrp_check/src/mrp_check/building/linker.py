@@ -88,7 +88,7 @@ def _undefined(package: Package, model: Model, target: Target, match: re.Match[s
                 " its sources.",
                 (file, line),
                 f"a definition of {function}",
-                package.lines(file)[line - 1].strip(),
+                package.line(file, line),
                 f"Define {function}, or correct its name where it is defined; or add its source to"
                 f" add_executable({target.name} ...).",
                 why="undefined-reference",

@@ -40,7 +40,7 @@ def findings(package: Package, files: Iterable[str]) -> Iterator[Finding]:
             file,
             line,
             expected=f"boost::placeholders::{match[1]}",
-            seen=package.lines(file)[line - 1].strip(),
+            seen=package.line(file, line),
             fix=FIX,
         )
 

@@ -50,7 +50,7 @@ def _in_round_brackets(package: Package) -> Iterator[Finding]:
             line,
             WARNING,
             expected=f"${{{name}}}",
-            seen=package.lines(FILE)[line - 1].strip(),
+            seen=package.line(FILE, line),
             fix=f"Write ${{{name}}}.",
             change=(f"$({name})", f"${{{name}}}"),
         )

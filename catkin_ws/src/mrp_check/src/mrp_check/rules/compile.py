@@ -57,7 +57,7 @@ def _of_other_machines(case: Case) -> Iterator[Finding]:
                     file,
                     line,
                     expected=right,
-                    seen=package.lines(file)[line - 1].strip(),
+                    seen=package.line(file, line),
                     fix=f"Write {right}.",
                 )
             if os.path.isabs(header) and not os.path.exists(header):
@@ -68,7 +68,7 @@ def _of_other_machines(case: Case) -> Iterator[Finding]:
                     file,
                     line,
                     expected="a path that begins with the name of a package",
-                    seen=package.lines(file)[line - 1].strip(),
+                    seen=package.line(file, line),
                     fix="Write the name of the package and of the header alone.",
                 )
 

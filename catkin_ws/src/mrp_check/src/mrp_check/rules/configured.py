@@ -34,7 +34,7 @@ def _findings(case: Case) -> Iterator[Finding]:
                 line,
                 WARNING,
                 expected=stem,
-                seen=case.package.lines(file)[line - 1].strip(),
+                seen=case.package.line(file, line),
                 fix=f"Write {stem} for {match[1]}.",
                 change=(f'"{match[1]}")', f'"{stem}")'),
             )

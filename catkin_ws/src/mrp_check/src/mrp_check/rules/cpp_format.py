@@ -35,7 +35,7 @@ def _findings(case: Case) -> Iterator[Finding]:
                     line,
                     WARNING,
                     expected=f'{macro}("%s", {logged})',
-                    seen=case.package.lines(file)[line - 1].strip(),
+                    seen=case.package.line(file, line),
                     fix=f'Write {macro}("%s", {logged}).',
                     change=(f"({logged})", f'("%s", {logged})'),
                     node=node,

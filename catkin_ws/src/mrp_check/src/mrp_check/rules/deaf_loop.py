@@ -74,7 +74,7 @@ def _of(case: Case, place: tuple[str, str], loop: _Loop, is_up: bool) -> Iterato
         )
     if said:
         (node, file), line = place, line_of(loop.head, "word")
-        seen = case.package.lines(file)[line - 1].strip()
+        seen = case.package.line(file, line)
         yield Finding(
             "exit", said, file, line, severity, wanted, seen, f"Write {wanted}.", node=node
         )

@@ -30,7 +30,7 @@ def _findings(case: Case) -> Iterator[Finding]:
         for source in filter(None, map(case.facts.python.get, files)):
             is_up = bool(node and node.is_up)
             for line, said, expected, fix in _deaf(source, is_up) if _is_rospys(source) else ():
-                seen = case.package.lines(source.file)[line - 1].strip()
+                seen = case.package.line(source.file, line)
                 place = source.file, line, WARNING
                 yield Finding("exit", said, *place, expected, seen, fix, node=name)
 

@@ -65,7 +65,7 @@ def _foreign(package: Package, name: str, use: Use) -> Finding:
         use.line,
         severity="error" if use.firm else WARNING,
         expected=f"no use of {name}; or <depend>{name}</depend>, and {name} in COMPONENTS",
-        seen=package.lines(use.file)[use.line - 1].strip(),
+        seen=package.line(use.file, use.line),
         fix="Take the line out if nothing of it is used; else declare the package.",
     )
 
@@ -88,7 +88,7 @@ def _kind(package: Package, name: str, use: Use, manifest: Manifest) -> Iterator
         line,
         WARNING,
         expected=f"<depend>{name}</depend>",
-        seen=package.lines(FILE)[line - 1].strip(),
+        seen=package.line(FILE, line),
         fix=f"Write <depend>{name}</depend>.",
     )
 
@@ -112,7 +112,7 @@ def _several(package: Package, manifest: Manifest) -> Iterator[Finding]:
                 line,
                 WARNING,
                 expected="a tag for each package",
-                seen=package.lines(FILE)[line - 1].strip(),
+                seen=package.line(FILE, line),
                 fix="Write one tag for each.",
             )
 
@@ -131,7 +131,7 @@ def _no_packages(package: Package, manifest: Manifest, used: Collection[str]) ->
                 line,
                 WARNING,
                 expected="the name of a package",
-                seen=package.lines(FILE)[line - 1].strip(),
+                seen=package.line(FILE, line),
                 fix=f"Write {near} for {name}.",
                 change=(f">{name}<", f">{near}<"),
             )
@@ -142,7 +142,7 @@ def _not_in_manifest(
 ) -> Finding:
     near = _misspelt(name, _all(manifest, tests=True), used)
     line = (near and package.find_line(FILE, f">{near}<")) or last_dependency(package)
-    text = package.lines(FILE)[line - 1]
+    text = package.lines(FILE)[line - 1]  # with its indent
     tags = f"<depend>{name}</depend>"
     if manifest is not None and manifest.package_format < 2:  # which knows no <depend>
         tags = f"<build_depend>{name}</build_depend> <run_depend>{name}</run_depend>"

@@ -40,7 +40,7 @@ def _findings(case: Case) -> Iterator[Finding]:
                 line,
                 WARNING,
                 expected=name[1:],
-                seen=case.package.lines(file)[line - 1].strip(),
+                seen=case.package.line(file, line),
                 fix=f"Write {name[1:]}.",
                 change=(name, name[1:]),
             )

@@ -44,7 +44,7 @@ def _raised(case: Case, launched: Launched, lines: list[str]) -> Iterator[Findin
     name = nodes[0] if nodes else None
     if name is None or case.nodes[name].not_up:
         return
-    source = case.package.lines(place[0])[place[1] - 1].strip()
+    source = case.package.line(place[0], place[1])
     if "sys.argv[" in source:
         said = f"{name} waits for arguments on its command line: {kind}: {text}"
         yield Finding("starts", said, *place, severity=NOTE, node=name)

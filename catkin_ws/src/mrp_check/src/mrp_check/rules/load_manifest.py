@@ -28,7 +28,7 @@ def _findings(case: Case) -> Iterator[Finding]:
                     file,
                     line,
                     expected="no such line: catkin sets the paths",
-                    seen=case.package.lines(file)[line - 1].strip(),
+                    seen=case.package.line(file, line),
                     fix="Take the line out, and import roslib with it if nothing else needs that.",
                 )
 

@@ -182,7 +182,7 @@ def _definition(
                 path,
                 number,
                 expected=f"{kind} {field}",
-                seen=package.lines(path)[number - 1].strip() or "nothing",
+                seen=package.line(path, number) or "nothing",
                 fix=f"Write the line: {kind} {field}",
             )
 

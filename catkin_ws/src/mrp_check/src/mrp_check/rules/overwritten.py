@@ -23,7 +23,7 @@ def _findings(case: Case) -> Iterator[Finding]:
             continue
         said = [*asked.of(case.package, files)]
         for one in said:
-            text = case.package.lines(one.file)[one.line - 1]
+            text = case.package.line(one.file, one.line)
             reads = [two for two in said if two.what == "knows" and two.name == one.name]
             later = [two for two in reads if two.file == one.file and two.line > one.line]
             if one.what == "sets" and _PLAIN.search(text) and later and len(later) == len(reads):

@@ -41,7 +41,7 @@ def _findings(case: Case) -> Iterator[Finding]:
                 line,
                 WARNING,
                 expected=f"a folder {folder} with a file __init__.py",
-                seen=package.lines(FILE)[line - 1].strip(),
+                seen=package.line(FILE, line),
                 fix=f"Make the folder; or take {FILE} and catkin_python_setup() away.",
             )
 

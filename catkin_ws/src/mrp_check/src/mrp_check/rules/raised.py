@@ -17,7 +17,7 @@ def _of(node: Node) -> Iterator[Finding]:
     found = node.places.traceback(node.errors())
     if found:
         place, kind, text = found
-        source = node.package.lines(place[0])[place[1] - 1].strip()
+        source = node.package.line(place[0], place[1])
         yield node.finding(
             id_of_error(kind, text, "callbacks"),
             f"{node.name} runs into an error as it works: {kind}: {text}",

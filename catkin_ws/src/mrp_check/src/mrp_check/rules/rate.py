@@ -68,7 +68,7 @@ def _of(node: Node) -> Iterator[Finding]:
         seen = f"a message every {middle:.2g} s"
         # Beside a timer: a loop's own sleep is what its rate is made of.
         file, line = place
-        timer = "Timer" in (node.package.lines(file)[line - 1] if file and line else "")
+        timer = "Timer" in (node.package.line(file, line) if file and line else "")
         sleep = too_slow and timer and node.places.sleep_beside(node.name, Kind.PUBLISH)
         yield node.finding(
             "rate",

@@ -34,7 +34,7 @@ def _findings(case: Case) -> Iterator[Finding]:
                     place.line,
                     WARNING,
                     expected="a name that no other node has",
-                    seen=case.package.lines(place.file)[place.line - 1].strip(),
+                    seen=case.package.line(place.file, place.line),
                     fix="Give it a name of its own.",
                     node=node,
                 )

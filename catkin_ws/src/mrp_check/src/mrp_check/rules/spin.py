@@ -78,7 +78,7 @@ def _made_too_late(node: Node, spins: Sequence[Place]) -> Iterator[Finding]:
             continue
         made = {p.line for p in node.places(Kind.PUBLISHER, Kind.SUBSCRIBER) if p.file == spin.file}
         for number in range(spin.line + 1, min(ends) + 1):
-            line = node.package.lines(spin.file)[number - 1]
+            line = node.package.line(spin.file, number)
             if number in made or classes & set(re.findall(r"\w+", line)):
                 call = "rospy.spin()" if node.is_python else "ros::spin()"
                 yield node.finding(
@@ -93,7 +93,7 @@ def _made_too_late(node: Node, spins: Sequence[Place]) -> Iterator[Finding]:
 
 
 def _is_rate(node: Node, place: Place) -> bool:
-    return "Rate" in node.package.lines(place.file)[place.line - 1]
+    return "Rate" in node.package.line(place.file, place.line)
 
 
 RULE = Rule(

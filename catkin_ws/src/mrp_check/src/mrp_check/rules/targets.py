@@ -144,7 +144,7 @@ def _commented_out(case: Case) -> Iterator[Finding]:
                 *place,
                 WARNING,
                 expected=f"add_executable(... {source})",
-                seen=case.package.lines(file)[place[1] - 1].strip(),
+                seen=case.package.line(file, place[1]),
                 fix="Take the # out, there and before the lines that belong to it.",
             )
 

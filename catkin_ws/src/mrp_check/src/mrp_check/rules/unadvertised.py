@@ -44,7 +44,7 @@ def _of(case: Case, name: str, texts: dict[str, str]) -> Iterator[Finding]:
                     file,
                     line,
                     expected=f"{name} = n.advertise<TYPE>(TOPIC, 10)",
-                    seen=case.package.lines(file)[line - 1].strip(),
+                    seen=case.package.line(file, line),
                     fix=f"Give {name} what advertise() returns, before it publishes.",
                     node=node,
                 )

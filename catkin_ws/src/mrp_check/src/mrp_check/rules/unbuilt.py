@@ -39,7 +39,7 @@ def _findings(case: Case) -> Iterator[Finding]:
                     line,
                     WARNING,
                     expected="ros::spin() at the end of main",
-                    seen=case.package.lines(file)[line - 1].strip(),
+                    seen=case.package.line(file, line),
                     fix="Write ros::spin() at the end of main.",
                     node=name,
                 )

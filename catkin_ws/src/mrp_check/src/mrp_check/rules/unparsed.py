@@ -32,7 +32,7 @@ def _findings(case: Case) -> Iterator[Finding]:
                         line,
                         WARNING,
                         expected=f"rospy.{near}" if near else "what rospy has",
-                        seen=case.package.lines(file)[line - 1].strip(),
+                        seen=case.package.line(file, line),
                         fix=f"Write rospy.{near}." if near else "Look it up in rospy's pages.",
                         node=node,
                     )

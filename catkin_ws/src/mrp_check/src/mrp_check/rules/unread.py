@@ -89,7 +89,7 @@ def _of_own(case: Case, launch: Launch, node: Started, text: str) -> Iterator[Fi
                 expected=f"~{own}"
                 if case.package.kind(there[0].file) == "python"
                 else 'ros::NodeHandle("~")',
-                seen=case.package.lines(there[0].file)[there[0].line - 1].strip(),
+                seen=case.package.line(there[0].file, there[0].line),
                 fix="Read it as a private parameter; or set it outside of <node>.",
                 node=node.type,
             )

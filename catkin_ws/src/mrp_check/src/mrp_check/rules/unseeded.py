@@ -36,7 +36,7 @@ def _findings(case: Case) -> Iterator[Finding]:
                 place, wanted = line_of(again), "srand() before the loop"
             else:
                 continue
-            seen = case.package.lines(file)[place - 1].strip()
+            seen = case.package.line(file, place)
             fix = f"Write {wanted}." if number and not seeded else "Move it to before the loop."
             yield Finding("starts", said, file, place, WARNING, wanted, seen, fix, node=node)
 

@@ -80,7 +80,7 @@ def _unwaited(
         *place,
         WARNING,
         expected=f"{wait} before the call",
-        seen=case.package.lines(place[0])[place[1] - 1].strip(),
+        seen=case.package.line(place[0], place[1]),
         fix=f"Call {wait} first.",
         node=node,
     )

@@ -28,7 +28,7 @@ class OfNode(NamedTuple):
         self, id_: str, message: str, line: int, expected: str, fix: str, severity: str = WARNING
     ) -> Finding:
         """Return the Finding about a line of it."""
-        seen = self.package.lines(self.file)[line - 1].strip()
+        seen = self.package.line(self.file, line)
         place = self.file, line, severity
         return Finding(id_, message, *place, expected, seen, fix, node=self.node)
 

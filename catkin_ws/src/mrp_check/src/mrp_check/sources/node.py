@@ -69,7 +69,7 @@ class Node:
     def finding(self, id_: str, message: str, place: Place | Line, **more: Any) -> Finding:
         if not isinstance(place, tuple):
             place = (place.file, place.line)
-        more.setdefault("seen", self.package.lines(place[0])[place[1] - 1].strip())
+        more.setdefault("seen", self.package.line(place[0], place[1]))
         return Finding(id_, message, *place, node=self.name, **more)
 
     @property

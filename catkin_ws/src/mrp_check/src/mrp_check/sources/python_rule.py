@@ -40,7 +40,7 @@ class PythonRule:
         self, id_: str, message: str, node: ast.stmt | ast.expr | int, **more: Any
     ) -> Finding:
         line = node if isinstance(node, int) else node.lineno
-        more.setdefault("seen", self.package.lines(self.file)[line - 1].strip())
+        more.setdefault("seen", self.package.line(self.file, line))
         finding = Finding(id_, message, self.file, line, **more)
         # Of several findings about one line, the first is the cause.
         cause = self.source.told.setdefault((line, finding.severity), finding)

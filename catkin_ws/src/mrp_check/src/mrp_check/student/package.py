@@ -146,6 +146,10 @@ class Package:
         """Return a file's lines, without their ends."""
         return self.text(path).split("\n")
 
+    def line(self, path: str, number: int) -> str:
+        """Return what stands in a line of a file, the first of which is 1."""
+        return self.lines(path)[number - 1].strip()
+
     def tree(self, path: str) -> ast.Module:
         """Return the syntax tree of a Python file: an empty one if Python cannot read it."""
         try:

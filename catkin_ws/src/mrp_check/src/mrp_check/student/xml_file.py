@@ -70,7 +70,7 @@ def xml_finding(
         path,
         cause,
         expected="XML in which each tag that is opened is closed, and each value is in quotes",
-        seen=package.lines(path)[min(cause, len(package.lines(path))) - 1].strip(),
+        seen=package.line(path, min(cause, len(package.lines(path)))),
         fix="Correct this line; `xmllint --noout` says whether the file is well-formed.",
         why=why,
     )
