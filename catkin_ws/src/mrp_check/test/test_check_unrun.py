@@ -86,11 +86,14 @@ HEAR = f"def hear(m):\n    global far\n    far = m.data\n{HEARD}"
         ("while not rospy.is_shutdown():\n    print(input())", True, [5]),
         ("def input():\n    pass\nprint(input())", True, []),
         ("rospy.init_node('b', disable_signals=True)\nprint(input())", False, []),
+        ("tty.setraw(0)\nkey = ask()", False, [4]),
+        ("tty.setraw(0)\nif ask() == '\\x03':\n    exit()", False, []),
+        ("tty.setcbreak(0)\nkey = ask()", False, []),
     ],
-    ids=range(24),
+    ids=range(27),
 )
 def test_a_loop_in_python_asks_whether_the_node_is_to_go_on(loop, is_up, found, tmp_path):
-    text = f"import rospy\nimport time\nrospy.init_node('a')\n{loop}\n"
+    text = f"import rospy\nimport time, tty\nrospy.init_node('a')\n{loop}\n"
     package = check_rules.make(tmp_path / "some_pkg", src__a_DOT_py=text)
     facts = Facts(sources={"a": ["src/a.py"]}, python={"src/a.py": Source("src/a.py", text)})
     nodes = {"a": types.SimpleNamespace(is_up=is_up)}
@@ -190,8 +193,12 @@ def test_two_types_of_one_topic_in_what_did_not_run(
         ("do { rate.sleep(); } while (ros::ok() && pose.x < 10.5);", True, []),
         ("while (n < 5) { rate.sleep(); ++n; }", True, []),
         ("do { rate.sleep(); t1 = ros::Time::now(); } while (t1 < end);", True, []),
+        ("while (far > 1) { n++; rate.sleep(); }", True, [WARNING]),
+        ("while (far > 1) { far = v * t; t = ros::Time::now(); rate.sleep(); }", True, []),
+        ("while (ros::ok()) { std::cin >> x; p.publish(x); }", True, [WARNING]),
+        ("while (ros::ok()) { file >> x; p.publish(x); }", True, []),
     ],
-    ids=range(18),
+    ids=range(22),
 )
 def test_a_loop_asks_whether_the_node_is_to_go_on(body, is_up, found, tmp_path):
     findings = [*check_rules.of(deaf_loop.RULE, of_main(tmp_path, body, is_up))]

@@ -19,7 +19,7 @@ from mrp_check.rules.unbuilt import COUNTS
 from mrp_check.running.node import Node
 from mrp_check.running.traces import ends
 from mrp_check.running.words import last_words
-from mrp_check.sources import asked
+from mrp_check.sources import asked, uses
 
 # What neither catkin, nor the compiler, Linux or roslaunch takes: nobody has to see it fail.
 _RULES = set(
@@ -39,7 +39,7 @@ _WAITS = (
     (r"EOFError: EOF when reading a line", "the keyboard", ""),
     (r"termios\.error|Inappropriate ioctl for device", "the keyboard", ""),
     (r"(?i)cannot open display|could not connect to display|no display name", "a screen", ""),
-    (r"(?i)can.t open camera|VIDEOIO|/dev/(video|tty)\w*", "a device", ""),
+    (r"(?i)can.t open camera|VIDEOIO|/dev/(video|tty|input)\w*", "a device", ""),
     (r"KeyError: ", "a parameter", "param"),
     (r"IndexError: list index|ValueError: ", "arguments", "sys.argv["),
 )
@@ -241,10 +241,10 @@ def _is_unbuilt(case: Case, finding: Finding, stops: bool) -> bool:
 
     stops: whether CMake stops at a fault of the package's own
     """
+    if finding.id != "starts" or "has no executable" not in finding.message:
+        return False
     is_cause = finding.consequence_of is None or case.built is None and not stops
-    return (
-        finding.id == "starts"
-        and is_cause
-        and "has no executable" in finding.message
-        and not (case.built and case.built.ok)
-    )
+    sources = case.facts.sources.get(finding.node or "", ())
+    headers = (one for file in sources for one, _ in uses.includes(case.package, file))
+    is_cause = is_cause or any(uses.absent_header(case.package, header) for header in headers)
+    return is_cause and not (case.built and case.built.ok)

@@ -22,11 +22,14 @@ _BEFORE = re.compile(r"\bint\s+main\s*\([^)]*\)(.*?)\bros::init\s*\(", re.DOTALL
 _COUNTS = re.compile(r"\bargc\s*[!=<>]|[!=<>]=?\s*argc\b")
 _LOGS = re.compile(r"\bROS_(?:INFO|WARN|ERROR|FATAL)(?:_STREAM)?\s*\(")
 # Python itself shows what is worse.
+_OF_SERVICES = {"rospy.ServiceProxy", "rospy.wait_for_service"}
 _LOGGED = {"rospy.logdebug", "rospy.loginfo"}
 
 
 def _findings(case: Case) -> Iterator[Finding]:
     launched = {started.type for launch in case.launches for started in launch.nodes}
+    for node, files in case.facts.sources.items():
+        yield from _never(case, node, files)
     for one in in_both.each(case):
         counted, logged = _in_python(one.python) if one.python else _in_cpp(one.code)
         start = "rospy.init_node()" if one.python else "ros::init()"
@@ -51,6 +54,27 @@ def _findings(case: Case) -> Iterator[Finding]:
                 expected=f"{start} before the first line that is logged",
                 fix=f"Move it to below {start}.",
             )
+
+
+def _never(case: Case, node: str, files: list[str]) -> Iterator[Finding]:
+    """Yield a note about a Python program that calls services, and never becomes a node."""
+    sources = [*filter(None, map(case.facts.python.get, files))]
+    calls = [(one.dotted(call.func), one, call) for one in sources for call in one.nodes(ast.Call)]
+    asks = [(one, call) for name, one, call in calls if name in _OF_SERVICES]
+    if asks and not any(name == "rospy.init_node" for name, _, _ in calls):
+        source, call = min(asks, key=lambda ask: ask[1].lineno)
+        yield Finding(
+            "node-start",
+            f"{node} never calls rospy.init_node(): it is no node. rosnode does not list it, no"
+            " remap reaches it, and what it logs does not come to /rosout.",
+            source.file,
+            call.lineno,
+            NOTE,
+            expected="rospy.init_node() first",
+            seen=case.package.line(source.file, call.lineno),
+            fix=f'Write rospy.init_node("{node.partition(".")[0]}", anonymous=True) before it.',
+            node=node,
+        )
 
 
 def _in_cpp(text: str) -> tuple[int, int]:

@@ -20,6 +20,8 @@ _WAITS = re.compile(
     r"|recv|accept|select|poll|imshow|callOne|callAvailable|call\s*\(|>>|queue\."
 )
 
+_TEXT = re.compile(r"\"[^\"\n]*\"|'[^'\n]*'")
+
 
 def _of(node: Node) -> Iterator[Finding]:
     lines = {file: node.package.lines(file) for file in node.files}
@@ -27,7 +29,7 @@ def _of(node: Node) -> Iterator[Finding]:
     if not loops or node.places(Kind.SLEEP):
         return
     text = "\n".join(uses.code(node.package, file) for file in node.files)
-    if not _WAITS.search(text):
+    if not _WAITS.search(_TEXT.sub('""', text)):
         rate = "rospy.Rate" if node.is_python else "ros::Rate"
         fast = ", and publishes as fast as it can" if node.places(Kind.PUBLISH) else ""
         yield node.finding(

@@ -26,10 +26,14 @@ _ENDLESS = re.compile(r"\s*(?:true|1|;\s*;)?\s*")
 _LEAVES = re.compile(r"\b(?:break|return)\b")
 _BREAK = re.compile(r"\bbreak\b")
 _INNER = re.compile(r"\b(?:switch|for|while|do)\b[^{};]*(?=\{)")
-_KEYBOARD = re.compile(r"\bcin\b\s*>>|\bgetline\s*\(\s*(?:std::)?cin\b")
+_KEYBOARD = re.compile(r"\b(?:std::)?cin\b\s*>>|\bgetline\s*\(\s*(?:std::)?cin\b")
+# Before that, Ctrl-C ends a program at once.
+_STARTS = re.compile(r"\bros::init\s*\(")
 # What a loop does that goes on for long, and that waits for no time, and counts nothing.
 _WAITS = re.compile(r"\bspinOnce\s*\(|\bsleep\s*\(")
-_PASSES = re.compile(r"\bTime::now\b|\+\+|--|[-+]=")
+_TIME = re.compile(r"\bTime::now\b")
+_PASSES = re.compile(_TIME.pattern + r"|\+\+|--|[-+]=")
+_NAME = re.compile(r"\b[A-Za-z_]\w*\b(?!\s*\()")
 
 
 class _Loop(NamedTuple):
@@ -50,8 +54,10 @@ def _findings(case: Case) -> Iterator[Finding]:
         if direct and direct.asked is not None and direct.stopped_in is None:
             continue  # another finding says that it did not end
         for file, text in texts.items():
-            for loop in _loops(text):
+            loops = [*_loops(text)]
+            for loop in loops:
                 yield from _of(case, (name, file), loop, bool(node and node.is_up))
+            yield from _keyboard(case, (name, file), text, loops)
 
 
 def _of(case: Case, place: tuple[str, str], loop: _Loop, is_up: bool) -> Iterator[Finding]:
@@ -67,7 +73,7 @@ def _of(case: Case, place: tuple[str, str], loop: _Loop, is_up: bool) -> Iterato
     elif is_endless and not _LEAVES.search(_own(loop.block)):
         ended = "This loop never ends: it does not ask ros::ok(), so Ctrl-C does not end the node."
         said = "" if is_up else ended  # of one that ran, it would have been seen
-    elif _WAITS.search(loop.block) and not _PASSES.search(loop.asks + loop.block):
+    elif _WAITS.search(loop.block) and not _passes(loop):
         said = (
             "This loop does not ask ros::ok(): Ctrl-C does not end the node before the loop ends by"
             " itself, and no callback is called any more."
@@ -78,6 +84,42 @@ def _of(case: Case, place: tuple[str, str], loop: _Loop, is_up: bool) -> Iterato
         yield Finding(
             "exit", said, file, line, severity, wanted, seen, f"Write {wanted}.", node=node
         )
+
+
+def _passes(loop: _Loop) -> bool:
+    """Return whether a loop ends by itself: it counts what it asks for, or looks at the time."""
+    if _ENDLESS.fullmatch(loop.asks) or _LEAVES.search(loop.block):
+        return bool(_PASSES.search(loop.asks + loop.block))
+    counted = r"(?:\+\+|--)\s*{0}\b|\b{0}\s*(?:\+\+|--|[-+*/]=)"
+    given = counted + r"|\b{0}\s*=(?!=)" if _TIME.search(loop.block) else counted
+    names = {*_NAME.findall(loop.asks)}
+    asked = any(re.search(given.format(name), loop.block) for name in names)
+    return asked or bool(_PASSES.search(loop.asks))
+
+
+def _keyboard(
+    case: Case, place: tuple[str, str], text: str, loops: list[_Loop]
+) -> Iterator[Finding]:
+    """Yield a warning about the first line at which a node waits for the keyboard."""
+    starts = _STARTS.search(text)
+    before = text.rfind("main", 0, starts.start()) if starts else len(text)
+    for match in _KEYBOARD.finditer(text):
+        is_early = starts and before < match.start() < starts.start()
+        if not is_early and not any(_KEYBOARD.search(loop.asks) for loop in loops):
+            (node, file), line = place, line_of(match)
+            yield Finding(
+                "exit",
+                "Ctrl-C does not end the node while it waits for the keyboard: the system goes on"
+                " with read(), until somebody presses Enter.",
+                file,
+                line,
+                WARNING,
+                expected="ros::init(..., ros::init_options::NoSigintHandler)",
+                seen=case.package.line(file, line),
+                fix="Let ros::init() leave SIGINT alone; or take a parameter or a topic instead.",
+                node=node,
+            )
+            return
 
 
 def _loops(text: str) -> Iterator[_Loop]:

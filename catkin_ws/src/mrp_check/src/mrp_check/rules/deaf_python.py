@@ -21,6 +21,7 @@ _LEAVES = (ast.Break, ast.Raise, ast.Return)
 # What asks, what ends the program, and what raises an error of rospy's once the node is to end.
 # publish() gives up in silence then.
 _ENDS = "_exit exit is_shutdown kill quit signal_shutdown spin wait_for_message".split()
+_CTRL_C = "\x03"
 _COMPUTES = {"math", "abs", "float", "int", "len", "max", "min", "numpy", "pow", "round", "sqrt"}
 
 
@@ -56,8 +57,28 @@ def _deaf(source: Source, is_up: bool) -> Iterator[tuple[int, str, str, str]]:
         elif not is_up and source.function(loop) not in in_threads and _goes_on(source, loop):
             said = "This loop never ends: it does not ask rospy.is_shutdown(), so Ctrl-C does not"
             yield loop.lineno, f"{said} end the node.", wanted, f"Write {wanted}"
+    yield from _keyboard(source)
+
+
+def _keyboard(source: Source) -> Iterator[tuple[int, str, str, str]]:
+    """Yield the same of the first line at which a node waits for the keyboard, or of one that keeps
+    Ctrl-C from being a signal."""
+    constants = {getattr(node, "value", None) for node in source.nodes(ast.Constant)}
+    starts = [c for c in source.nodes(ast.Call) if source.dotted(c.func) == "rospy.init_node"]
     for call in source.nodes(ast.Call):
-        if isinstance(call.func, ast.Name) and call.func.id == "input":
+        is_early = any(
+            source.function(one) is source.function(call) and call.lineno < one.lineno
+            for one in starts
+        )
+        if source.dotted(call.func) == "tty.setraw" and not constants & {_CTRL_C, ord(_CTRL_C)}:
+            yield (
+                call.lineno,
+                "A raw terminal hands Ctrl-C on as a character: it does not end the node.",
+                "a look at each key for '\\x03', or tty.setcbreak()",
+                "End the loop on '\\x03'; or write tty.setcbreak() for tty.setraw().",
+            )
+            return
+        if isinstance(call.func, ast.Name) and call.func.id == "input" and not is_early:
             if not source.definition(call.func) and "input" not in source.imports:
                 yield (
                     call.lineno,

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import ast
 import re
 import signal
 from typing import Iterator, Sequence
@@ -47,7 +48,7 @@ def _of(node: Node, direct: Alone, asked: float, shutdown: Shutdown) -> Iterator
             yield finding(
                 f"{node.name} does not end on Ctrl-C: it was still there after"
                 f" {shutdown.seconds:g} s.",
-                places.stack(lines) or _waits(node),
+                _loop_around(node, places.stack(lines)) or _waits(node),
                 "it goes on",
                 "Let loops end when rospy.is_shutdown() is true or ros::ok() is false, and let no"
                 " thread outlive main().",
@@ -134,6 +135,15 @@ def _waits(node: Node) -> Where:
         or node.package.first_match(files, endless)
         or node.places.of(node.name, Kind.LOOP, Kind.SPIN, Kind.INIT)
     )
+
+
+def _loop_around(node: Node, place: Where | None) -> Where | None:
+    """Return the place of the loop in which a Python node was: at which of its lines is chance."""
+    file, line = place or (None, None)
+    source = node.places.facts.python.get(file or "")
+    loops = source.nodes(ast.While) if source and line else ()
+    around = [one.lineno for one in loops if one.lineno <= (line or 0) <= (one.end_lineno or 0)]
+    return (file, max(around)) if around else place
 
 
 def _leaves(node: Node, code: int | None) -> Where:

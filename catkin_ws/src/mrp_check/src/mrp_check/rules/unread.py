@@ -23,6 +23,9 @@ _UNSEEN = re.compile(
 )
 # A node that has one of these may read its own parameters.
 _PRIVATE = re.compile(r"""["']~|get_name\s*\(|getName\s*\(|getNamespace|PrivateNodeHandle""")
+# What reads a parameter by the name that it is given, and a NodeHandle without a name of its own.
+_READS = r"""(\w+)(?:\.|->)(?:get|has)?[pP]aram\w*\s*(?:<[^;()]*>\s*)?\(\s*["']{}["']"""
+_PUBLIC = r"\bros::NodeHandle\s+{}\s*(?:;|\(\s*\)|\{{\s*\}})"
 
 
 def _findings(case: Case) -> Iterator[Finding]:
@@ -72,13 +75,11 @@ def _own(launch: Launch, node: Started) -> dict[str, str]:
 
 def _of_own(case: Case, launch: Launch, node: Started, text: str) -> Iterator[Finding]:
     """Yield a Finding about a parameter of a node's own that its sources ask for as another one."""
-    if _PRIVATE.search(text):
-        return
     said = sorted(asked.of(case.package, case.facts.sources[node.type]), key=lambda one: one.line)
     for name, own in _own(launch, node).items():
         there = [one for one in said if one.what in ("reads", "knows") and one.name == own]
         others = [one for one in launch.params if one != name and last_part(one) == last_part(own)]
-        if there and not others:
+        if there and not others and (not _PRIVATE.search(text) or _is_public(case, there[0])):
             yield Finding(
                 "starts",
                 f"{node.file} sets {own} within {node.name}: that is {name}. The node reads {own}"
@@ -93,6 +94,19 @@ def _of_own(case: Case, launch: Launch, node: Started, text: str) -> Iterator[Fi
                 fix="Read it as a private parameter; or set it outside of <node>.",
                 node=node.type,
             )
+
+
+def _is_public(case: Case, said: asked.Said) -> bool:
+    """Return whether a parameter is read beside the node's own by a node that has both."""
+    if case.package.kind(said.file) == "python":
+        return "~" not in said.name
+    text = uses.code(case.package, said.file)
+    handles = {found[1] for found in re.finditer(_READS.format(re.escape(said.name)), text)}
+    return bool(handles) and all(
+        len(re.findall(rf"\bNodeHandle\s+{one}\b", text)) == 1
+        and re.search(_PUBLIC.format(one), text)
+        for one in handles
+    )
 
 
 def _of_remaps(case: Case, node: Started, text: str) -> Iterator[Finding]:

@@ -208,7 +208,8 @@ def is_test(path: str) -> bool:
 _WELL_KNOWN = set(
     (
         "turtlesim actionlib tf tf2_ros cv_bridge image_transport dynamic_reconfigure pcl_ros"
-        " moveit_commander rviz gazebo_ros controller_manager"
+        " moveit_commander rviz gazebo_ros controller_manager actionlib_tutorials roscpp_tutorials"
+        " rospy_tutorials learning_tf turtle_tf turtlebot3_gazebo"
     ).split()
 )
 
