@@ -154,6 +154,12 @@ def test_what_beginners_are_used_to(rule, ending, lines, found, tmp_path):
     assert lines_of(rule, case(tmp_path, ending, lines)) == found
 
 
+def test_a_program_that_only_calls_services_is_no_node(tmp_path):
+    asks = "a = rospy.ServiceProxy('a', A)"
+    assert lines_of(before_init, case(tmp_path / "a", "py", asks), NOTE) == [4]
+    assert lines_of(before_init, case(tmp_path / "b", "py", f"{START}\n{asks}"), NOTE) == []
+
+
 def test_arguments_are_counted_wrongly_where_a_launch_file_starts_the_node(tmp_path):
     lines = f"if len(sys.argv) != 2:\n    sys.exit()\n{START}"
     assert lines_of(before_init, case(tmp_path / "a", "py", lines, ["a"])) == [4]

@@ -160,6 +160,9 @@ def test_what_a_launch_file_gives_is_named_in_a_source(
     assert check_rules.told(check_rules.of(unread.RULE, known)) == found
 
 
+OF_BOTH = 'ros::NodeHandle n;\n  ros::NodeHandle own("~");\n  '
+
+
 @pytest.mark.parametrize(
     ("source", "params", "lines"),
     [
@@ -169,8 +172,10 @@ def test_what_a_launch_file_gives_is_named_in_a_source(
         ('n.param(ros::this_node::getName() + "/rate", r, 1);', {"/a/rate": 2}, []),
         ('n.param("rate", r, 1);', {"/rate": 2}, []),
         ('n.param("rate", r, 1);', {"/a/rate": 2, "/rate": 2}, []),
+        (f'{OF_BOTH}n.param("rate", r, 1);', {"/a/rate": 2}, [5]),
+        (f'{OF_BOTH}own.param("rate", r, 1);', {"/a/rate": 2}, []),
     ],
-    ids=range(6),
+    ids=range(8),
 )
 def test_a_parameter_of_a_nodes_own_is_read_as_one(source, params, lines, tmp_path):
     package = check_rules.make(tmp_path / "some_pkg", src__a_DOT_cpp=MAIN.format(source))

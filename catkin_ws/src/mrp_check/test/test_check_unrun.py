@@ -235,6 +235,17 @@ def test_names_that_a_launch_file_may_give(files, found):
     assert [one.severity for one in said if one.severity == ERROR] == found
 
 
+@pytest.mark.parametrize(("header", "found"), [("nowhere_msgs/A.h", 0), ("std_msgs/String.h", 1)])
+def test_what_needs_a_header_that_is_not_here_is_not_blamed(header, found, tmp_path):
+    """What else is wrong in the package need not be what makes the program fail."""
+    package = check_rules.make(tmp_path / "some_pkg", src__a_DOT_cpp=f"#include <{header}>\n")
+    known = types.SimpleNamespace(package=package, facts=Facts(sources={"a": ["src/a.cpp"]}))
+    known.built = types.SimpleNamespace(ok=False)
+    said = Finding("starts", "a could not be run: it has no executable.", severity=ERROR, node="a")
+    said.consequence_of, said.stage = "messages", "run"
+    assert len(judging.judged(known, [said], [])) == found
+
+
 @pytest.mark.parametrize(("node", "found"), [("a", 1), ("b", 2)])
 def test_a_long_loop_says_the_same_however_long_the_node_is_watched(node, found):
     loop = Finding("exit", f"This loop does not ask: {long_loop.GOES_ON}.", severity=WARNING)
