@@ -89,8 +89,12 @@ ASK = """def ask():
         (f"{ASK}    raise\n".replace("print", "str") + "print(ask().sum)", []),
         (f"{ASK}    return [1]\nprint(ask()[0])", []),
         (f"{ASK}try:\n    print(ask().sum)\nexcept AttributeError:\n    pass", []),
+        (f"{ASK}print(f'{{ask()}}')", [("warning", 6)]),
+        (f"{ASK}a = ask()\nrospy.loginfo('%s' % a)", [("warning", 7)]),
+        (f"{ASK}a = ask()\nif a:\n    print(a)", []),
+        (f"{ASK}    return [1]\nprint(ask())", []),
     ],
-    ids=range(6),
+    ids=range(10),
 )
 def test_what_a_call_gives_that_failed(code, found, tmp_path):
     said = check_rules.python_findings(tmp_path, f"import rospy\n{code}\n")

@@ -40,6 +40,29 @@ class NoValue(PythonRule):
                 if always
                 else "Look whether there is a result before it is used; or let the error pass.",
             )
+        yield from self._shown(said)
+
+    def _shown(self, said: set[ast.FunctionDef]) -> Iterator[Finding]:
+        """Yield a warning about each result that is shown, though there may be none."""
+        for call in self.source.nodes(ast.Call):
+            name = self.source.dotted(call.func) or str(getattr(call.func, "id", ""))
+            is_shown = name == "print" or name.startswith("rospy.log")
+            parts = [node for one in call.args for node in ast.walk(one)] if is_shown else []
+            for part in parts:
+                if isinstance(self.source.parents[part], (ast.Attribute, ast.Subscript)):
+                    continue
+                function = self._gave(part) if isinstance(part, (ast.Call, ast.Name)) else None
+                if function and returns(function) and function not in said:
+                    said.add(function)
+                    yield self.finding(
+                        "python-names",
+                        f"{function.name}() returns nothing after an error, and this shows None as"
+                        " its result.",
+                        call,
+                        severity=WARNING,
+                        expected=f"a look at what {function.name}() returns",
+                        fix="Show a result only if there is one.",
+                    )
 
     def _gave(self, node: ast.expr) -> ast.FunctionDef | None:
         """Return the function that an expression is the value of, if it returns nothing, or may."""
