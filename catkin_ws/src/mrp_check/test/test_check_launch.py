@@ -67,6 +67,12 @@ BROKEN = {
         [("launch-file", 2)],
         "nowhere",
     ),
+    "no_such_package_of_an_argument": (
+        "  <arg name",
+        '  <arg name="model" default="$(find nowhere)/a.urdf"/>\n  <arg name',
+        [("launch-file", 2)],
+        "not there: nowhere",
+    ),
     "no_such_argument": ("$(arg group)", "$(arg robot)", [("launch-file", 3)], "robot"),
     "name_twice": (
         PUBLISHER_PY,

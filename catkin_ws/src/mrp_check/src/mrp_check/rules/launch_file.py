@@ -130,7 +130,11 @@ _WORDS = (
         _attribute,
         "launch-attribute-missing",
     ),
-    (r"Resource ?[Nn]ot ?[Ff]ound: (\S+)", _not_there, "launch-find-not-found"),
+    (
+        r"Resource ?[Nn]ot ?[Ff]ound: (?:The following package was not found in .*>: )?(\S+)",
+        _not_there,
+        "launch-find-not-found",
+    ),
     (
         r"arg (?:to be set|named)? ?\[?'?(\w+)'?\]?|requires the '(\w+)' arg",
         _argument,

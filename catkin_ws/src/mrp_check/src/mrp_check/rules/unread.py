@@ -26,6 +26,7 @@ _PRIVATE = re.compile(r"""["']~|get_name\s*\(|getName\s*\(|getNamespace|PrivateN
 # What reads a parameter by the name that it is given, and a NodeHandle without a name of its own.
 _READS = r"""(\w+)(?:\.|->)(?:get|has)?[pP]aram\w*\s*(?:<[^;()]*>\s*)?\(\s*["']{}["']"""
 _PUBLIC = r"\bros::NodeHandle\s+{}\s*(?:;|\(\s*\)|\{{\s*\}})"
+_GIVEN = r"(?<!NodeHandle )\b{}\s*(?:[({{]\s*[^)}}\s]|=)"  # it may get a name of its own there
 
 
 def _findings(case: Case) -> Iterator[Finding]:
@@ -105,6 +106,7 @@ def _is_public(case: Case, said: asked.Said) -> bool:
     return bool(handles) and all(
         len(re.findall(rf"\bNodeHandle\s+{one}\b", text)) == 1
         and re.search(_PUBLIC.format(one), text)
+        and not re.search(_GIVEN.format(one), text)
         for one in handles
     )
 
