@@ -184,8 +184,8 @@ def test_two_types_of_one_topic_in_what_did_not_run(
         ("while (ros::ok()) { f(); }", False, []),
         ("while (std::cin >> x) { p.publish(x); }", True, [ERROR]),
         ("while (getline(std::cin, line)) p.publish(line);", True, [ERROR]),
-        ("while (ros::ok() && cin >> x) { p.publish(x); }", True, []),
-        ("while (cin >> x) { if (!ros::ok()) { break; } }", True, []),
+        ("while (ros::ok() && cin >> x) { p.publish(x); }", True, [WARNING]),
+        ("while (cin >> x) { if (!ros::ok()) { break; } }", True, [WARNING]),
         ("signal(SIGINT, end);\n  while (cin >> x) { p.publish(x); }", True, []),
         ("while (file >> x) { p.publish(x); }", True, []),
         ("while (1) { ros::spinOnce(); if (near()) { break; } }", True, [WARNING]),
@@ -197,8 +197,10 @@ def test_two_types_of_one_topic_in_what_did_not_run(
         ("while (far > 1) { far = v * t; t = ros::Time::now(); rate.sleep(); }", True, []),
         ("while (ros::ok()) { std::cin >> x; p.publish(x); }", True, [WARNING]),
         ("while (ros::ok()) { file >> x; p.publish(x); }", True, []),
+        ("do {\n  cin >> x; p.publish(x); }\n  while (x != 'q');", True, [ERROR]),
+        ("while (1) { cin >> x; p.publish(x); }", True, [ERROR]),
     ],
-    ids=range(22),
+    ids=range(24),
 )
 def test_a_loop_asks_whether_the_node_is_to_go_on(body, is_up, found, tmp_path):
     findings = [*check_rules.of(deaf_loop.RULE, of_main(tmp_path, body, is_up))]

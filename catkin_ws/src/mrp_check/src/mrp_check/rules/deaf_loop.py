@@ -67,7 +67,7 @@ def _of(case: Case, place: tuple[str, str], loop: _Loop, is_up: bool) -> Iterato
     is_endless = _ENDLESS.fullmatch(asks)
     wanted = "while (ros::ok())" if is_endless else f"while (ros::ok() && {asks})"
     said, severity = "", WARNING
-    if _KEYBOARD.search(loop.asks):
+    if _asks_keyboard(loop):
         severity = ERROR
         said = f"{ASKS_KEYBOARD}: Ctrl-C does not end the node, which waits for what is typed."
     elif is_endless and not _LEAVES.search(_own(loop.block)):
@@ -97,6 +97,12 @@ def _passes(loop: _Loop) -> bool:
     return asked or bool(_PASSES.search(loop.asks))
 
 
+def _asks_keyboard(loop: _Loop) -> bool:
+    """Return whether a loop goes on with what is typed, and never asks roscpp."""
+    whole = loop.asks + loop.block
+    return bool(_KEYBOARD.search(whole) and not _ASKS.search(whole))
+
+
 def _keyboard(
     case: Case, place: tuple[str, str], text: str, loops: list[_Loop]
 ) -> Iterator[Finding]:
@@ -105,7 +111,7 @@ def _keyboard(
     before = text.rfind("main", 0, starts.start()) if starts else len(text)
     for match in _KEYBOARD.finditer(text):
         is_early = starts and before < match.start() < starts.start()
-        if not is_early and not any(_KEYBOARD.search(loop.asks) for loop in loops):
+        if not is_early and not any(map(_asks_keyboard, loops)):
             (node, file), line = place, line_of(match)
             yield Finding(
                 "exit",
