@@ -262,6 +262,37 @@ add_executable(talker src/talker.cpp)
     assert found == [(ERROR, "src/talker.cpp", 2)], shown(report.findings)
 
 
+ALONE = """\
+cmake_minimum_required(VERSION 3.10)
+project(some_pkg)
+find_package(catkin REQUIRED COMPONENTS roscpp nowhere_msgs)
+catkin_package(CATKIN_DEPENDS roscpp nowhere_msgs)
+include_directories(${catkin_INCLUDE_DIRS})
+foreach(name needs says stays)
+  add_executable(${name} src/${name}.cpp)
+  target_link_libraries(${name} ${catkin_LIBRARIES})
+endforeach()
+"""
+INIT = '#include <ros/ros.h>\nint main(int argc, char** argv)\n{\n  ros::init(argc, argv, "a");\n'
+STAYS = f"{INIT}  ros::NodeHandle n;\n  while (true)\n    ros::Duration(0.1).sleep();\n}}\n"
+
+
+def test_what_needs_nothing_that_is_missing_is_built_and_run(tmp_path):
+    package = check_rules.make(
+        tmp_path / "some_pkg",
+        package_DOT_xml=check_rules.MANIFEST.replace("std_msgs", "nowhere_msgs"),
+        CMakeLists_DOT_txt=ALONE,
+        src__needs_DOT_cpp=f"#include <nowhere_msgs/A.h>\n{INIT}}}\n",
+        src__says_DOT_cpp=f"{INIT}  ros::spinn();\n}}\n",
+        src__stays_DOT_cpp=STAYS,
+    )
+    report = check.check(package, None, timeout=300)
+    found = {(f.id, f.file, f.line) for f in report.findings if f.severity == ERROR}
+    right = {("compile", "src/says.cpp", 5), ("exit", "src/stays.cpp", 6)}
+    assert found - {("starts", None, None)} == right, shown(report.findings)
+    assert report.reason.count("nowhere_msgs is not on this machine") == 1, report.reason
+
+
 NEEDS = """\
 #!/usr/bin/python3
 import sys

@@ -7,7 +7,7 @@ import types
 import check_rules
 import pytest
 from check_rules import CMAKE, MANIFEST
-from mrp_check.building import compiler, configuring, cpp_words
+from mrp_check.building import compiler, configuring, cpp_words, stubs
 from mrp_check.rules import cmake as cmake_rule
 from mrp_check.rules import compile as compile_rule
 from mrp_check.student.package import Package
@@ -136,14 +136,14 @@ def test_package_that_this_machine_has_not_is_not_the_students_fault(tmp_path):
         package_DOT_xml=MANIFEST.replace("</package>", "<depend>cv_bridge</depend></package>"),
     )
     said = 'Could not find a package configuration file provided by "{}" with any of'
-    assert configuring.absent(package, said.format("cv_bridge")) == "cv_bridge"
+    assert stubs.absent(package, said.format("cv_bridge")) == "cv_bridge"
     # Nobody asks for this one, and that one is misspelt.
-    assert configuring.absent(package, said.format("tf2")) is None
-    assert configuring.absent(package, said.format("rospyy")) is None
+    assert stubs.absent(package, said.format("tf2")) is None
+    assert stubs.absent(package, said.format("rospyy")) is None
     # Without a contract, CMakeLists.txt may ask for more.
-    assert configuring.absent(package, said.format("tf2"), is_contract=False) == "tf2"
-    assert configuring.absent(package, said.format("nav_msgs"), is_contract=False) == "nav_msgs"
-    assert configuring.absent(package, said.format("rospyy"), is_contract=False) is None
+    assert stubs.absent(package, said.format("tf2"), is_contract=False) == "tf2"
+    assert stubs.absent(package, said.format("nav_msgs"), is_contract=False) == "nav_msgs"
+    assert stubs.absent(package, said.format("rospyy"), is_contract=False) is None
 
 
 def test_definitions_that_this_machine_has_not_are_not_the_students_fault(tmp_path, monkeypatch):

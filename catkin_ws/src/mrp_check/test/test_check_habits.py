@@ -7,6 +7,7 @@ import check_rules
 import pytest
 from mrp_check.contract.finding import ERROR, NOTE, WARNING
 from mrp_check.rules import (
+    arguments,
     before_init,
     cmake,
     copied,
@@ -14,22 +15,28 @@ from mrp_check.rules import (
     divided,
     first_message,
     goals,
+    init_again,
     launch_words,
     long_loop,
+    not_kept,
     overwritten,
+    param_result,
     readme,
     scripts,
     swallowed,
+    typed,
     unadvertised,
+    undeclared,
     unfilled,
     unparsed,
     unseeded,
     unused_rate,
     waiting,
 )
-from mrp_check.sources import python_read
+from mrp_check.sources import python_read, uses
 from mrp_check.sources.facts import Facts
 from mrp_check.sources.python_source import Source
+from mrp_check.student import manifest
 from mrp_check.student.cmake import parsed
 from mrp_check.student.launch import Launch
 from mrp_testing.proves import proves
@@ -69,6 +76,7 @@ def lines_of(rule, known, *severities):
     return [one.line for one in check_rules.of(rule.RULE, known) if one.severity in severities]
 
 
+HEARS = "s = rospy.Subscriber('a', String, print)"
 INIT = 'ros::init(argc, argv, "a");'
 START = "rospy.init_node('a')"
 MAKE = 'ros::Publisher p = n.advertise<std_msgs::String>("a", 1);'
@@ -91,6 +99,24 @@ WORK = "def work(goal):\n    for i in range(9):\n        "
         (before_init, "py", f"rospy.loginfo('a')\n{START}", [4]),
         (before_init, "py", f"rospy.logerr('a')\n{START}", []),
         (before_init, "py", f"def say():\n    rospy.loginfo('a')\n{START}", []),
+        (param_result, "cpp", 'int a;\na = n.getParam("a", a);', [5]),
+        (
+            param_result,
+            "cpp",
+            'if (!nh_->getParam("a", a)) { a = 1; }\nok = n.getParam("a", b);',
+            [],
+        ),
+        (init_again, "py", f"{START}\ndef f(r):\n    {START}\nrospy.Service('a', A, f)", [6]),
+        (init_again, "py", f"def f(r):\n    {START}\nrospy.Service('a', A, f)", []),
+        (arguments, "py", "a = int(sys.argv[1])", [4]),
+        (arguments, "py", "if len(sys.argv) > 1:\n    a = int(sys.argv[1])", []),
+        (arguments, "py", "try:\n    a = sys.argv[1]\nexcept IndexError:\n    a = 1", []),
+        (arguments, "py", "a = sys.argv[0]", []),
+        (not_kept, "py", f"while not rospy.is_shutdown():\n    {HEARS}", [5]),
+        (not_kept, "py", f"for i in range(3):\n    {HEARS}", []),
+        (not_kept, "py", f"while True:\n    if not s:\n        {HEARS}", []),
+        (typed, "py", "a = input()\nb = a * 0.5", [4]),
+        (typed, "py", "a = input()\nb = a * 2", []),
         (goals, "py", f"{WORK}rospy.sleep(1)\n{SERVER}", [5]),
         (goals, "py", f"{WORK}rospy.sleep(s.is_preempt_requested())\n{SERVER}", []),
         (goals, "py", f"{WORK}print(i)\n{SERVER}", []),
@@ -148,10 +174,44 @@ WORK = "def work(goal):\n    for i in range(9):\n        "
         (unfilled, "py", "print('%s, %d' % (a, b))", []),
         (unfilled, "py", "print('100 %', a)", []),
     ],
-    ids=range(63),
+    ids=range(76),
 )
 def test_what_beginners_are_used_to(rule, ending, lines, found, tmp_path):
     assert lines_of(rule, case(tmp_path, ending, lines)) == found
+
+
+@pytest.mark.parametrize(
+    ("line", "named", "found"),
+    [
+        ("import pandas", "std_msgs", "python3-pandas"),
+        ("import pandas", "python3-pandas", ""),
+        ("from nowhere_tutorials.srv import Add", "std_msgs", "nowhere_tutorials"),
+        ("from nowhere_tutorials.srv import Add", "nowhere_tutorials", ""),
+        ("import cv2", "cv_bridge", ""),
+        ("import cv2", "std_msgs", "python3-opencv"),
+        ("import json, yaml, rospy, own", "std_msgs", ""),
+        ("from std_msgs.msg import String", "std_srvs", ""),
+    ],
+    ids=range(8),
+)
+def test_what_others_made_is_named_in_the_manifest(line, named, found, tmp_path, monkeypatch):
+    monkeypatch.setattr(uses, "is_of_debian", lambda module: module in ("pandas", "cv2"))
+    package = check_rules.make(
+        tmp_path / "some_pkg",
+        src__a_DOT_py=line,
+        src__own_DOT_py="",
+        package_DOT_xml=check_rules.MANIFEST.replace("std_msgs", named),
+    )
+    known = types.SimpleNamespace(package=package, manifest=manifest.parse(package))
+    said = [one.expected for one in check_rules.of(undeclared.RULE, known)]
+    assert said == [f"<depend>{found}</depend> in package.xml"] * bool(found)
+
+
+@pytest.mark.parametrize(("header", "found"), [("yaml-cpp/yaml.h", [1]), ("vector", [])])
+def test_a_library_is_named_in_the_manifest(header, found, tmp_path):
+    package = check_rules.make(tmp_path / "some_pkg", src__a_DOT_cpp=f"#include <{header}>\n")
+    known = types.SimpleNamespace(package=package, manifest=manifest.parse(package))
+    assert [one.line for one in check_rules.of(undeclared.RULE, known)] == found
 
 
 def test_a_program_that_only_calls_services_is_no_node(tmp_path):

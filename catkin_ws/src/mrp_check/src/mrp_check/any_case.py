@@ -33,6 +33,7 @@ class AnyCase(Case):
     """
 
     enough = 3
+    stands_in = True
 
     def __init__(self, package: Package, *given: Any) -> None:
         super().__init__(package, *given)

@@ -109,9 +109,11 @@ _HEADER = re.compile(r"there is no (?:header )?([\w./+-]+\.h\w*)|includes (/\S+)
 
 def _is_of_another(cause, finding):
     """Return whether a source does not compile for another reason than this cause."""
-    if cause.id not in ("dependencies", "messages") or finding.id != "compile":
+    if finding.id != "compile" or cause.id not in {"dependencies", "messages", *_PACKAGE_WIDE}:
         return False
     header = _HEADER.search(finding.message)
+    if cause.id in _PACKAGE_WIDE:  # what is compiled, or read without a compiler, all the same
+        return header is None
     if cause.id == "messages":  # g++ stops at a header that is not made: this is behind it
         return cause.file == "CMakeLists.txt" and header is None
     package = header and uses.package_of_header(header[1] or header[2])
@@ -145,7 +147,7 @@ def _causes(cause, finding, earlier, facts, nodes):
         return follows or cause.id in _FATAL
     if cause.id in _PACKAGE_WIDE or finding.id == "rate" and node.has_rate():
         return follows and together  # it ran all the same, and this was seen of it
-    return follows or cause.id in _FATAL and together
+    return follows or cause.id in _FATAL - {"messages"} and together  # they were there: it ran
 
 
 def _nodes(finding, facts):

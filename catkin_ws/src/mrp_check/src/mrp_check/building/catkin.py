@@ -15,6 +15,7 @@ import typing
 
 from mrp_check import confine
 from mrp_check.building import headers
+from mrp_check.building.stubs import Stubs, absent
 from mrp_check.confined import variables, written
 from mrp_check.contract.errors import CannotCheck
 from mrp_check.student import cmake
@@ -57,6 +58,7 @@ class Catkin:
     def __init__(self, workspace: Workspace) -> None:
         self.workspace = workspace
         self.folder = workspace.folder
+        self.stubs = Stubs(self.folder / "stubs")
         self._building: concurrent.futures.Future[Step] | None = None
 
     def _configure(self, tests: str = "OFF") -> confine.Result:
@@ -76,6 +78,7 @@ class Catkin:
             f"-DCATKIN_ENABLE_TESTING={tests}",
             "-DCMAKE_EXPORT_COMPILE_COMMANDS=ON",
             "-Wno-dev",
+            *self.stubs.flags(),
             *("--trace-expand", "--trace-format=json-v1", f"--trace-redirect={trace}", *sources),
             *("--make-args", "help"),
         )
@@ -140,6 +143,20 @@ class Catkin:
             # So a package is built that Debian could not build; a rule says so.
             again = self._step(self._configure("ON"))
             return again._replace(output=f"{step.output}\n{again.output}") if again.ok else again
+        return step if step.ok or not self.workspace.stands_in else self._without(step)
+
+    def _without(self, first: Step) -> Step:
+        """Return the Step of CMake with stubs for what this machine has not; or the first Step, if
+        that does not help, and nothing is stood in for."""
+        step, package = first, self.workspace.package
+        while not step.ok:
+            name = absent(package, step.output, is_contract=False)
+            if not name or not self.stubs.add(name):
+                shutil.rmtree(self.stubs.folder, ignore_errors=True)
+                if step is not first:
+                    self._configure()  # what CMake's trace says belongs to the first Step
+                return first
+            step = self._step(self._configure())
         return step
 
     @functools.cached_property

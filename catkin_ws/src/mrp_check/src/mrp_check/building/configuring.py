@@ -8,6 +8,7 @@ import re
 from typing import Callable, Sequence, Tuple
 
 from mrp_check.building.catkin import WANTS_TESTS, Step
+from mrp_check.building.stubs import ALIKE, NOT_FOUND, PACKAGES
 from mrp_check.contract import resources
 from mrp_check.contract.finding import Finding
 from mrp_check.contract.words import nearest, perhaps
@@ -107,17 +108,7 @@ _COMMANDS = (
 ).split()
 
 
-_PACKAGES = ["roscpp", "rospy", "std_msgs", "catkin", "message_generation", "roslib"]
 _MESSAGE_TARGETS = ["generate_messages", "generate_messages_cpp", "gencpp"]
-_ALIKE = 0.8  # of a misspelt name; nav_msgs and std_msgs, two packages, are 0.63
-
-
-# Their group is the name of a package that CMake did not find.
-_NOT_FOUND = (
-    r'Could not find a package configuration file provided by "(\w+)"',
-    r"catkin_package\(\).*?on the catkin package '(\w+)'",
-    r"Could NOT find (\w+)",
-)
 
 
 _DEFINITION = r"Cannot locate message \[\w+\] in package \[(\w+)\]"
@@ -131,15 +122,6 @@ def without_definitions(output: str) -> str | None:
         return None
     has_any = any((pathlib.Path(share) / found[1] / "msg").is_dir() for share in resources.SHARES)
     return None if has_any else found[1]
-
-
-def absent(package: Package, output: str, is_contract: bool = True) -> str | None:
-    """Return the package that CMake did not find though package.xml asks for it, and that looks
-    like no other's misspelt name; or None. Without a contract, any package may be asked for."""
-    found = (re.search(shape, output) for shape in _NOT_FOUND)
-    name = next((match.group(1) for match in found if match), None)
-    asked = not is_contract or name and package.find_line("package.xml", f">{name}<")
-    return name if name and asked and not nearest(name, _PACKAGES, _ALIKE) else None
 
 
 _BRINGS_MESSAGES = ("add_message_files", "generate_messages", "add_service_files")
@@ -165,7 +147,7 @@ def _unknown_command(package: Package, model: Model, match: re.Match[str], text:
 
 def _no_package(package: Package, model: Model, match: re.Match[str], text: str) -> _Said:
     name = match.group(1)
-    near = nearest(name, _PACKAGES, _ALIKE)
+    near = nearest(name, PACKAGES, ALIKE)
     return (
         f"there is no package {name} on this machine.{perhaps(near)}",
         f"Write {near} for {name}." if near else f"Install {name}, or take it out.",
@@ -216,7 +198,7 @@ _WORDS: Sequence[tuple[str | None, str, Callable[..., _Said] | _Said, str]] = (
         "",
     ),
     (None, r'Unknown CMake command "(\w+)"', _unknown_command, "cmake-unknown-command"),
-    *(("find_package", shape, _no_package, "package-config-not-found") for shape in _NOT_FOUND),
+    *(("find_package", shape, _no_package, "package-config-not-found") for shape in NOT_FOUND),
     (
         None,
         r"Messages depends on unknown pkg: (\w+)",

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A C++ program looks whether an argument was given before it reads it."""
+"""A program looks whether an argument was given before it reads it."""
 
 from __future__ import annotations
 
+import ast
 import re
 from typing import Iterator
 
@@ -11,6 +12,7 @@ from mrp_check.contract.finding import WARNING, Finding
 from mrp_check.contract.requirements import ANY, Rule
 from mrp_check.contract.words import line_of
 from mrp_check.sources import uses
+from mrp_check.sources.python_source import Source
 
 _READ = re.compile(r"\bargv\s*\[\s*([1-9])\s*\]")
 # The parameter of main(), and what ros::init() takes out of it, say nothing of how many there are.
@@ -27,9 +29,45 @@ _ONLY = re.compile(
 def _findings(case: Case) -> Iterator[Finding]:
     for node, files in case.facts.sources.items():
         for file in files:
-            if case.package.kind(file) == "cpp":
+            source = case.facts.python.get(file)
+            if source:
+                yield from _of_python(case, node, source)
+            elif case.package.kind(file) == "cpp":
                 code = _TAKEN.sub(uses.blank, uses.code(case.package, file))
                 yield from _of(node, file, code)
+
+
+def _of_python(case: Case, node: str, source: Source) -> Iterator[Finding]:
+    """Yield a warning about the first argument that a program reads, if it never counts them."""
+    asks = {source.dotted(call.func) for call in source.nodes(ast.Call)}
+    counts = [
+        call
+        for call in source.nodes(ast.Call)
+        if isinstance(call.func, ast.Name) and call.func.id == "len" and call.args
+        if "argv" in ast.dump(call.args[0])
+    ]
+    reads = [
+        (number, one)
+        for one in source.nodes(ast.Subscript)
+        if source.dotted(one.value) == "sys.argv" and isinstance(one.ctx, ast.Load)
+        for number in [source.value(one.slice)]
+        if isinstance(number, int) and number > 0
+        if not source.is_guarded(one, "IndexError")
+    ]
+    if reads and not counts and "rospy.myargv" not in asks:
+        number, read = min(reads, key=lambda one: one[1].lineno)
+        yield Finding(
+            "starts",
+            f"{node} reads sys.argv[{number}], and does not look whether it was given: without it,"
+            " Python ends with an IndexError here.",
+            source.file,
+            read.lineno,
+            WARNING,
+            expected="len(rospy.myargv()), before an argument is read",
+            seen=case.package.line(source.file, read.lineno),
+            fix="Count the arguments first, and say how the program is used if some are missing.",
+            node=node,
+        )
 
 
 def _of(node: str, file: str, code: str) -> Iterator[Finding]:

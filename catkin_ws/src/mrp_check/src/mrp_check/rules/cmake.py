@@ -8,7 +8,7 @@ from typing import Iterator
 
 from mrp_check import evidence
 from mrp_check.case import Case
-from mrp_check.contract.finding import WARNING, Finding
+from mrp_check.contract.finding import ERROR, WARNING, Finding
 from mrp_check.contract.requirements import Requirement, Rule
 from mrp_check.contract.words import line_of
 from mrp_check.student.cmake import Model
@@ -85,7 +85,7 @@ def _missing_calls(package: Package, model: Model) -> Iterator[Finding]:
         (
             "catkin_package()",
             model.catkin_package or _is_included(package, model),
-            "without it catkin does not know the package"
+            "without it no other package finds this one"
             # add_message_files() says where executables are put, too.
             + ("" if model.add_message_files else _LOST),
         ),
@@ -102,6 +102,7 @@ def _missing_calls(package: Package, model: Model) -> Iterator[Finding]:
                 expected=needed,
                 seen="no such call",
                 fix=f"Add {needed} after this line." if before else f"Add {needed}.",
+                severity=WARNING if is_package and model.add_message_files else ERROR,
             )
 
 

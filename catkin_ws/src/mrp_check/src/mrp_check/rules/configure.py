@@ -6,7 +6,7 @@ from __future__ import annotations
 from typing import Iterator
 
 from mrp_check import evidence
-from mrp_check.building import configuring
+from mrp_check.building import configuring, stubs
 from mrp_check.building.catkin import WANTS_TESTS
 from mrp_check.case import Case
 from mrp_check.contract.errors import CannotCheck
@@ -19,8 +19,10 @@ def findings(case: Case) -> Iterator[Finding]:
     package, step = case.package, case.catkin.configured
     if case.built is not None:
         yield from _wants_tests(case)
+        if case.catkin.stubs.names:
+            raise CannotCheck(" ".join(uses.absent(one, "cpp") for one in case.catkin.stubs.names))
         return
-    missing = configuring.absent(package, step.output, case.spec.is_contract)
+    missing = stubs.absent(package, step.output, case.spec.is_contract)
     if missing:
         # CMake stops at the first.
         others = [one for one in case.catkin.model.components if not uses.is_ros_package(one)]

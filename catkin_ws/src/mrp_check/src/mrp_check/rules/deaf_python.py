@@ -14,13 +14,14 @@ from typing import Iterator
 from mrp_check.case import Case
 from mrp_check.contract.finding import WARNING, Finding
 from mrp_check.contract.requirements import ANY, Rule
-from mrp_check.rules.unheard import callbacks
+from mrp_check.rules.unheard import callbacks, in_threads
 from mrp_check.sources.python_source import Source, Variable
 
 _LEAVES = (ast.Break, ast.Raise, ast.Return)
 # What asks, what ends the program, and what raises an error of rospy's once the node is to end.
 # publish() gives up in silence then.
 _ENDS = "_exit exit is_shutdown kill quit signal_shutdown spin wait_for_message".split()
+_KEYBOARD = {"input", "raw_input"}
 _CTRL_C = "\x03"
 _COMPUTES = {"math", "abs", "float", "int", "len", "max", "min", "numpy", "pow", "round", "sqrt"}
 
@@ -41,10 +42,9 @@ def _deaf(source: Source, is_up: bool) -> Iterator[tuple[int, str, str, str]]:
 
     is_up: whether the node ran; then it was seen what its loops do
     """
-    others = callbacks(source, Service=2, Timer=1).values()
-    in_threads = {function for one in others for function in one}  # which end with the program
+    let_off = in_threads(source)
     for loop in source.nodes(ast.While):
-        asked = None if source.function(loop) in in_threads else _asks_others(source, loop)
+        asked = None if source.function(loop) in let_off else _asks_others(source, loop)
         wanted = "while not rospy.is_shutdown():"
         if asked:
             yield (
@@ -54,7 +54,7 @@ def _deaf(source: Source, is_up: bool) -> Iterator[tuple[int, str, str, str]]:
                 "rospy.is_shutdown() in the loop",
                 "Let the loop end when rospy.is_shutdown(), too.",
             )
-        elif not is_up and source.function(loop) not in in_threads and _goes_on(source, loop):
+        elif not is_up and source.function(loop) not in let_off and _goes_on(source, loop):
             said = "This loop never ends: it does not ask rospy.is_shutdown(), so Ctrl-C does not"
             yield loop.lineno, f"{said} end the node.", wanted, f"Write {wanted}"
     yield from _keyboard(source)
@@ -78,8 +78,9 @@ def _keyboard(source: Source) -> Iterator[tuple[int, str, str, str]]:
                 "End the loop on '\\x03'; or write tty.setcbreak() for tty.setraw().",
             )
             return
-        if isinstance(call.func, ast.Name) and call.func.id == "input" and not is_early:
-            if not source.definition(call.func) and "input" not in source.imports:
+        asks = call.func.id if isinstance(call.func, ast.Name) else ""
+        if asks in _KEYBOARD and not is_early:
+            if not source.definition(call.func) and asks not in source.imports:
                 yield (
                     call.lineno,
                     "Ctrl-C does not end the node while it waits for the keyboard: rospy keeps"

@@ -14,6 +14,7 @@ from mrp_check.case import Case
 from mrp_check.contract.finding import Finding
 from mrp_check.contract.requirements import ANY, Rule
 from mrp_check.contract.words import braced, line_of
+from mrp_check.rules.unheard import in_threads
 from mrp_check.sources import in_both
 from mrp_check.sources.python_source import Source
 
@@ -63,7 +64,10 @@ def _pause_in_cpp(text: str, block: str) -> float:
 
 def _in_python(source: Source) -> Iterator[tuple[int, float]]:
     """Yield the same of a source in Python."""
+    let_off = in_threads(source)
     for loop in source.nodes(ast.For):
+        if source.function(loop) in let_off:
+            continue
         names = {getattr(n, "attr", getattr(n, "id", "")) for n in ast.walk(loop)}
         leaves = any(isinstance(n, (ast.Break, ast.Return, ast.Raise)) for n in ast.walk(loop))
         call = loop.iter

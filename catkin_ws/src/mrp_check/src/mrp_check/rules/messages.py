@@ -113,7 +113,9 @@ def _misplaced(line: int, command: str, path: str, elsewhere: str) -> Finding:
 def _is_brought_along(model: Model) -> bool:
     """Return whether another package brings what makes messages, as actionlib_msgs does: then CMake
     goes through without message_generation."""
-    return bool(model.complete and model.generate) and "message_generation" not in model.components
+    goes_through = model.complete or "actionlib_msgs" in model.components
+    named = "message_generation" in model.components
+    return bool(goes_through and model.generate) and not named
 
 
 def _in_manifest(package: Package, manifest: Manifest, is_brought: bool) -> Iterator[Finding]:
@@ -125,6 +127,8 @@ def _in_manifest(package: Package, manifest: Manifest, is_brought: bool) -> Iter
     ):
         # message_runtime is asked for where the package is installed: no build here needs it.
         builds = kind == "exec" or "genmsg" in known[kind] or is_brought
+        if kind == "exec" and manifest.package_format < 2:
+            tag = "run_depend"
         if name not in known[kind]:
             yield Finding(
                 "dependencies",

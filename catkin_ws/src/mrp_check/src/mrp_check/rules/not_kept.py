@@ -30,6 +30,27 @@ class NotKept(PythonRule):
                     fix="Keep it as a member.",
                 )
         yield from self._publishers()
+        yield from self._in_loops()
+
+    def _in_loops(self) -> Iterator[Finding]:
+        """Yield a warning for each subscriber that is made anew in each turn of a loop."""
+        for call in self.source.nodes(ast.Call):
+            if self.source.dotted(call.func) != "rospy.Subscriber":
+                continue
+            above = list(self.source.above(call))
+            inner = above[: above.index(self.source.function(call))]
+            is_asked = any(isinstance(one, (ast.If, ast.For)) for one in inner)
+            leaves = any(isinstance(one, ast.Break) for a in inner for one in ast.walk(a))
+            if any(isinstance(one, ast.While) for one in inner) and not is_asked and not leaves:
+                yield self.finding(
+                    "lifetime",
+                    "Each turn of the loop makes one more subscriber, and rospy keeps all: each"
+                    " message is handled once more than before.",
+                    call,
+                    severity=WARNING,
+                    expected="a subscriber that is made once, before the loop",
+                    fix="Move it to before the loop.",
+                )
 
     def _publishers(self) -> Iterator[Finding]:
         """Yield a warning for each publisher that is made anew whenever a callback is called."""

@@ -51,6 +51,10 @@ class Typed(PythonRule):
             elif isinstance(node, ast.BinOp) and isinstance(node.op, _NUMERIC):
                 yield node, node.left, "computes with it"
                 yield node, node.right, "computes with it"
+            elif isinstance(node, ast.BinOp) and isinstance(node.op, ast.Mult):
+                for one, other in (pair := (node.left, node.right)), pair[::-1]:
+                    if isinstance(self.source.value(other), float):
+                        yield node, one, "computes with it"
             elif isinstance(node, ast.UnaryOp) and isinstance(node.op, (ast.USub, ast.UAdd)):
                 yield node, node.operand, "computes with it"
             elif isinstance(node, ast.Call) and len(node.args) == 1:

@@ -77,4 +77,10 @@ def callbacks(source: Source, **others: int) -> dict[ast.AST, set[ast.AST]]:
     return found
 
 
+def in_threads(source: Source) -> set[ast.AST]:
+    """Return the functions that rospy calls in threads of its own, which end with the program."""
+    called = callbacks(source, Service=2, Timer=1).values()
+    return {function for one in called for function in one}
+
+
 RULE = Rule("static", 37, ("facts",), of_sources(Unheard), also=("callbacks",))

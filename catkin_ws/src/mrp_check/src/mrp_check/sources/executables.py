@@ -19,7 +19,8 @@ _ROSPY = re.compile(
 )
 _ROSCPP = re.compile(r"\bros::(?:init\b|NodeHandle\b)")
 _SECONDS = 5  # in which a node has to end on Ctrl-C
-_INIT = re.compile(r"^[^#\n]*\binit_node\s*\(", re.M)
+# rospy's own, and no method of that name.
+_INIT = re.compile(r"^[^#\n]*(?:\br\w*\.|(?<![\w.])(?<!def ))init_node\s*\(", re.M)
 
 
 def spec(package: Package, model: Model) -> Spec:

@@ -209,7 +209,8 @@ _WELL_KNOWN = set(
     (
         "turtlesim actionlib tf tf2_ros cv_bridge image_transport dynamic_reconfigure pcl_ros"
         " moveit_commander rviz gazebo_ros controller_manager actionlib_tutorials roscpp_tutorials"
-        " rospy_tutorials learning_tf turtle_tf turtlebot3_gazebo"
+        " rospy_tutorials learning_tf turtle_tf turtlebot3_gazebo tf_conversions laser_geometry"
+        " tf2_geometry_msgs tf2_sensor_msgs"
     ).split()
 )
 
@@ -240,7 +241,7 @@ def of(
     for file in package.of_kind("python"):
         if is_test(file) or file == "setup.py":
             continue
-        for name, line in _imports(package, file):
+        for name, line in imports(package, file):
             name = name.split(".")[0]
             if is_known(name):
                 _add(found, package, name, Use(file, line, "python", True))
@@ -258,7 +259,7 @@ def of_launch(package: Package) -> dict[str, Use]:
     return found
 
 
-def _imports(package: Package, file: str) -> Iterator[tuple[str, int]]:
+def imports(package: Package, file: str) -> Iterator[tuple[str, int]]:
     """Yield (module, line) of each import that names it in full."""
     tree = package.tree(file)
     if not tree.body:  # such as of Python 2

@@ -56,10 +56,12 @@ class Workspace:
     compiles_again: whether a C++ file is different from that of the last check
     timeout: seconds that the whole check may take
     compiler_flags: what g++ is called with, in addition to the package's own flags
+    stands_in: whether there are stubs of the packages that this machine has not
     progress: called with a sentence that says what is being done
     """
 
     compiler_flags = ""
+    stands_in = False
 
     def __init__(
         self,
