@@ -16,10 +16,12 @@ from mrp_check.rules import (
     first_message,
     goals,
     init_again,
+    install,
     launch_words,
     long_loop,
     not_kept,
     overwritten,
+    package_name,
     param_result,
     readme,
     scripts,
@@ -44,7 +46,7 @@ from mrp_testing.proves import proves
 pytestmark = pytest.mark.quick
 
 SPEC = types.SimpleNamespace(
-    is_contract=False, topics={}, nodes={}, shutdown=types.SimpleNamespace(seconds=5)
+    is_contract=False, topics={}, nodes={}, install=False, shutdown=types.SimpleNamespace(seconds=5)
 )
 # The start of a file with that ending, and what stands around its lines, which begin in line 4.
 AROUND = {
@@ -76,6 +78,12 @@ def lines_of(rule, known, *severities):
     return [one.line for one in check_rules.of(rule.RULE, known) if one.severity in severities]
 
 
+MADE_BY_CMAKE = """cmake_minimum_required(VERSION 3.10)
+project(some_pkg)
+find_package(catkin REQUIRED COMPONENTS roscpp)
+catkin_package()
+add_executable(a src/a.cpp)
+"""
 HEARS = "s = rospy.Subscriber('a', String, print)"
 INIT = 'ros::init(argc, argv, "a");'
 START = "rospy.init_node('a')"
@@ -212,6 +220,43 @@ def test_a_library_is_named_in_the_manifest(header, found, tmp_path):
     package = check_rules.make(tmp_path / "some_pkg", src__a_DOT_cpp=f"#include <{header}>\n")
     known = types.SimpleNamespace(package=package, manifest=manifest.parse(package))
     assert [one.line for one in check_rules.of(undeclared.RULE, known)] == found
+
+
+@pytest.mark.parametrize(
+    ("rules", "found"),
+    [
+        ("", ["a", "launch/a.launch"]),
+        ("install(TARGETS a RUNTIME DESTINATION bin)", ["launch/a.launch"]),
+        ("install(TARGETS a)\ninstall(DIRECTORY launch DESTINATION share)", []),
+        ("install(TARGETS ${ALL})", []),
+    ],
+    ids=range(4),
+)
+def test_what_is_not_installed_is_a_note(rules, found, tmp_path):
+    known = case(
+        *(tmp_path, "cpp", INIT),
+        CMakeLists_DOT_txt=f"{MADE_BY_CMAKE}{rules}\n",
+        launch__a_DOT_launch="<launch/>\n",
+    )
+    said = [one for one in check_rules.of(install.RULE, known)]
+    assert [one.severity for one in said] == [NOTE] * len(found)
+    for one, name in zip(said, found, strict=True):
+        assert f"does not install {name}:" in one.message
+
+
+@pytest.mark.parametrize(("name", "found"), [("Some_pkg", [3]), ("2_pkg", [3]), ("some-pkg2", [])])
+def test_a_package_has_a_usual_name(name, found, tmp_path):
+    text = check_rules.MANIFEST.replace("some_pkg", name)
+    known = case(tmp_path, "cpp", INIT, package_DOT_xml=text)
+    known.manifest = manifest.parse(known.package)
+    known.model.project = None
+    assert lines_of(package_name, known) == found
+
+
+@pytest.mark.parametrize(("version", "found"), [("2.8.3", [1]), ("3.0.2", []), ("3.5...3.20", [])])
+def test_cmakelists_is_not_of_an_old_cmake(version, found, tmp_path):
+    known = case(tmp_path, "cpp", INIT, CMakeLists_DOT_txt=MADE_BY_CMAKE.replace("3.10", version))
+    assert lines_of(cmake, known, NOTE) == found
 
 
 def test_a_program_that_only_calls_services_is_no_node(tmp_path):

@@ -8,7 +8,7 @@ from typing import Iterator
 
 from mrp_check import evidence
 from mrp_check.case import Case
-from mrp_check.contract.finding import ERROR, WARNING, Finding
+from mrp_check.contract.finding import ERROR, NOTE, WARNING, Finding
 from mrp_check.contract.requirements import Requirement, Rule
 from mrp_check.contract.words import line_of
 from mrp_check.student.cmake import Model
@@ -29,6 +29,7 @@ def _findings(case: Case) -> Iterator[Finding]:
         yield from _no_folder(case.package, case.model)
         yield from _in_round_brackets(case.package)
         yield from _twice(case.model)
+        yield from () if case.spec.is_contract else _old(case.package, case.model)
     else:
         yield Finding(
             "cmake",
@@ -53,6 +54,23 @@ def _in_round_brackets(package: Package) -> Iterator[Finding]:
             seen=package.line(FILE, line),
             fix=f"Write ${{{name}}}.",
             change=(f"$({name})", f"${{{name}}}"),
+        )
+
+
+def _old(package: Package, model: Model) -> Iterator[Finding]:
+    """Yield a note if CMakeLists.txt is written for a CMake that catkin itself does not take."""
+    asked = next((one for one in model.calls if one.command == "cmake_minimum_required"), None)
+    numbers = [int(part) for part in re.findall(r"\d+", " ".join(asked.arguments))] if asked else []
+    if asked and numbers and numbers < [3, 0, 2]:
+        yield Finding(
+            "cmake",
+            "This asks for a CMake older than catkin's own: CMake warns of it, and CMake 4 stops.",
+            FILE,
+            asked.line,
+            NOTE,
+            expected="cmake_minimum_required(VERSION 3.10)",
+            seen=package.line(FILE, asked.line),
+            fix="Write cmake_minimum_required(VERSION 3.10).",
         )
 
 

@@ -4,17 +4,34 @@
 from __future__ import annotations
 
 import collections
+import re
 from typing import Iterator
 
 from mrp_check import evidence
 from mrp_check.case import Case
-from mrp_check.contract.finding import Finding
+from mrp_check.contract.finding import WARNING, Finding
 from mrp_check.contract.requirements import Requirement, Rule
+
+# https://www.ros.org/reps/rep-0144.html
+_USUAL = re.compile(r"[a-z][a-z0-9_-]*")
 
 
 def _findings(case: Case) -> Iterator[Finding]:
     """Yield a finding if package.xml and CMakeLists.txt disagree; the others say who is right."""
     package, launch = case.package, case.launch
+    if not case.spec.is_contract and not _USUAL.fullmatch(package.name):
+        named = package.find_line("package.xml", "<name", 1)
+        yield Finding(
+            "package-name",
+            f"catkin warns of the name {package.name}: a package's name begins with a small letter,"
+            " and has small letters, digits, - and _ alone.",
+            "package.xml",
+            named,
+            WARNING,
+            expected="a name such as my_package",
+            seen=package.line("package.xml", named),
+            fix="Rename the package, where it is not in use yet.",
+        )
     if case.manifest[0] is None or case.model.project is None:
         return
     project, call = case.model.project
