@@ -222,6 +222,7 @@ def test_a_library_is_named_in_the_manifest(header, found, tmp_path):
     assert [one.line for one in check_rules.of(undeclared.RULE, known)] == found
 
 
+@proves("What catkin_make install would leave out is a note.")
 @pytest.mark.parametrize(
     ("rules", "found"),
     [
