@@ -21,6 +21,7 @@ from mrp_check.rules import (
     long_loop,
     not_kept,
     overwritten,
+    own_service,
     package_name,
     param_result,
     readme,
@@ -125,6 +126,7 @@ WORK = "def work(goal):\n    for i in range(9):\n        "
         (not_kept, "py", f"while True:\n    if not s:\n        {HEARS}", []),
         (typed, "py", "a = input()\nb = a * 0.5", [4]),
         (typed, "py", "a = input()\nb = a * 2", []),
+        (typed, "py", "if sys.argv[1] > 3:\n    pass", [4]),
         (goals, "py", f"{WORK}rospy.sleep(1)\n{SERVER}", [5]),
         (goals, "py", f"{WORK}rospy.sleep(s.is_preempt_requested())\n{SERVER}", []),
         (goals, "py", f"{WORK}print(i)\n{SERVER}", []),
@@ -182,7 +184,7 @@ WORK = "def work(goal):\n    for i in range(9):\n        "
         (unfilled, "py", "print('%s, %d' % (a, b))", []),
         (unfilled, "py", "print('100 %', a)", []),
     ],
-    ids=range(76),
+    ids=range(77),
 )
 def test_what_beginners_are_used_to(rule, ending, lines, found, tmp_path):
     assert lines_of(rule, case(tmp_path, ending, lines)) == found
@@ -258,6 +260,30 @@ def test_a_package_has_a_usual_name(name, found, tmp_path):
 def test_cmakelists_is_not_of_an_old_cmake(version, found, tmp_path):
     known = case(tmp_path, "cpp", INIT, CMakeLists_DOT_txt=MADE_BY_CMAKE.replace("3.10", version))
     assert lines_of(cmake, known, NOTE) == found
+
+
+ADDS = "uint32 a\nstring b\n---\nint64 sum  # of both\nint64 mul\n"
+SERVES = "def f(r):\n    return {}\nrospy.Service('add', Add, f)"
+
+
+@pytest.mark.parametrize(
+    ("lines", "found"),
+    [
+        ("q = AddRequest()\nq.a = sys.argv[1]\nq.b = sys.argv[2]", [6]),
+        ("q = AddRequest()\nq.a = int(sys.argv[1])", []),
+        ("q = AddRequest(input(), input())", [5]),
+        ("def f(a):\n    call(a, '')\ncall = rospy.ServiceProxy('add', Add)\nf(sys.argv[1])", [8]),
+        (SERVES.format("mul, sum"), [6]),
+        (SERVES.format("[sum, mul]"), []),
+        (SERVES.format("AddResponse(r.mul, r.sum)"), [6]),
+        (SERVES.format("1, 2"), []),
+    ],
+    ids=range(8),
+)
+def test_the_fields_of_a_service_get_what_they_are_for(lines, found, tmp_path):
+    lines = f"from some_pkg.srv import Add, AddRequest, AddResponse\n{lines}"
+    known = case(tmp_path, "py", lines, srv__Add_DOT_srv=ADDS)
+    assert lines_of(own_service, known) == found
 
 
 def test_a_program_that_only_calls_services_is_no_node(tmp_path):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What somebody types is a text in Python 3, and no number.
+"""What somebody types is a text in Python 3, and no number; so is an argument of the command line.
 
 In Python 2, input() made a number of it. https://docs.python.org/3/whatsnew/3.0.html#builtins
 """
@@ -23,9 +23,9 @@ _NUMBER = (int, float)
 
 class Typed(PythonRule):
     def findings(self) -> Iterator[Finding]:
-        said: set[ast.Call] = set()
+        said: set[ast.expr] = set()
         for node, operand, does in self._uses():
-            call = self._typed(operand)
+            call = self.typed(operand)
             if call is None or call in said or self.source.is_guarded(node, "TypeError"):
                 continue
             said.add(call)
@@ -33,12 +33,12 @@ class Typed(PythonRule):
             follows = "Python ends with a TypeError when it comes there"
             yield self.finding(
                 "python-names",
-                f"In Python 3, input() returns a text, and line {node.lineno} {does}:"
+                f"{says(call)}, and line {node.lineno} {does}:"
                 f" {'they are never equal' if is_equality else follows}.",
                 call,
                 severity=WARNING if is_equality else ERROR,
-                expected="float(input(...)), or int(input(...))",
-                fix="Write float(...) around input(...); or int(...) for whole numbers.",
+                expected=f"float({self.written(call)}), or int(...)",
+                fix=f"Write float(...) around {self.written(call)}; or int(...) for whole numbers.",
             )
 
     def _uses(self) -> Iterator[tuple[ast.expr, ast.expr, str]]:
@@ -62,8 +62,11 @@ class Typed(PythonRule):
                 if name in _OF_NUMBERS and not self.source.definition(node.func):
                     yield node, node.args[0], f"gives it to {name}()"
 
-    def _typed(self, node: ast.expr, depth: int = 0) -> ast.Call | None:
-        """Return the call of input() that an expression is the value of, or None."""
+    def typed(self, node: ast.expr, depth: int = 0) -> ast.expr | None:
+        """Return the call of input(), or the part of sys.argv, that an expression is the value of;
+        or None."""
+        if isinstance(node, ast.Subscript) and self.source.dotted(node.value) == "sys.argv":
+            return None if isinstance(node.slice, ast.Slice) else node
         if isinstance(node, ast.Call):
             is_own = "input" in self.source.imports or self.source.definition(node.func)
             is_input = isinstance(node.func, ast.Name) and node.func.id == "input"
@@ -72,9 +75,9 @@ class Typed(PythonRule):
         stored = self.source.stored(key)
         if key and stored == [None] and depth < 2:
             given = self._given(key[0], key[1])
-            return self._typed(given, depth + 1) if given else None
+            return self.typed(given, depth + 1) if given else None
         value = stored[0] if len(stored) == 1 else None
-        return self._typed(value, depth + 1) if isinstance(value, ast.expr) and depth < 5 else None
+        return self.typed(value, depth + 1) if isinstance(value, ast.expr) and depth < 5 else None
 
     def _given(self, function: ast.AST | None, name: str) -> ast.expr | None:
         """Return what a parameter of a function is in its only call, by its place."""
@@ -99,6 +102,12 @@ class Typed(PythonRule):
             self.source.value(node)
         ]
         return all(isinstance(value, _NUMBER) for value in values)
+
+
+def says(typed: ast.expr) -> str:
+    """Return in words why something that was typed is no number."""
+    is_input = isinstance(typed, ast.Call)
+    return "In Python 3, input() returns a text" if is_input else "An argument is a text"
 
 
 RULE = Rule("static", 35, ("facts",), of_sources(Typed), also=("python-names",))
