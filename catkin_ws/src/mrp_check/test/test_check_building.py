@@ -65,6 +65,21 @@ def test_compilers_errors_in_plain_words(error, says, tmp_path):
     assert says in finding.message
 
 
+@pytest.mark.parametrize(
+    ("said", "found"),
+    [
+        (["no member named 'range'"], [1]),
+        (["has no member named 'range'", "expected ')'", "'a' was not declared"], [1, 2]),
+        (["'a' was not declared", "has no member named 'range'"], [1]),
+    ],
+    ids=range(3),
+)
+def test_an_error_that_no_other_follows_from_hides_none(said, found, tmp_path):
+    package = check_rules.make(tmp_path / "some_pkg", src__a_DOT_cpp="\n\n\n")
+    lines = [f"{package.root}/src/a.cpp:{n}:1: error: {text}" for n, text in enumerate(said, 1)]
+    assert [one.line for one in compiler.problems("\n".join(lines), package.root)] == found
+
+
 def test_a_function_that_returns_nothing_is_found_though_it_compiles(tmp_path):
     text = "bool answer(int &a)\n{\n  a = 1;\n}\nint main() { int a; return answer(a); }\n"
     package = check_rules.make(tmp_path / "src" / "some_pkg", src__a_DOT_cpp=text)

@@ -123,6 +123,7 @@ WORK = "def work(goal):\n    for i in range(9):\n        "
         (arguments, "py", "a = sys.argv[0]", []),
         (not_kept, "py", f"while not rospy.is_shutdown():\n    {HEARS}", [5]),
         (not_kept, "py", f"for i in range(3):\n    {HEARS}", []),
+        (not_kept, "py", f"if a:\n    while True:\n        {HEARS}", [6]),
         (not_kept, "py", f"while True:\n    if not s:\n        {HEARS}", []),
         (typed, "py", "a = input()\nb = a * 0.5", [4]),
         (typed, "py", "a = input()\nb = a * 2", []),
@@ -184,7 +185,7 @@ WORK = "def work(goal):\n    for i in range(9):\n        "
         (unfilled, "py", "print('%s, %d' % (a, b))", []),
         (unfilled, "py", "print('100 %', a)", []),
     ],
-    ids=range(77),
+    ids=range(78),
 )
 def test_what_beginners_are_used_to(rule, ending, lines, found, tmp_path):
     assert lines_of(rule, case(tmp_path, ending, lines)) == found

@@ -237,6 +237,30 @@ def test_names_that_a_launch_file_may_give(files, found):
     assert [one.severity for one in said if one.severity == ERROR] == found
 
 
+@pytest.mark.parametrize(
+    ("file", "others", "found"),
+    [
+        ("", [], [ERROR]),
+        ("", ["std_msgs/String"], [WARNING]),  # examples that run in pairs
+        ("launch/a.launch", ["std_msgs/String"], [ERROR]),
+    ],
+    ids=range(3),
+)
+def test_a_topic_of_several_types(file, others, found):
+    types_ = ["std_msgs/Int8", *others]
+    said = [Registration(f"/say{n}", "/a", one, 1) for n, one in enumerate(types_)]
+    heard = [Registration("/hear", "/a", "std_msgs/String", 1)]
+    nodes = {"/hear": "hear", **{one.node: "say" for one in said}}
+    seen = types.SimpleNamespace(seen=Seen(publications=said, subscriptions=heard))
+    runs = [types.SimpleNamespace(file=file, nodes=nodes, seen=seen)]
+    places = types.SimpleNamespace(of_topic=lambda *_: ("src/a.cpp", 1))
+    observed = types.SimpleNamespace(launches=runs, direct=None)
+    known = types.SimpleNamespace(observed=observed, places=places, nodes={})
+    assert [
+        one.severity for one in check_rules.of(meeting.RULE, known) if one.id == "type"
+    ] == found
+
+
 @pytest.mark.parametrize(("header", "found"), [("nowhere_msgs/A.h", 0), ("std_msgs/String.h", 1)])
 def test_what_needs_a_header_that_is_not_here_is_not_blamed(header, found, tmp_path):
     """What else is wrong in the package need not be what makes the program fail."""

@@ -45,10 +45,14 @@ DOUBTING = "-Wall -Wempty-body -Wtype-limits"  # what g++ is called with to say 
 _FROM = re.compile(r"^(?P<file>[^\s:][^:]*):(?P<line>\d+):\d+:\s+required from")
 _INCLUDED = re.compile(r"^(?:In file included from| +from) (?P<file>[^:]+):(?P<line>\d+)")
 
+# An error that no other one follows from: the name is right but for its last part.
+_ALONE = re.compile(r"has no member named")
+
 
 def problems(output: str, copy: pathlib.Path) -> list[Problem]:
-    """Return, for each source of the package, the first error that the compiler found in it; and
-    the first one behind a header of its own messages, where it was built a second time."""
+    """Return, for each source of the package, the first error that the compiler found in it, and
+    the next one behind each that no other follows from; and the first one behind a header of its
+    own messages, where it was built a second time."""
     lines = output.splitlines()
     found: list[Problem] = []
     chain: list[Line | None] = []  # of "required from"; None for a place in a header of others
@@ -85,12 +89,15 @@ def problems(output: str, copy: pathlib.Path) -> list[Problem]:
 
 
 def _first(found: list[Problem], copy: pathlib.Path) -> list[Problem]:
-    first: dict[tuple[str, bool], Problem] = {}
+    first: dict[tuple[str, bool], list[Problem]] = {}
     for problem in found:
         header = is_no_header(problem)
         is_own = bool(header and header[1].startswith(f"{copy.name}/"))
-        first.setdefault((problem.file, is_own), problem)
-    return list(first.values())
+        of_file = first.setdefault((problem.file, is_own), [])
+        lines = {one.line for one in of_file}
+        if all(map(_ALONE.search, (one.text for one in of_file))) and problem.line not in lines:
+            of_file.append(problem)
+    return [problem for of_file in first.values() for problem in of_file]
 
 
 def is_no_header(problem: Problem) -> re.Match[str] | None:

@@ -16,6 +16,7 @@ from mrp_check.contract.words import last_part, nearest
 from mrp_check.running.traces import ROS_TOPICS
 
 _ALIKE = 0.85
+_TOGETHER = "When all nodes run together"
 
 
 class End(typing.NamedTuple):
@@ -55,7 +56,7 @@ def _graphs(case: Case) -> Iterator[tuple[Graph, set[str]]]:
     for launched in case.observed.launches:
         nodes = {*launched.nodes.values()} - (set() if launched.file else together)
         together |= nodes
-        where = f"Under {launched.file}" if launched.file else "When all nodes run together"
+        where = f"Under {launched.file}" if launched.file else _TOGETHER
         graph = _graph(where, launched.seen.seen, launched.nodes, lambda topic: topic)
         yield graph, nodes
     direct = case.observed.direct
@@ -84,6 +85,8 @@ def _graph(
 
 
 def _of_types(case: Case, graph: Graph, end: End, publishers: list[End]) -> Iterator[Finding]:
+    by_chance = graph.where == _TOGETHER
+    types = {other.type for other in publishers}
     for other in publishers:
         if "*" in (end.type, other.type) or other.type == end.type:
             continue
@@ -94,6 +97,8 @@ def _of_types(case: Case, graph: Graph, end: End, publishers: list[End]) -> Iter
             f" {other.node or 'another node'} publishes {other.type} there: nothing arrives.",
             file,
             line,
+            # Examples may share a topic's name: each of them runs with its own partner.
+            WARNING if by_chance and end.type in types else ERROR,
             expected=other.type,
             seen=end.type,
             fix="Let both use the same type.",

@@ -12,6 +12,7 @@ from mrp_check.contract.requirements import Rule
 from mrp_check.sources.python_rule import PythonRule, arguments_of, of_sources
 
 _CALLING = ("rospy.Timer", "rospy.Subscriber")  # each calls a function, again and again
+_AROUND = (ast.While, ast.For, ast.If, ast.Try, ast.FunctionDef, ast.Lambda)
 
 
 class NotKept(PythonRule):
@@ -37,11 +38,10 @@ class NotKept(PythonRule):
         for call in self.source.nodes(ast.Call):
             if self.source.dotted(call.func) != "rospy.Subscriber":
                 continue
-            above = list(self.source.above(call))
-            inner = above[: above.index(self.source.function(call))]
-            is_asked = any(isinstance(one, (ast.If, ast.For)) for one in inner)
-            leaves = any(isinstance(one, ast.Break) for a in inner for one in ast.walk(a))
-            if any(isinstance(one, ast.While) for one in inner) and not is_asked and not leaves:
+            around = (one for one in self.source.above(call) if isinstance(one, _AROUND))
+            loop = next(around, self.source.tree)
+            leaves = any(isinstance(one, ast.Break) for one in ast.walk(loop))
+            if isinstance(loop, ast.While) and not leaves:
                 yield self.finding(
                     "lifetime",
                     "Each turn of the loop makes one more subscriber, and rospy keeps all: each"
