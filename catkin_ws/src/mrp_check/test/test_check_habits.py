@@ -19,6 +19,7 @@ from mrp_check.rules import (
     install,
     launch_words,
     long_loop,
+    methods,
     not_kept,
     overwritten,
     own_service,
@@ -122,6 +123,10 @@ WORK = "def work(goal):\n    for i in range(9):\n        "
         (arguments, "py", "try:\n    a = sys.argv[1]\nexcept IndexError:\n    a = 1", []),
         (arguments, "py", "a = sys.argv[0]", []),
         (not_kept, "py", f"while not rospy.is_shutdown():\n    {HEARS}", [5]),
+        (methods, "py", f"{MADE}\np.pub('a')", [5]),
+        (methods, "py", f"{MADE}\np.publish('a')", []),
+        (methods, "py", f"{MADE}\np = find()\np.pub('a')", []),
+        (methods, "py", "r = rospy.Rate(1)\nr.Sleep()", [5]),
         (not_kept, "py", f"for i in range(3):\n    {HEARS}", []),
         (not_kept, "py", f"if a:\n    while True:\n        {HEARS}", [6]),
         (not_kept, "py", f"while True:\n    if not s:\n        {HEARS}", []),
@@ -185,7 +190,7 @@ WORK = "def work(goal):\n    for i in range(9):\n        "
         (unfilled, "py", "print('%s, %d' % (a, b))", []),
         (unfilled, "py", "print('100 %', a)", []),
     ],
-    ids=range(78),
+    ids=range(82),
 )
 def test_what_beginners_are_used_to(rule, ending, lines, found, tmp_path):
     assert lines_of(rule, case(tmp_path, ending, lines)) == found
