@@ -58,7 +58,8 @@ class Catkin:
     def __init__(self, workspace: Workspace) -> None:
         self.workspace = workspace
         self.folder = workspace.folder
-        self.stubs = Stubs(self.folder / "stubs")
+        # Where the package's own programs cannot write.
+        self.stubs = Stubs(workspace.given / "stubs")
         self._building: concurrent.futures.Future[Step] | None = None
 
     def _configure(self, tests: str = "OFF") -> confine.Result:
@@ -137,6 +138,7 @@ class Catkin:
         """The Step of `catkin_make`'s first half: CMake."""
         if self.workspace.configured:
             return Step(*self.workspace.configured)
+        self.stubs.clear()
         self.workspace.progress("configuring with CMake")
         step = self._step(self._configure())
         if not step.ok and WANTS_TESTS in " ".join(step.output.split()):
@@ -152,7 +154,7 @@ class Catkin:
         while not step.ok:
             name = absent(package, step.output, is_contract=False)
             if not name or not self.stubs.add(name):
-                shutil.rmtree(self.stubs.folder, ignore_errors=True)
+                self.stubs.clear()
                 if step is not first:
                     self._configure()  # what CMake's trace says belongs to the first Step
                 return first

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import pathlib
 import re
+import shutil
 
 from mrp_check.contract.words import nearest
 from mrp_check.student.package import Package
@@ -52,6 +53,10 @@ class Stubs:
         for file in (f"{name}Config.cmake", f"{name.lower()}-config.cmake"):
             (self.folder / name / file).write_text(_CONFIG.format(name=name))
         return True
+
+    def clear(self) -> None:
+        """Stand in for nothing."""
+        shutil.rmtree(self.folder, ignore_errors=True)
 
     def flags(self) -> list[str]:
         """Return the arguments with which CMake finds them."""
