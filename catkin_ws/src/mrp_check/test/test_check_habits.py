@@ -13,6 +13,7 @@ from mrp_check.rules import (
     copied,
     dependencies,
     divided,
+    fields_given,
     first_message,
     goals,
     init_again,
@@ -22,10 +23,10 @@ from mrp_check.rules import (
     methods,
     not_kept,
     overwritten,
-    own_service,
     package_name,
     param_result,
     readme,
+    relative_import,
     scripts,
     swallowed,
     typed,
@@ -43,6 +44,7 @@ from mrp_check.sources.python_source import Source
 from mrp_check.student import manifest
 from mrp_check.student.cmake import parsed
 from mrp_check.student.launch import Launch
+from mrp_check.student.package import Package
 from mrp_testing.proves import proves
 
 pytestmark = pytest.mark.quick
@@ -283,13 +285,36 @@ SERVES = "def f(r):\n    return {}\nrospy.Service('add', Add, f)"
         (SERVES.format("[sum, mul]"), []),
         (SERVES.format("AddResponse(r.mul, r.sum)"), [6]),
         (SERVES.format("1, 2"), []),
+        ("r = AddResponse()\nr.sum = a / b", [6]),
+        ("r = AddResponse()\nr.sum = a // b", []),
+        ("r = AddResponse()\nr.mean = a / b", []),
+        ("m = MeanFeedback()\nm.mean = a / 2", [6]),
     ],
-    ids=range(8),
+    ids=range(12),
 )
-def test_the_fields_of_a_service_get_what_they_are_for(lines, found, tmp_path):
+def test_the_fields_of_a_definition_get_what_they_are_for(lines, found, tmp_path):
     lines = f"from some_pkg.srv import Add, AddRequest, AddResponse\n{lines}"
-    known = case(tmp_path, "py", lines, srv__Add_DOT_srv=ADDS)
-    assert lines_of(own_service, known) == found
+    lines = f"from some_pkg.msg import MeanFeedback; {lines}"
+    mean = "int32 n\n---\nfloat32 mean\n---\nuint32 mean\n"
+    known = case(tmp_path, "py", lines, srv__Add_DOT_srv=ADDS, action__Mean_DOT_action=mean)
+    assert lines_of(fields_given, known) == found
+
+
+@pytest.mark.parametrize(
+    ("line", "found"),
+    [("from beside import A", [1]), ("import beside", [1]), ("from .beside import A", [])],
+    ids=range(3),
+)
+def test_a_module_imports_its_neighbour_as_python_3_does(line, found, tmp_path):
+    files = {"src/some_pkg/__init__.py": line, "src/some_pkg/beside.py": "A = 1\n"}
+    package = check_rules.make(tmp_path / "some_pkg")
+    for file, text in files.items():
+        (package.root / file).parent.mkdir(parents=True, exist_ok=True)
+        (package.root / file).write_text(text)
+    package = Package(package.root)
+    facts = Facts(python={file: Source(file, text) for file, text in files.items()})
+    known = types.SimpleNamespace(package=package, facts=facts)
+    assert lines_of(relative_import, known) == found
 
 
 def test_a_program_that_only_calls_services_is_no_node(tmp_path):

@@ -174,10 +174,11 @@ OF_BOTH = 'ros::NodeHandle n;\n  ros::NodeHandle own("~");\n  '
         ('n.param("rate", r, 1);', {"/a/rate": 2, "/rate": 2}, []),
         (f'{OF_BOTH}n.param("rate", r, 1);', {"/a/rate": 2}, [5]),
         (f'{OF_BOTH}own.param("rate", r, 1);', {"/a/rate": 2}, []),
+        ('tf2_ros::Buffer b;\n  n.param("rate", r, 1);', {"/a/rate": 2}, [4]),
         (f'{OF_BOTH}n = own;\n  n.param("rate", r, 1);', {"/a/rate": 2}, []),
         (f'A() : n(own) {{}}\n  {OF_BOTH}n.param("rate", r, 1);', {"/a/rate": 2}, []),
     ],
-    ids=range(10),
+    ids=range(11),
 )
 def test_a_parameter_of_a_nodes_own_is_read_as_one(source, params, lines, tmp_path):
     package = check_rules.make(tmp_path / "some_pkg", src__a_DOT_cpp=MAIN.format(source))

@@ -33,13 +33,14 @@ def _findings(case: Case) -> Iterator[Finding]:
     # A node may be of many classes: all that the package has may be its own.
     files = case.package.of_kind("cpp", "header", "python")
     text = "\n".join(uses.code(case.package, file) for file in files)
-    if _UNSEEN.search(text):
-        return
+    is_seen = not _UNSEEN.search(text)
     for launch in case.launches:
         for node in launch.nodes:
             if node.package == case.package.name and case.facts.sources.get(node.type):
-                yield from _of_params(case, launch, node, text)
                 yield from _of_own(case, launch, node, text)
+                if not is_seen:
+                    continue
+                yield from _of_params(case, launch, node, text)
                 if node.type not in case.nodes or not case.nodes[node.type].is_up:
                     yield from _of_remaps(case, node, text)
 

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Python: the fields of a service of the package's own get what they are for.
+"""Python: the fields of the package's own definitions get what they are for.
 
-https://wiki.ros.org/rospy/Overview/Services says how rospy takes them from a list.
+https://wiki.ros.org/rospy/Overview/Services says how rospy takes them from a list, and
+https://wiki.ros.org/msg which types they have in Python.
 """
 
 from __future__ import annotations
@@ -14,11 +15,15 @@ from mrp_check.contract.finding import WARNING, Finding
 from mrp_check.contract.requirements import ANY, Rule
 from mrp_check.contract.words import last_part
 from mrp_check.rules.typed import Typed, says
+from mrp_check.sources import uses
 from mrp_check.sources.python_facts import argument
 from mrp_check.sources.python_rule import of_sources
 
 _FIELD = re.compile(r"^[ \t]*([\w/]+)[ \t]+(\w+)[ \t]*(?:#.*)?$", re.MULTILINE)
+_WHOLE = re.compile(r"u?int\d+")
 _NUMBER = re.compile(r"u?int\d+|float\d+")
+# The ending of a class -> which part of a .srv or .action file it is made of.
+_PARTS = {"Request": 0, "Response": 1, "Goal": 0, "Result": 1, "Feedback": 2}
 
 
 class _Half(NamedTuple):
@@ -28,10 +33,44 @@ class _Half(NamedTuple):
     types: list[str]
 
 
-class OwnService(Typed):
+class FieldsGiven(Typed):
     def findings(self) -> Iterator[Finding]:
         yield from self._texts()
         yield from self._order()
+        yield from self._divided()
+
+    def _divided(self) -> Iterator[Finding]:
+        """Yield a finding for each whole number that is given what a division makes."""
+        for node in self.source.nodes(ast.Assign):
+            target, value = node.targets[0], node.value
+            is_division = isinstance(value, ast.BinOp) and isinstance(value.op, ast.Div)
+            if not isinstance(target, ast.Attribute) or not is_division:
+                continue
+            made = self.source.stored(self.source.key(target.value))
+            class_ = made[0].func if len(made) == 1 and isinstance(made[0], ast.Call) else None
+            type_ = self._types(self.source.dotted(class_) or "").get(target.attr, "")
+            if _WHOLE.fullmatch(type_):
+                yield self.finding(
+                    "python-names",
+                    f"/ makes a number with a point in Python 3, and {target.attr} is {type_}: an"
+                    " error is raised when the message is sent.",
+                    node,
+                    severity=WARNING,
+                    expected="//, int(...) or round(...)",
+                    fix=f"Make a whole number of it; or let {target.attr} be a float64.",
+                )
+
+    def _types(self, name: str) -> dict[str, str]:
+        """Return field -> type, of the class that is made of a definition of the package's own."""
+        own = re.fullmatch(rf"{re.escape(self.package.name)}\.(?:msg|srv)\.(\w+)", name)
+        for path in self.package.of_kind(*uses.DEFINITIONS) if own else ():
+            made, parts = uses.generated(path), self.package.text(path).split("---")
+            if own and own[1] in made:
+                of_parts = [one for one in _PARTS if own[1].endswith(one)]
+                number = _PARTS[of_parts[0]] if of_parts and len(parts) > 1 else 0
+                fields = _FIELD.findall(parts[number] if number < len(parts) else "")
+                return {field: type_ for type_, field in fields}
+        return {}
 
     def _half(self, class_: ast.expr | None, part: int) -> _Half | None:
         """Return the request (0) or the response (1) of a service's class, if it is the package's
@@ -112,5 +151,5 @@ class OwnService(Typed):
 
 
 RULE = Rule(
-    "static", 109, ("facts",), of_sources(OwnService), also=("python-names", "callbacks"), only=ANY
+    "static", 109, ("facts",), of_sources(FieldsGiven), also=("python-names", "callbacks"), only=ANY
 )
