@@ -5,7 +5,7 @@ import types
 
 import check_rules
 import pytest
-from mrp_check.contract.finding import ERROR, NOTE, WARNING
+from mrp_check.contract.finding import NOTE, WARNING
 from mrp_check.rules import (
     arguments,
     before_init,
@@ -13,81 +13,35 @@ from mrp_check.rules import (
     copied,
     dependencies,
     divided,
-    fields_given,
     first_message,
     goals,
     init_again,
-    install,
     launch_words,
     long_loop,
     methods,
     not_kept,
     overwritten,
-    package_name,
     param_result,
     readme,
-    relative_import,
     scripts,
     swallowed,
     typed,
     unadvertised,
-    undeclared,
     unfilled,
     unparsed,
     unseeded,
     unused_rate,
     waiting,
 )
-from mrp_check.sources import python_read, uses
+from mrp_check.sources import python_read
 from mrp_check.sources.facts import Facts
-from mrp_check.sources.python_source import Source
-from mrp_check.student import manifest
 from mrp_check.student.cmake import parsed
 from mrp_check.student.launch import Launch
-from mrp_check.student.package import Package
 from mrp_testing.proves import proves
+from one_source import AROUND, SPEC, case, lines_of
 
 pytestmark = pytest.mark.quick
 
-SPEC = types.SimpleNamespace(
-    is_contract=False, topics={}, nodes={}, install=False, shutdown=types.SimpleNamespace(seconds=5)
-)
-# The start of a file with that ending, and what stands around its lines, which begin in line 4.
-AROUND = {
-    "cpp": ("#include <ros/ros.h>\nint main(int argc, char** argv)\n{{\n{}\n}}\n"),
-    "heard.cpp": (
-        "bool b;\nvoid hear(const std_msgs::Bool::ConstPtr& m) {{ b = m->data; }}\nint main() {{\n"
-        '{}\nn.subscribe("a", 1, hear);\nwhile (ros::ok())\n{{\n  send(a);\n}}\n}}\n'
-    ),
-    "py": "import actionlib, rospy, sys\nfrom std_msgs.msg import String\n\n{}\n",
-}
-
-
-def case(folder, ending, lines, launched=(), **files):
-    """Return a case of a node of one source."""
-    file, text = f"src/a.{ending}", AROUND[ending].format(lines)
-    package = check_rules.make(folder / "some_pkg", **{f"src__a_DOT_{ending}": text}, **files)
-    python = {file: Source(file, text)} if ending == "py" else {}
-    facts = Facts(sources={"a": [file]}, python=python, relevant=[*python])
-    nodes = [types.SimpleNamespace(type=name) for name in launched]
-    model = check_rules.model_of(package)
-    launches = [types.SimpleNamespace(nodes=nodes)]
-    return types.SimpleNamespace(
-        package=package, facts=facts, launches=launches, launch=None, model=model, spec=SPEC
-    )
-
-
-def lines_of(rule, known, *severities):
-    severities = severities or (ERROR, WARNING)
-    return [one.line for one in check_rules.of(rule.RULE, known) if one.severity in severities]
-
-
-MADE_BY_CMAKE = """cmake_minimum_required(VERSION 3.10)
-project(some_pkg)
-find_package(catkin REQUIRED COMPONENTS roscpp)
-catkin_package()
-add_executable(a src/a.cpp)
-"""
 HEARS = "s = rospy.Subscriber('a', String, print)"
 INIT = 'ros::init(argc, argv, "a");'
 START = "rospy.init_node('a')"
@@ -196,125 +150,6 @@ WORK = "def work(goal):\n    for i in range(9):\n        "
 )
 def test_what_beginners_are_used_to(rule, ending, lines, found, tmp_path):
     assert lines_of(rule, case(tmp_path, ending, lines)) == found
-
-
-@pytest.mark.parametrize(
-    ("line", "named", "found"),
-    [
-        ("import pandas", "std_msgs", "python3-pandas"),
-        ("import pandas", "python3-pandas", ""),
-        ("from nowhere_tutorials.srv import Add", "std_msgs", "nowhere_tutorials"),
-        ("from nowhere_tutorials.srv import Add", "nowhere_tutorials", ""),
-        ("import cv2", "cv_bridge", ""),
-        ("import cv2", "std_msgs", "python3-opencv"),
-        ("import json, yaml, rospy, own", "std_msgs", ""),
-        ("from std_msgs.msg import String", "std_srvs", ""),
-    ],
-    ids=range(8),
-)
-def test_what_others_made_is_named_in_the_manifest(line, named, found, tmp_path, monkeypatch):
-    monkeypatch.setattr(uses, "is_of_debian", lambda module: module in ("pandas", "cv2"))
-    package = check_rules.make(
-        tmp_path / "some_pkg",
-        src__a_DOT_py=line,
-        src__own_DOT_py="",
-        package_DOT_xml=check_rules.MANIFEST.replace("std_msgs", named),
-    )
-    known = types.SimpleNamespace(package=package, manifest=manifest.parse(package))
-    said = [one.expected for one in check_rules.of(undeclared.RULE, known)]
-    assert said == [f"<depend>{found}</depend> in package.xml"] * bool(found)
-
-
-@pytest.mark.parametrize(("header", "found"), [("yaml-cpp/yaml.h", [1]), ("vector", [])])
-def test_a_library_is_named_in_the_manifest(header, found, tmp_path):
-    package = check_rules.make(tmp_path / "some_pkg", src__a_DOT_cpp=f"#include <{header}>\n")
-    known = types.SimpleNamespace(package=package, manifest=manifest.parse(package))
-    assert [one.line for one in check_rules.of(undeclared.RULE, known)] == found
-
-
-@proves("What catkin_make install would leave out is a note.")
-@pytest.mark.parametrize(
-    ("rules", "found"),
-    [
-        ("", ["a", "launch/a.launch"]),
-        ("install(TARGETS a RUNTIME DESTINATION bin)", ["launch/a.launch"]),
-        ("install(TARGETS a)\ninstall(DIRECTORY launch DESTINATION share)", []),
-        ("install(TARGETS ${ALL})", []),
-    ],
-    ids=range(4),
-)
-def test_what_is_not_installed_is_a_note(rules, found, tmp_path):
-    known = case(
-        *(tmp_path, "cpp", INIT),
-        CMakeLists_DOT_txt=f"{MADE_BY_CMAKE}{rules}\n",
-        launch__a_DOT_launch="<launch/>\n",
-    )
-    said = [one for one in check_rules.of(install.RULE, known)]
-    assert [one.severity for one in said] == [NOTE] * len(found)
-    for one, name in zip(said, found, strict=True):
-        assert f"does not install {name}:" in one.message
-
-
-@pytest.mark.parametrize(("name", "found"), [("Some_pkg", [3]), ("2_pkg", [3]), ("some-pkg2", [])])
-def test_a_package_has_a_usual_name(name, found, tmp_path):
-    text = check_rules.MANIFEST.replace("some_pkg", name)
-    known = case(tmp_path, "cpp", INIT, package_DOT_xml=text)
-    known.manifest = manifest.parse(known.package)
-    known.model.project = None
-    assert lines_of(package_name, known) == found
-
-
-@pytest.mark.parametrize(("version", "found"), [("2.8.3", [1]), ("3.0.2", []), ("3.5...3.20", [])])
-def test_cmakelists_is_not_of_an_old_cmake(version, found, tmp_path):
-    known = case(tmp_path, "cpp", INIT, CMakeLists_DOT_txt=MADE_BY_CMAKE.replace("3.10", version))
-    assert lines_of(cmake, known, NOTE) == found
-
-
-ADDS = "uint32 a\nstring b\n---\nint64 sum  # of both\nint64 mul\n"
-SERVES = "def f(r):\n    return {}\nrospy.Service('add', Add, f)"
-
-
-@pytest.mark.parametrize(
-    ("lines", "found"),
-    [
-        ("q = AddRequest()\nq.a = sys.argv[1]\nq.b = sys.argv[2]", [6]),
-        ("q = AddRequest()\nq.a = int(sys.argv[1])", []),
-        ("q = AddRequest(input(), input())", [5]),
-        ("def f(a):\n    call(a, '')\ncall = rospy.ServiceProxy('add', Add)\nf(sys.argv[1])", [8]),
-        (SERVES.format("mul, sum"), [6]),
-        (SERVES.format("[sum, mul]"), []),
-        (SERVES.format("AddResponse(r.mul, r.sum)"), [6]),
-        (SERVES.format("1, 2"), []),
-        ("r = AddResponse()\nr.sum = a / b", [6]),
-        ("r = AddResponse()\nr.sum = a // b", []),
-        ("r = AddResponse()\nr.mean = a / b", []),
-        ("m = MeanFeedback()\nm.mean = a / 2", [6]),
-    ],
-    ids=range(12),
-)
-def test_the_fields_of_a_definition_get_what_they_are_for(lines, found, tmp_path):
-    lines = f"from some_pkg.srv import Add, AddRequest, AddResponse\n{lines}"
-    lines = f"from some_pkg.msg import MeanFeedback; {lines}"
-    mean = "int32 n\n---\nfloat32 mean\n---\nuint32 mean\n"
-    known = case(tmp_path, "py", lines, srv__Add_DOT_srv=ADDS, action__Mean_DOT_action=mean)
-    assert lines_of(fields_given, known) == found
-
-
-@pytest.mark.parametrize(
-    ("line", "found"),
-    [("from beside import A", [1]), ("import beside", [1]), ("from .beside import A", [])],
-    ids=range(3),
-)
-def test_a_module_imports_its_neighbour_as_python_3_does(line, found, tmp_path):
-    files = {"src/some_pkg/__init__.py": line, "src/some_pkg/beside.py": "A = 1\n"}
-    package = check_rules.make(tmp_path / "some_pkg")
-    for file, text in files.items():
-        (package.root / file).parent.mkdir(parents=True, exist_ok=True)
-        (package.root / file).write_text(text)
-    package = Package(package.root)
-    facts = Facts(python={file: Source(file, text) for file, text in files.items()})
-    known = types.SimpleNamespace(package=package, facts=facts)
-    assert lines_of(relative_import, known) == found
 
 
 def test_a_program_that_only_calls_services_is_no_node(tmp_path):

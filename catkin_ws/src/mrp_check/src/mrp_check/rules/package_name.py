@@ -11,6 +11,7 @@ from mrp_check import evidence
 from mrp_check.case import Case
 from mrp_check.contract.finding import WARNING, Finding
 from mrp_check.contract.requirements import Requirement, Rule
+from mrp_check.student.package import Package
 
 # https://www.ros.org/reps/rep-0144.html
 _USUAL = re.compile(r"[a-z][a-z0-9_-]*")
@@ -19,19 +20,8 @@ _USUAL = re.compile(r"[a-z][a-z0-9_-]*")
 def _findings(case: Case) -> Iterator[Finding]:
     """Yield a finding if package.xml and CMakeLists.txt disagree; the others say who is right."""
     package, launch = case.package, case.launch
-    if not case.spec.is_contract and not _USUAL.fullmatch(package.name):
-        named = package.find_line("package.xml", "<name", 1)
-        yield Finding(
-            "package-name",
-            f"catkin warns of the name {package.name}: a package's name begins with a small letter,"
-            " and has small letters, digits, - and _ alone.",
-            "package.xml",
-            named,
-            WARNING,
-            expected="a name such as my_package",
-            seen=package.line("package.xml", named),
-            fix="Rename the package, where it is not in use yet.",
-        )
+    if not case.spec.is_contract:
+        yield from _unusual(package)
     if case.manifest[0] is None or case.model.project is None:
         return
     project, call = case.model.project
@@ -56,6 +46,24 @@ def _findings(case: Case) -> Iterator[Finding]:
         seen=seen,
         fix=f"Write {expected}.",
         change=(wrong, right),
+    )
+
+
+def _unusual(package: Package) -> Iterator[Finding]:
+    """Yield a warning if catkin warns of the name."""
+    if _USUAL.fullmatch(package.name):
+        return
+    line = package.find_line("package.xml", "<name", 1)
+    yield Finding(
+        "package-name",
+        f"catkin warns of the name {package.name}: a package's name begins with a small letter,"
+        " and has small letters, digits, - and _ alone.",
+        "package.xml",
+        line,
+        WARNING,
+        expected="a name such as my_package",
+        seen=package.line("package.xml", line),
+        fix="Rename the package, where it is not in use yet.",
     )
 
 
