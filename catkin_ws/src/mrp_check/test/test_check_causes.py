@@ -52,6 +52,8 @@ def findings(*entries):
         # Another node's own fault is its own.
         ([("spin", "src/a.py", 1, "static", "a"), ("exit", "src/b.py", 5, "stop", "b")], [None]),
         ([("queue", "src/a.py", 1, "static", "a"), ("values", "src/a.py", 5, "run", "a")], [None]),
+        # What was seen of a program that ran does not follow from what may hinder its building.
+        ([("messages", "CMakeLists.txt", 1, "files", None), ("exit", "a", 5, "stop", "b")], [None]),
         # What keeps all from being built.
         (
             [("configure", "CMakeLists.txt", 1, "build", None), ("starts", None, None, "run", "b")],
@@ -109,7 +111,7 @@ def findings(*entries):
             [None],
         ),
     ],
-    ids=range(15),
+    ids=range(16),
 )
 def test_consequences(entries, expected):
     told = causes.told_once(findings(*entries), facts())

@@ -6,8 +6,16 @@ import types
 import check_rules
 import pytest
 from mrp_check.contract.finding import NOTE
-from mrp_check.rules import cmake, fields_given, install, package_name, relative_import, undeclared
-from mrp_check.sources import uses
+from mrp_check.rules import (
+    cmake,
+    fields_given,
+    install,
+    own_calls,
+    package_name,
+    relative_import,
+    undeclared,
+)
+from mrp_check.sources import asked, uses
 from mrp_check.sources.facts import Facts
 from mrp_check.sources.python_source import Source
 from mrp_check.student import manifest
@@ -143,3 +151,43 @@ def test_a_module_imports_its_neighbour_as_python_3_does(line, found, tmp_path):
     facts = Facts(python={file: Source(file, text) for file, text in files.items()})
     known = types.SimpleNamespace(package=package, facts=facts)
     assert lines_of(relative_import, known) == found
+
+
+NODE = "class Node:\n    def turn(self, side, fast=False):\n        pass\n\nn = Node()\n"
+
+
+@pytest.mark.parametrize(
+    ("lines", "found"),
+    [
+        (f"{NODE}n.turn()", [9]),
+        (f"{NODE}n.turn(1)", []),
+        (f"{NODE}n.turn(side=1)", []),
+        (f"{NODE}n.turn(1, 2, 3)", [9]),
+        (f"{NODE}n.turn(*sides)", []),
+        (f"{NODE}n.trun(1)", [9]),
+        (f"{NODE}n = other()\nn.trun(1)", []),
+        (f"{NODE.replace('Node:', 'Node(Base):')}n.trun(1)", []),
+        (f"{NODE.replace('pass', 'self.spin = rospy.spin')}n.spin()", []),
+        ("def go(a):\n    pass\ngo()", [6]),
+        ("def go(*a):\n    pass\ngo()", []),
+    ],
+    ids=range(11),
+)
+def test_what_a_source_calls_of_its_own(lines, found, tmp_path):
+    assert lines_of(own_calls, case(tmp_path, "py", lines)) == found
+
+
+@pytest.mark.parametrize(
+    ("line", "found"),
+    [
+        ("typedef actionlib::SimpleActionClient<A> Client;", ("commands", "do", 2)),
+        ("using Client = actionlib::SimpleActionClient<A>;", ("commands", "do", 2)),
+        ("typedef other::Client<A> Client;", None),
+    ],
+    ids=range(3),
+)
+def test_an_action_by_another_name(line, found, tmp_path):
+    text = f'{line}\nClient client("do", true);\n'
+    package = check_rules.make(tmp_path / "some_pkg", src__a_DOT_cpp=text)
+    said = [(one.what, one.name, one.line) for one in asked.of(package, ["src/a.cpp"])]
+    assert said == ([found] if found else [])

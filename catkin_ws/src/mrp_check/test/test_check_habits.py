@@ -33,7 +33,7 @@ from mrp_check.rules import (
     unused_rate,
     waiting,
 )
-from mrp_check.sources import python_read
+from mrp_check.sources import python_read, uses
 from mrp_check.sources.facts import Facts
 from mrp_check.student.cmake import parsed
 from mrp_check.student.launch import Launch
@@ -257,6 +257,12 @@ def test_what_cmake_alone_names(tmp_path):
     said = check_rules.file_findings(dependencies, package, spec=SPEC)
     said = [one.message.split(",")[0] for one in said if one.severity == WARNING]
     assert said == ["CMakeLists.txt asks for rostest", "generate_messages() names roslib"]
+    text = check_rules.CMAKE.replace("rospy std", "rospy nowhere_srv std", 1)
+    package = check_rules.make(tmp_path / "other_pkg", CMakeLists_DOT_txt=text)
+    said = check_rules.file_findings(dependencies, package, spec=SPEC)
+    assert "CMakeLists.txt asks for nowhere_srv" in {one.message.split(",")[0] for one in said}
+    assert uses.absent_header(package, "nowhere_srv/A.h") == "nowhere_srv"
+    assert uses.absent_header(package, "elsewhere_srv/A.h") is None
 
 
 def test_a_first_line_without_its_slash(tmp_path):
@@ -294,8 +300,9 @@ def test_behind_what_python_cannot_read(tmp_path):
         ("words", "$(arg said)", []),
         ("1 2 3", "$(arg said)", []),
         ("-d speed:=2", "$(arg said)", []),
+        ("robot_$(arg model)", "$(arg said)", []),
     ],
-    ids=range(5),
+    ids=range(6),
 )
 def test_a_text_with_spaces_is_several_arguments(text, args, found, tmp_path):
     node = f'<node pkg="some_pkg" type="a" name="a" args="{args}"/>'

@@ -142,6 +142,8 @@ def _causes(cause, finding, earlier, facts, nodes):
     # The same requirement, found broken twice: first in the source, then when it ran.
     if finding.id == cause.id:
         return True
+    if (cause.id, finding.id) == ("messages", "exit"):
+        return False  # it ran, and so they were there
     node = nodes.get(finding.node)
     if node is None or not node.is_up:
         return follows or cause.id in _FATAL

@@ -189,7 +189,9 @@ def _asked_for(
     """Yield a warning for each package that CMakeLists.txt alone names: nothing uses it."""
     known = {*_all(manifest, tests=True), *used, "catkin", "message_generation", "genmsg"}
     for name, call in model.components.items():
-        if name not in known and uses.is_ros_package(name):
+        is_here = uses.is_ros_package(name)
+        is_absent = call.arguments[0] == "catkin" and not nearest(name, known, 0.8)
+        if name not in known and (is_here or is_absent):
             yield Finding(
                 "dependencies",
                 f"CMakeLists.txt asks for {name}, and package.xml does not name it: where it is not"

@@ -110,6 +110,9 @@ def _alone(case: Case, graph: Graph, end: End, published: set[str]) -> Iterator[
     """Yield the Finding about a topic that nobody publishes on."""
     heard = {one.topic for one in graph.subscribers}
     near = [one for one in graph.publishers if one.node and _is_meant(one, end)]
+    is_actions = last_part(end.topic) in ("feedback", "result", "status")
+    if is_actions and any(not one.is_up for one in case.nodes.values()):
+        return  # the action is served by one that did not run
     near.sort(key=lambda one: one.topic in heard)
     file, line = case.places.of_topic(end.node or "", Kind.SUBSCRIBER, end.topic)
     if not near and any(not one.is_up for one in case.nodes.values()):

@@ -12,6 +12,8 @@ from mrp_check.contract.finding import Finding
 from mrp_check.contract.requirements import Requirement, Rule
 from mrp_check.sources.node import Node, each_node
 
+_WAITS = r"\.wait_for_(result|server)\s*\("
+
 
 def _of(node: Node) -> Iterator[Finding]:
     waits, spins = node.places(Kind.LOOP, Kind.SLEEP), node.places(Kind.SPIN)
@@ -28,6 +30,9 @@ def _of(node: Node) -> Iterator[Finding]:
         called_back += [place for place in timers if not _is_rate(node, place)]
     # rospy calls back in threads of its own: there a loop is enough.
     if waits and (node.is_python or not called_back):
+        return
+    # A client of an action waits for what comes of it.
+    if node.is_python and not called_back and node.package.first_match(node.files, _WAITS):
         return
     if called_back or node.places(Kind.TIMER, Kind.PUBLISHER):
         yield _never(node, bool(waits))

@@ -32,6 +32,11 @@ _CPP = {
     "commands": r"\bSimpleActionClient\s*<[^;()]*>\s*\w+\s*" + _NAME,
     "serves": r"\bSimpleActionServer\s*<[^;()]*>\s*\w+\s*\(\s*\w+\s*,\s*[\"']([~/\w]+)[\"']",
 }
+# Another name for the class of an action.
+_TYPEDEF = re.compile(
+    r"\b(?:typedef|using\s+(?P<before>\w+)\s*=)\s+(?:actionlib::)?(?P<class>SimpleAction(?:Client|Server))"
+    r"\s*<[^;()]*>\s*(?P<after>\w*)\s*;"
+)
 
 
 class Said(typing.NamedTuple):
@@ -67,7 +72,10 @@ def unwaited(package: Package, files: Sequence[str]) -> Line | None:
 def of(package: Package, files: Iterable[str]) -> Iterator[Said]:
     """Yield what these sources say, in order."""
     for file in files:
-        text = uses.code(package, file)
+        text = _TYPEDEF.sub(uses.blank, code := uses.code(package, file))
+        for match in _TYPEDEF.finditer(code):  # such as: Client client("name")
+            name = match["before"] or match["after"]
+            text = re.sub(rf"\b{name}\b(?=\s+\w+\s*\()", f"{match['class']}<A>", text)
         for what, shape in (_PYTHON if package.kind(file) == "python" else _CPP).items():
             for match in re.finditer(shape, text):
                 yield Said(what, match.group(1), file, line_of(match, 1))

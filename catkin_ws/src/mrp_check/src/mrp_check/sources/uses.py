@@ -196,7 +196,9 @@ def absent_header(package: Package, header: str) -> str | None:
     is_debian = _guesses(name, "cpp")[0] in debian_packages()
     if is_ros_package(name):  # Debian may keep its headers in a package of their own
         return name if is_debian and not _has_headers(header.split("/")[0]) else None
-    is_named = package.find_line("package.xml", f">{name}<")
+    asked = rf"(?m)^[^#\n]*\b{re.escape(name)}\b"
+    cmake = package.text("CMakeLists.txt") if "CMakeLists.txt" in package.files else ""
+    is_named = package.find_line("package.xml", f">{name}<") or re.search(asked, cmake)
     return name if is_named or is_debian or is_called_so(name) else None
 
 
