@@ -74,7 +74,7 @@ DOUBTED = [
 
 
 @proves(
-    "In twelve trials, somebody listed the defects of public packages before the checker saw them.",
+    "In thirteen trials, somebody listed the defects of public packages before the checker saw them.",
     "Each trial was on other packages, as the checker was improved after each.",
     "Three more labels of the third trial, two of the fourth, two of the eighth and four of the "
     "ninth were wrong, and are not counted.",
@@ -91,7 +91,7 @@ def test_trials_on_packages_by_strangers():
     trials = [*csv.reader(recorded.read_text().splitlines())][1:]
     tried = []
     wrong = []
-    numbers = "third fourth fifth sixth seventh eighth ninth tenth eleventh twelfth".split()
+    numbers = "third fourth fifth sixth seventh eighth ninth tenth eleventh twelfth thirteenth".split()
     names = "", "_later", *(f"_{number}" for number in numbers)
     for said, name in zip(trials, names, strict=True):
         text = pathlib.Path(__file__).with_name(f"strangers{name}.csv").read_text()
@@ -111,7 +111,7 @@ def test_trials_on_packages_by_strangers():
         assert not packages & {one for others in tried for one in others}
         tried.append(packages)
         wrong.append(found.count("none"))
-    assert wrong == [0, 0, 3, 2, 0, 0, 0, 2, 4, 0, 0, 0]
+    assert wrong == [0, 0, 3, 2, 0, 0, 0, 2, 4, 0, 0, 0, 0]
 
 
 def checked(folder):
