@@ -91,7 +91,9 @@ def test_trials_on_packages_by_strangers():
     trials = [*csv.reader(recorded.read_text().splitlines())][1:]
     tried = []
     wrong = []
-    numbers = "third fourth fifth sixth seventh eighth ninth tenth eleventh twelfth thirteenth".split()
+    numbers = (
+        "third fourth fifth sixth seventh eighth ninth tenth eleventh twelfth thirteenth".split()
+    )
     names = "", "_later", *(f"_{number}" for number in numbers)
     for said, name in zip(trials, names, strict=True):
         text = pathlib.Path(__file__).with_name(f"strangers{name}.csv").read_text()
