@@ -64,7 +64,7 @@ def _keyboard(source: Source) -> Iterator[tuple[int, str, str, str]]:
     """Yield the same of the first line at which a node waits for the keyboard, or of one that keeps
     Ctrl-C from being a signal."""
     constants = {getattr(node, "value", None) for node in source.nodes(ast.Constant)}
-    starts = [c for c in source.nodes(ast.Call) if source.dotted(c.func) == "rospy.init_node"]
+    starts = _starts(source)
     for call in source.nodes(ast.Call):
         is_early = any(
             source.function(one) is source.function(call) and call.lineno < one.lineno
@@ -91,9 +91,13 @@ def _keyboard(source: Source) -> Iterator[tuple[int, str, str, str]]:
                 return
 
 
+def _starts(source: Source) -> list[ast.Call]:
+    return [c for c in source.nodes(ast.Call) if source.dotted(c.func) == "rospy.init_node"]
+
+
 def _is_rospys(source: Source) -> bool:
     """Return whether rospy handles the signals of a program."""
-    calls = [c for c in source.nodes(ast.Call) if source.dotted(c.func) == "rospy.init_node"]
+    calls = _starts(source)
     return bool(calls) and not any(k.arg == "disable_signals" for c in calls for k in c.keywords)
 
 

@@ -27,7 +27,7 @@ _PARTS = {"Request": 0, "Response": 1, "Goal": 0, "Result": 1, "Feedback": 2}
 
 
 class _Half(NamedTuple):
-    """A request or a response: the names of its fields, and their types."""
+    """A part of a definition, such as a request: the names of its fields, and their types."""
 
     names: list[str]
     types: list[str]
@@ -64,13 +64,17 @@ class FieldsGiven(Typed):
         """Return field -> type, of the class that is made of a definition of the package's own."""
         own = re.fullmatch(rf"{re.escape(self.package.name)}\.(?:msg|srv)\.(\w+)", name)
         for path in self.package.of_kind(*uses.DEFINITIONS) if own else ():
-            made, parts = uses.generated(path), self.package.text(path).split("---")
-            if own and own[1] in made:
-                of_parts = [one for one in _PARTS if own[1].endswith(one)]
-                number = _PARTS[of_parts[0]] if of_parts and len(parts) > 1 else 0
-                fields = _FIELD.findall(parts[number] if number < len(parts) else "")
-                return {field: type_ for type_, field in fields}
+            if own and own[1] in uses.generated(path):
+                endings = [one for one in _PARTS if own[1].endswith(one)]
+                is_whole = not endings or "---" not in self.package.text(path)
+                return dict(zip(*self._part(path, 0 if is_whole else _PARTS[endings[0]])))
         return {}
+
+    def _part(self, path: str, number: int) -> _Half:
+        """Return the fields of a definition's part; none if it has not so many."""
+        parts = self.package.text(path).split("---")
+        fields = _FIELD.findall(parts[number] if number < len(parts) else "")
+        return _Half([name for _, name in fields], [type_ for type_, _ in fields])
 
     def _half(self, class_: ast.expr | None, part: int) -> _Half | None:
         """Return the request (0) or the response (1) of a service's class, if it is the package's
@@ -80,9 +84,7 @@ class FieldsGiven(Typed):
         paths = [p for p in self.package.of_kind("service") if own and last_part(p)[:-4] == own[1]]
         if not own or not paths or own[2] not in (None, ("Request", "Response")[part]):
             return None
-        half = [*self.package.text(paths[0]).split("---"), ""][part]
-        fields = _FIELD.findall(half)
-        return _Half([name for _, name in fields], [type_ for type_, _ in fields])
+        return self._part(paths[0], part)
 
     def _texts(self) -> Iterator[Finding]:
         """Yield a finding for each number of a request that is given a text."""

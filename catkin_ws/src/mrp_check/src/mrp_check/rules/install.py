@@ -45,14 +45,14 @@ def _notes(case: Case) -> Iterator[Finding]:
     folders = {word.rstrip("/") for word in words}
     nodes = [node.file for node in case.spec.nodes.values() if node.file]
     left = [one for one in nodes if one not in scripts and one.partition("/")[0] not in folders]
-    launch = [one for one in package.of_kind("launch") if one.partition("/")[0] not in folders]
+    files = [one for one in package.of_kind("launch") if one not in words and not is_test(one)]
+    launch = [one for one in files if one.partition("/")[0] not in folders]
     line = model.catkin_package.line if model.catkin_package else 1
     if targets:
         names = ", ".join(target.name for target in targets)
         yield _finding(names, f"install(TARGETS {names} ...)", targets[0].line, NOTE)
     if left:
         yield _finding(few(left), f"catkin_install_python(PROGRAMS {left[0]} ...)", line, NOTE)
-    launch = [one for one in launch if one not in words and not is_test(one)]
     if launch:
         yield _finding(few(launch), "install(DIRECTORY launch ...)", line, NOTE)
 

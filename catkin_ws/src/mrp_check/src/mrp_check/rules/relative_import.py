@@ -7,14 +7,12 @@ from __future__ import annotations
 
 import ast
 import os
-import sys
 from typing import Iterator
 
 from mrp_check.case import Case
 from mrp_check.contract.finding import WARNING, Finding
 from mrp_check.contract.requirements import ANY, Rule
-
-_STANDARD: frozenset[str] = getattr(sys, "stdlib_module_names", frozenset())
+from mrp_check.sources import uses
 
 
 def _findings(case: Case) -> Iterator[Finding]:
@@ -32,7 +30,7 @@ def _findings(case: Case) -> Iterator[Finding]:
             names = [one.name for one in node.names] if isinstance(node, ast.Import) else []
             if isinstance(node, ast.ImportFrom) and not node.level and node.module:
                 names = [node.module]
-            for name in (one for one in names if one not in _STANDARD):
+            for name in (one for one in names if one not in uses.STANDARD):
                 beside = {f"{folder}/{name}.py", f"{folder}/{name}/__init__.py"}
                 if beside & {*package.files} and f"src/{name}.py" not in package.files:
                     yield Finding(

@@ -26,7 +26,6 @@ _LIBRARIES = {
 }
 # They come with ROS itself, or with Python.
 _BROUGHT = {*sys.builtin_module_names, "yaml", "rospkg", "catkin_pkg", "genpy", "setuptools", "em"}
-_STANDARD: frozenset[str] = getattr(sys, "stdlib_module_names", frozenset())
 
 
 def _findings(case: Case) -> Iterator[Finding]:
@@ -71,7 +70,7 @@ def _used(case: Case) -> Iterator[tuple[str, int, str]]:
         for module, line in uses.imports(package, file):
             top = module.partition(".")[0]
             is_own = any(f"/{top}/" in path or path.endswith(f"/{top}.py") for path in paths)
-            is_others = top in _STANDARD | _BROUGHT or is_ros(top) or uses.is_called_so(top)
+            is_others = top in uses.STANDARD | _BROUGHT or is_ros(top) or uses.is_called_so(top)
             is_package = module.endswith((".msg", ".srv"))
             # Of its own definitions, the name is an old one: another rule says so.
             is_old = is_package and any(one in package.line(file, line) for one in made)

@@ -94,7 +94,7 @@ _DEBIAN = {
     "tkinter": "python3-tk",
 }
 # Python's own modules: Debian keeps some of them in packages of their own.
-_OWN = getattr(sys, "stdlib_module_names", frozenset(("tkinter",)))
+STANDARD: frozenset[str] = getattr(sys, "stdlib_module_names", frozenset(("tkinter",)))
 
 
 def _guesses(name: str, language: str) -> list[str]:
@@ -125,7 +125,7 @@ def absent(name: str, language: str) -> str:
 
 def is_of_debian(module: str) -> bool:
     """Return whether Debian has a Python module of that name, on this machine or not."""
-    return module in _OWN or _guesses(module, "python")[0] in debian_packages()
+    return module in STANDARD or _guesses(module, "python")[0] in debian_packages()
 
 
 @functools.lru_cache(maxsize=None)
