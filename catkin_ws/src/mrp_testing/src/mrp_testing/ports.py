@@ -9,11 +9,21 @@ import socket
 _LISTENS = "0A"  # the state in the kernel's table: see proc(5)
 
 
+_kept = []
+
+
 def free_port():
-    """Return a port on which nothing listens, for a master."""
-    with socket.socket() as probe:
-        probe.bind(("localhost", 0))
-        return probe.getsockname()[1]
+    """Return a port on which nothing listens, for a master.
+
+    It stays bound until this process ends. A port that is bound, but not listened to, is given to
+    no other program that asks for any port, as nodes do; who asks for this one may have it, if it
+    sets SO_REUSEADDR, as Python's servers do (see socket(7)).
+    """
+    probe = socket.socket()
+    probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+    probe.bind(("localhost", 0))
+    _kept.append(probe)
+    return probe.getsockname()[1]
 
 
 def listening(port):
