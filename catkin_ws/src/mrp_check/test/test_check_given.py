@@ -13,6 +13,8 @@ from mrp_check.rules import (
     own_calls,
     package_name,
     relative_import,
+    resized,
+    scripts,
     undeclared,
 )
 from mrp_check.sources import asked, uses
@@ -21,7 +23,7 @@ from mrp_check.sources.python_source import Source
 from mrp_check.student import manifest
 from mrp_check.student.package import Package
 from mrp_testing.proves import proves
-from one_source import case, lines_of
+from one_source import SPEC, case, lines_of
 
 pytestmark = pytest.mark.quick
 
@@ -191,3 +193,34 @@ def test_an_action_by_another_name(line, found, tmp_path):
     package = check_rules.make(tmp_path / "some_pkg", src__a_DOT_cpp=text)
     said = [(one.what, one.name, one.line) for one in asked.of(package, ["src/a.cpp"])]
     assert said == ([found] if found else [])
+
+
+@pytest.mark.parametrize(
+    ("between", "found"),
+    [
+        ("", [6]),
+        ("v.clear();", []),
+        ("v[0] = 1;", []),
+        ("}\nvoid g() {", []),
+    ],
+    ids=range(4),
+)
+def test_values_behind_those_that_resize_made(between, found, tmp_path):
+    known = case(tmp_path, "cpp", f"v.resize(2);\n{between}\nv.push_back(1);")
+    assert lines_of(resized, known) == found
+
+
+@pytest.mark.parametrize(
+    ("line", "found"),
+    [
+        ("from some_pkg.msg import Own", [1]),
+        ("import some_pkg", []),
+        ("import some_pkg_of_others", []),
+    ],
+    ids=range(3),
+)
+def test_a_script_hides_the_module_that_it_imports(line, found, tmp_path):
+    text = f"#!/usr/bin/env python3\n{line}\nimport rospy\nrospy.init_node('a')\n"
+    package = check_rules.make(tmp_path / "some_pkg", scripts__some_pkg_DOT_py=text)
+    said = check_rules.file_findings(scripts, package, spec=SPEC)
+    assert [one.line for one in said if "own folder" in one.message] == [2] * len(found)

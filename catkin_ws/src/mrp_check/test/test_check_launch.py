@@ -188,8 +188,9 @@ def test_line_of_an_included_file(tmp_path):
         ("nowhere_pkg", "odd.py", [("launch-nodes", "note"), ("package-name", "warning")]),
         ("nowhere_pkg", "more.py", [("launch-nodes", "note")]),
         ("roscpp", "odd.py", []),
+        ("rospy_tutorials", "odd.py", [("launch-nodes", "note")]),
     ],
-    ids=range(4),
+    ids=range(5),
 )
 def test_a_node_of_this_package_that_another_one_is_asked_for(package, type_, found, tmp_path):
     made = check_rules.make(tmp_path, src__odd_DOT_py="#!/usr/bin/env python\n")

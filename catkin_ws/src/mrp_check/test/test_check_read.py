@@ -106,6 +106,22 @@ def test_a_client_waits_in_vain_if_no_node_serves_its_action(server, expected, t
         assert [one.message for one in found if one.severity == NOTE] == expected
 
 
+@pytest.mark.parametrize(
+    ("type_", "near"),
+    [("some_pkg::WaveAction", "which nobody commands."), ("other::BowAction", "serves it.")],
+)
+def test_an_action_of_the_same_type_is_named(type_, near, tmp_path):
+    client = MAIN.format(
+        'actionlib::SimpleActionClient<some_pkg::WaveAction> client("greet", true);'
+    )
+    server = MAIN.format(f'actionlib::SimpleActionServer<{type_}> server(n, "wave_hand", act);')
+    package = check_rules.make(
+        tmp_path / "some_pkg", a_DOT_cpp=client, b_DOT_cpp=server, action__Wave_DOT_action=""
+    )
+    (found,) = check_rules.of(waiting.RULE, case(package))
+    assert found.message.endswith(near)
+
+
 def test_a_target_that_is_waited_for_and_does_not_exist_is_found_where_cmake_stops(tmp_path):
     package = check_rules.make(tmp_path / "src" / "some_pkg", package_DOT_xml=MANIFEST)
     output = (
@@ -210,9 +226,11 @@ def test_a_launch_file_renames_what_its_node_uses(remap, topic, found, tmp_path)
         nodes={node.path: "a"}, seen=types.SimpleNamespace(seen=seen), file="a.launch"
     )
     known.observed = types.SimpleNamespace(launches=[launched_])
-    known.launch = Launch("", nodes=[node], files=[], params={}, file="a.launch")
+    known.launches = [Launch("", nodes=[node], files=[], params={}, file="a.launch")]
     known.nodes = {"a": types.SimpleNamespace(is_up=True)}
     assert len([*check_rules.of(remapped.RULE, known)]) == found
+    launched_.file = None  # the node was started by itself
+    assert not [*check_rules.of(remapped.RULE, known)]
 
 
 @pytest.mark.parametrize(("name", "found"), [("a", []), ("b", [("messages", 2)])])

@@ -24,15 +24,18 @@ _ASKS = re.compile(r"isPreemptRequested|setPreempted|registerPreemptCallback")
 _FUNCTION = re.compile(r"\bvoid\s+[\w:]+\s*\([^)]*\)")
 _LOOP = re.compile(r"\b(?:for|while)\s*\(")
 _LASTS = re.compile(r"\bpublishFeedback\s*\(|\bsleep\s*\(")
+_OK = re.compile(r"\bok\s*\(")
 _LASTING = {"sleep", "publish_feedback"}
 
 
 def _findings(case: Case) -> Iterator[Finding]:
     for one in in_both.each(case):
-        loop, started = _in_python(one.python) if one.python else _in_cpp(one.code)
+        loop, deaf, started = _in_python(one.python) if one.python else _in_cpp(one.code)
         asked = "is_preempt_requested()" if one.python else "isPreemptRequested()"
         if loop:
-            said = "This loop does not ask whether its goal has been cancelled: it goes on."
+            shutdown = "rospy.is_shutdown()" if one.python else "ros::ok()"
+            more = f" nor {shutdown}: it goes on, after Ctrl-C, too." if deaf else ": it goes on."
+            said = f"This loop does not ask whether its goal has been cancelled{more}"
             fix = f"Ask {asked} in each turn, and end the goal as preempted."
             yield one.finding("callbacks", said, loop, f"{asked} in the loop", fix)
         if started:
@@ -42,21 +45,26 @@ def _findings(case: Case) -> Iterator[Finding]:
             yield one.finding("callbacks", said, started, f"{wanted}, and start()", fix)
 
 
-def _in_cpp(text: str) -> tuple[int, int]:
-    """Return the lines of a loop that should ask, and of a server that starts at once; or 0."""
+def _in_cpp(text: str) -> tuple[int, bool, int]:
+    """Return the line of a loop that should ask, whether it goes on after Ctrl-C, and the line of a
+    server that starts at once; 0 for what is not there."""
     if not _SERVER.search(text):
-        return 0, 0
+        return 0, False, 0
     started, end = _STARTED.search(text), text.find("setSucceeded")
     functions = [*_FUNCTION.finditer(text, 0, max(end, 0))]
     begin = functions[-1].end() if functions else 0
     loop = _LOOP.search(text, begin, max(end, 0))
     asks = _ASKS.search(text) or not loop or not _LASTS.search(text, loop.end(), end)
-    return 0 if asks or not loop else line_of(loop), line_of(started) if started else 0
+    begins = line_of(started) if started else 0
+    if asks or not loop:
+        return 0, False, begins
+    deaf = loop[0].startswith("while") and not _OK.search(text, loop.start(), end)
+    return line_of(loop), deaf, begins
 
 
-def _in_python(source: Source) -> tuple[int, int]:
+def _in_python(source: Source) -> tuple[int, bool, int]:
     """Return the same of a source in Python."""
-    loop = started = 0
+    started, found = 0, None
     for call in source.nodes(ast.Call):
         if source.dotted(call.func) != "actionlib.SimpleActionServer":
             continue
@@ -66,8 +74,9 @@ def _in_python(source: Source) -> tuple[int, int]:
         work = source.definition(argument(call, 2, "execute_cb"))
         if isinstance(work, ast.FunctionDef) and not _asks(source):
             lasting = (one for one in ast.walk(work) if isinstance(one, (ast.For, ast.While)))
-            loop = next((one.lineno for one in lasting if _LASTING & _attributes(one)), 0)
-    return loop, started
+            found = next((one for one in lasting if _LASTING & _attributes(one)), None)
+    deaf = isinstance(found, ast.While) and "is_shutdown" not in _attributes(found)
+    return found.lineno if found else 0, deaf, started
 
 
 def _asks(source: Source) -> bool:

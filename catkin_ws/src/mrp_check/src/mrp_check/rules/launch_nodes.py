@@ -74,8 +74,8 @@ def _elsewhere(case: Case, launch: Launch) -> Iterator[Finding]:
             said = uses.absent(name, "cpp")
             yield Finding("launch-nodes", said, node.file, node.line, NOTE)
     for node in launch.nodes:
-        is_here = node.package == case.package.name or uses.is_ros_package(node.package)
-        if node.type in own and not is_here:
+        is_ros = node.package == case.package.name or uses.is_called_so(node.package)
+        if node.type in own and not is_ros:
             found = _other_package(case.package, case.model, node, None)
             yield dataclasses.replace(found, severity=WARNING)
     for node in launch.nodes:

@@ -18,12 +18,13 @@ _ALIKE = 0.75
 
 
 def _findings(case: Case) -> Iterator[Finding]:
-    started = {(n.path, n.type): n for n in (case.launch.nodes if case.launch else [])}
-    for launched in case.observed.launches:
-        for path, name in launched.nodes.items():
-            node = started.get((path, name))
-            if node and case.nodes[name].is_up:
-                yield from _of(case, launched, name, node)
+    for launch in case.launches:
+        started = {(node.path, node.type): node for node in launch.nodes}
+        for launched in (one for one in case.observed.launches if one.file == launch.file):
+            for path, name in launched.nodes.items():
+                node = started.get((path, name))
+                if node and case.nodes[name].is_up:
+                    yield from _of(case, launched, name, node)
 
 
 def _of(case: Case, launched: Launched, name: str, node: Started) -> Iterator[Finding]:

@@ -16,7 +16,7 @@ from mrp_check.case import Case
 from mrp_check.contract.finding import ERROR, NOTE, WARNING, Finding
 from mrp_check.contract.requirements import Requirement, Rule
 from mrp_check.contract.words import last_part, nearest, perhaps
-from mrp_check.sources import executables, python_modules
+from mrp_check.sources import executables, python_modules, uses
 from mrp_check.sources.uses import is_test
 from mrp_check.student.cmake import Model, Script
 from mrp_check.student.package import Package
@@ -58,23 +58,32 @@ def _findings(case: Case) -> Iterator[Finding]:
             for finding in _of(package, model, path, shebang, path in relayed):
                 is_less = runs and finding.severity == ERROR
                 yield dataclasses.replace(finding, severity=WARNING) if is_less else finding
-            yield from _shadowing(path)
+            yield from _shadowing(package, path)
         elif not case.spec.is_contract and executables.is_tool(package, path):
             for finding in _of(package, model, path, shebang, path in relayed):
                 yield dataclasses.replace(finding, severity=WARNING)
 
 
-def _shadowing(path: str) -> Iterator[Finding]:
-    """Yield a finding if a script is found where a module that rospy imports is looked for."""
-    folder, name = os.path.split(path)
+def _shadowing(package: Package, path: str) -> Iterator[Finding]:
+    """Yield a finding if a script is found where a module that rospy, or it, imports is looked
+    for."""
+    name = last_part(path)
     stem, ending = os.path.splitext(name)
-    if ending == ".py" and stem in python_modules.of_rospy():
+    is_package = any(f"/{file}".endswith(f"/{stem}/__init__.py") for file in package.files)
+    own = (
+        line
+        for module, line in uses.imports(package, path)
+        if module.startswith(f"{stem}.") or module == stem and is_package
+    )
+    is_rospys = stem in python_modules.of_rospy()
+    line, who = (1, "rospy") if is_rospys else (next(own, 0), "it")
+    if ending == ".py" and line:
         yield Finding(
             "scripts",
-            f"The script is called {name}, and rospy imports a module {stem}: Python looks first in"
+            f"The script is called {name}, and {who} imports a module {stem}: Python looks first in"
             " the script's own folder, and takes the script for the module.",
             path,
-            1,
+            line,
             expected="a name that no module has",
             seen=name,
             fix=f"Rename the script, to {stem}_node.py for example.",

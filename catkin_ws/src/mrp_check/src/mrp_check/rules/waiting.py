@@ -10,7 +10,7 @@ from mrp_check.confined.places import Kind
 from mrp_check.contract.finding import NOTE, WARNING, Finding
 from mrp_check.contract.requirements import ANY, Rule
 from mrp_check.contract.words import last_part, nearest
-from mrp_check.sources import asked
+from mrp_check.sources import asked, uses
 from mrp_check.sources.asked import Said
 
 _ALIKE = 0.8
@@ -54,11 +54,12 @@ def _findings(case: Case) -> Iterator[Finding]:
     params = {last_part(name) for name in (case.launch.params if case.launch else {})}
     services = {one.base for one in every if one.what == "offers"}
     given = params | {one.base for one in every if one.what == "sets"} | _OF_ROSCORE
-    yield from _lacking(said, "asks", services, every, _SERVICE)
+    own = uses.made(case.package)
+    yield from _lacking(said, "asks", services, every, _SERVICE, own)
     served = {one.base for one in every if one.what == "serves"}
     if served or not case.package.first_match(sources, r"\bSimpleActionServer\b"):
-        yield from _lacking(said, "commands", served, every, _ACTION)
-    yield from _lacking(said, "reads", given, every, _PARAMETER)
+        yield from _lacking(said, "commands", served, every, _ACTION, own)
+    yield from _lacking(said, "reads", given, every, _PARAMETER, own)
 
 
 def _unwaited(
@@ -102,8 +103,12 @@ def _lacking(
     given: set[str],
     every: list[Said],
     words: _Words,
+    own: set[str],
 ) -> Iterator[Finding]:
-    """Yield a Finding for each name that is asked for, and that nothing of the package gives."""
+    """Yield a Finding for each name that is asked for, and that nothing of the package gives.
+
+    own: the types of the package's own
+    """
     taken = {one.base for one in every if one.what in (what, "knows")}
     for node, found in said.items():
         told: set[str] = set()
@@ -111,7 +116,10 @@ def _lacking(
             if one.what == what and one.base not in given | told:
                 told.add(one.base)
                 # What somebody asks for is not misspelt.
-                yield _finding(node, one, nearest(one.base, given - taken, _ALIKE), words)
+                near = nearest(one.base, given - taken, _ALIKE)
+                same = {other.base for other in every if other.type == one.type in own}
+                same &= given - taken
+                yield _finding(node, one, near or (min(same) if len(same) == 1 else None), words)
 
 
 def _finding(node: str, one: Said, near: str | None, words: _Words) -> Finding:

@@ -35,8 +35,10 @@ _CPP = {
 # Another name for the class of an action.
 _TYPEDEF = re.compile(
     r"\b(?:typedef|using\s+(?P<before>\w+)\s*=)\s+(?:actionlib::)?(?P<class>SimpleAction(?:Client|Server))"
-    r"\s*<[^;()]*>\s*(?P<after>\w*)\s*;"
+    r"\s*<(?P<of>[^;()]*)>\s*(?P<after>\w*)\s*;"
 )
+_TYPE = re.compile(r"<\s*([\w:]+)\s*>")
+_AFTER = re.compile(r"\s*,\s*&?(?:\w+::)*([\w.]+)")
 
 
 class Said(typing.NamedTuple):
@@ -50,6 +52,7 @@ class Said(typing.NamedTuple):
     name: str
     file: str
     line: int
+    type: str = ""  # its last part, of a service or an action, if that is plain
 
     @property
     def base(self) -> str:
@@ -74,8 +77,17 @@ def of(package: Package, files: Iterable[str]) -> Iterator[Said]:
     for file in files:
         text = _TYPEDEF.sub(uses.blank, code := uses.code(package, file))
         for match in _TYPEDEF.finditer(code):  # such as: Client client("name")
-            name = match["before"] or match["after"]
-            text = re.sub(rf"\b{name}\b(?=\s+\w+\s*\()", f"{match['class']}<A>", text)
+            name, of = match["before"] or match["after"], match["of"]
+            text = re.sub(rf"\b{name}\b(?=\s+\w+\s*\()", f"{match['class']}<{of}>", text)
         for what, shape in (_PYTHON if package.kind(file) == "python" else _CPP).items():
             for match in re.finditer(shape, text):
-                yield Said(what, match.group(1), file, line_of(match, 1))
+                yield Said(what, match[1], file, line_of(match, 1), _type(text, match))
+
+
+def _type(text: str, match: re.Match[str]) -> str:
+    """Return the last part of the type that a call names, or whose request its callback takes."""
+    written = _TYPE.search(match[0]) or _AFTER.match(text, match.end())
+    if written and "advertiseService" in match[0]:
+        callback = rf"\b{written[1]}\s*\(\s*(?:const\s+)?([\w:]+)::Request\b"
+        written = re.search(callback, text)
+    return re.split(r"\.|::", written[1])[-1] if written else ""
