@@ -24,7 +24,7 @@ _ASKS = re.compile(r"isPreemptRequested|setPreempted|registerPreemptCallback")
 _FUNCTION = re.compile(r"\bvoid\s+[\w:]+\s*\([^)]*\)")
 _LOOP = re.compile(r"\b(?:for|while)\s*\(")
 _LASTS = re.compile(r"\bpublishFeedback\s*\(|\bsleep\s*\(")
-_OK = re.compile(r"\bok\s*\(")
+_OK = re.compile(r"\b(?:ok|isShuttingDown)\s*\(")
 _LASTING = {"sleep", "publish_feedback"}
 
 
