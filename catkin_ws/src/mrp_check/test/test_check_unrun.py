@@ -16,8 +16,8 @@ from mrp_check.rules import (
     long_loop,
     meeting,
     same_name,
-    types_written,
     unbuilt,
+    written,
 )
 from mrp_check.running.observing import Launched
 from mrp_check.sources.facts import Facts
@@ -155,12 +155,14 @@ HEARS = 'int main() { n.subscribe("talk", 1, heard); }\n'
         (PUBLISHES, "std_msgs::String", HEARS.replace("talk", "say"), False, []),
         (PUBLISHES, "", HEARS.replace("scribe(", "scribe<std_msgs::Char>("), False, [2]),
         (PUBLISHES, "", HEARS, False, []),
+        (PUBLISHES, "some_pkg::Own", HEARS.replace("talk", "say"), False, [2]),
+        (PUBLISHES, "some_pkg::Own", HEARS.replace("talk", "say"), True, []),
+        (PUBLISHES, "some_pkg::Own", HEARS.replace("talk", "own/talk"), False, [2]),
+        (PUBLISHES, "robot_msgs::Own", HEARS.replace("talk", "own/talk"), False, []),
     ],
-    ids=range(10),
+    ids=range(14),
 )
-def test_two_types_of_one_topic_in_what_did_not_run(
-    publishes, takes, hears, is_up, found, tmp_path
-):
+def test_the_ends_of_a_topic_in_what_did_not_run(publishes, takes, hears, is_up, found, tmp_path):
     files = {"src__a_DOT_cpp": publishes, "src__b_DOT_cpp": TAKES.format(takes) + hears}
     python = "import rospy\nfrom some_pkg.msg import Own\nrospy.Publisher('talk', Own)\n"
     package = check_rules.make(tmp_path / "some_pkg", **files, src__c_DOT_py=python)
@@ -168,7 +170,7 @@ def test_two_types_of_one_topic_in_what_did_not_run(
     known.facts.sources["c"] = ["src/c.py"]
     known.facts.python = {"src/c.py": Source("src/c.py", python)}
     known.nodes = {file: types.SimpleNamespace(is_up=is_up) for file in known.facts.sources}
-    findings = [*check_rules.of(types_written.RULE, known)]
+    findings = [*check_rules.of(written.RULE, known)]
     assert [(one.file, one.line) for one in findings] == [("src/b.cpp", line) for line in found]
 
 
@@ -232,9 +234,41 @@ def test_names_that_a_launch_file_may_give(files, found):
     runs.append(launched("", "/hear/raw", "hear", "say"))
     observed = types.SimpleNamespace(launches=runs, direct=None)
     places = types.SimpleNamespace(of_topic=lambda *_: ("src/a.cpp", 1))
-    known = types.SimpleNamespace(observed=observed, places=places, nodes={})
+    known = types.SimpleNamespace(observed=observed, places=places, nodes={}, package=PACKAGE)
     said = check_rules.of(meeting.RULE, known)
     assert [one.severity for one in said if one.severity == ERROR] == found
+
+
+PACKAGE = types.SimpleNamespace(name="some_pkg", text={"src/b.cpp": "talk /say"}.get)
+
+
+@pytest.mark.parametrize(
+    ("topic", "names", "down", "found"),
+    [
+        ("/other", ["hear", "say"], [], [WARNING]),  # they alone have this type
+        ("/other", ["hear"], [], [NOTE]),  # the other is of another package
+        ("/other", ["hear"], ["src/b.cpp"], [NOTE]),
+        ("/talk", ["hear"], ["src/b.cpp"], []),  # that one may publish there
+        ("/talk", ["hear", "say"], ["src/b.cpp"], []),
+        ("/other", ["hear", "say"], ["src/b.cpp"], []),  # it may subscribe to what is unheard
+        ("/says", ["hear", "say"], [], [ERROR]),
+        ("/says", ["hear"], ["one node does both"], [NOTE]),
+    ],
+    ids=range(8),
+)
+def test_a_topic_of_another_name(topic, names, down, found):
+    seen = launched("", topic, *names)
+    if down == ["one node does both"]:
+        seen.nodes["/say"], down = "hear", []
+    seen.seen.seen.publications[:] = [Registration("/say", "/say", "std_msgs/String", 1)]
+    known = types.SimpleNamespace(
+        observed=types.SimpleNamespace(launches=[seen], direct=None),
+        places=types.SimpleNamespace(of_topic=lambda *_: ("src/a.cpp", 1)),
+        nodes={"b": types.SimpleNamespace(is_up=not down)},
+        facts=Facts(sources={"b": down}),
+        package=PACKAGE,
+    )
+    assert [one.severity for one in check_rules.of(meeting.RULE, known)] == found
 
 
 @pytest.mark.parametrize(
@@ -255,7 +289,7 @@ def test_a_topic_of_several_types(file, others, found):
     runs = [types.SimpleNamespace(file=file, nodes=nodes, seen=seen)]
     places = types.SimpleNamespace(of_topic=lambda *_: ("src/a.cpp", 1))
     observed = types.SimpleNamespace(launches=runs, direct=None)
-    known = types.SimpleNamespace(observed=observed, places=places, nodes={})
+    known = types.SimpleNamespace(observed=observed, places=places, nodes={}, package=PACKAGE)
     assert [
         one.severity for one in check_rules.of(meeting.RULE, known) if one.id == "type"
     ] == found

@@ -20,11 +20,14 @@ _TOGETHER = "When all nodes run together"
 
 
 class End(typing.NamedTuple):
-    """A node of the package, or None for another's, that publishes or subscribes."""
+    """A node of the package, or None for another's, that publishes or subscribes; and where its
+    source says so, if it was read there."""
 
     node: str | None
     topic: str
     type: str
+    file: str = ""
+    line: int = 0
 
 
 class Graph(typing.NamedTuple):
@@ -109,14 +112,15 @@ def _of_types(case: Case, graph: Graph, end: End, publishers: list[End]) -> Iter
 def _alone(case: Case, graph: Graph, end: End, published: set[str]) -> Iterator[Finding]:
     """Yield the Finding about a topic that nobody publishes on."""
     heard = {one.topic for one in graph.subscribers}
-    near = [one for one in graph.publishers if one.node and _is_meant(one, end)]
+    near = meant(case, end, graph.publishers, graph.subscribers)
     is_actions = last_part(end.topic) in ("feedback", "result", "status")
     if is_actions and any(not one.is_up for one in case.nodes.values()):
         return  # the action is served by one that did not run
     near.sort(key=lambda one: one.topic in heard)
     file, line = case.places.of_topic(end.node or "", Kind.SUBSCRIBER, end.topic)
-    if not near and any(not one.is_up for one in case.nodes.values()):
-        return  # one that did not run may publish there
+    if not any(is_like(one, end) for one in near):
+        if any(_did_not_run_and_names(case, one.topic) for one in (end, *near)):
+            return  # one that did not run may publish there
     if not near:
         nobody = "nobody" if last_part(end.topic) in published else "no node of this package"
         yield Finding(
@@ -129,7 +133,7 @@ def _alone(case: Case, graph: Graph, end: End, published: set[str]) -> Iterator[
         )
         return
     other = near[0]
-    is_sure = other.topic not in heard or not _is_moved(other, end)
+    is_sure = is_like(other, end) and (other.topic not in heard or not _is_moved(other, end))
     digits = [re.sub(r"\d", "", one.topic) for one in (other, end)]
     yield Finding(
         "topic",
@@ -145,7 +149,34 @@ def _alone(case: Case, graph: Graph, end: End, published: set[str]) -> Iterator[
     )
 
 
-def _is_meant(one: End, other: End) -> bool:
+def _did_not_run_and_names(case: Case, topic: str) -> bool:
+    """Return whether the sources of a node that is not up have the last part of a topic's name."""
+    files = {
+        f for n, one in case.nodes.items() if not one.is_up for f in case.facts.sources.get(n, ())
+    }
+    return any(last_part(topic) in case.package.text(file) for file in files)
+
+
+def meant(case: Case, end: End, publishers: list[End], subscribers: list[End]) -> list[End]:
+    """Return the publishers that a subscriber waits for in vain, as it has another name for their
+    topic: it is alike, or their type is the package's own or plain, and they alone are without a
+    partner."""
+    others = [one for one in publishers if one.node and one.node != end.node]
+    near = [one for one in others if is_like(one, end)]
+    heard, published = ({o.topic for o in side} for side in (subscribers, publishers))
+    alone = [one for one in publishers if one.type == end.type and one.topic not in heard]
+    waiting = {o.topic for o in subscribers if o.type == end.type and o.topic not in published}
+    is_one = len({one.topic for one in alone}) == len(waiting) == 1
+    return near or [one for one in alone if is_plain(case, end) and is_one and one in others]
+
+
+def is_plain(case: Case, end: End) -> bool:
+    """Return whether a topic's type is one that this package's nodes say something to each other
+    with, rather than to a robot's."""
+    return end.type.partition("/")[0] in (case.package.name, "std_msgs")
+
+
+def is_like(one: End, other: End) -> bool:
     """Return whether two names are so alike that one of them is misspelt, or in another group."""
     if one.type != other.type:
         return False
