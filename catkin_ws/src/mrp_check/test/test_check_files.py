@@ -94,7 +94,7 @@ def test_what_is_declared_is_no_finding(tmp_path):
 def test_missing_dependency_in_the_manifest(tmp_path):
     text_ = MANIFEST.replace("  <depend>rospy</depend>\n", "")
     (finding,) = dependency_findings(tmp_path, text_)
-    assert (finding.file, finding.line, finding.severity) == ("package.xml", 10, "error")
+    assert (finding.file, finding.line, finding.severity) == ("package.xml", 9, "error")
     assert "rospy" in finding.message
 
 

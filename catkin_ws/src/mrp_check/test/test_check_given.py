@@ -7,11 +7,17 @@ import check_rules
 import pytest
 from mrp_check.contract.finding import NOTE
 from mrp_check.rules import (
+    angles,
+    arguments,
     cmake,
+    compile,
+    definitions,
     fields_given,
     install,
+    messages,
     own_calls,
     package_name,
+    python_setup,
     relative_import,
     resized,
     scripts,
@@ -224,3 +230,98 @@ def test_a_script_hides_the_module_that_it_imports(line, found, tmp_path):
     package = check_rules.make(tmp_path / "some_pkg", scripts__some_pkg_DOT_py=text)
     said = check_rules.file_findings(scripts, package, spec=SPEC)
     assert [one.line for one in said if "own folder" in one.message] == [2] * len(found)
+
+
+@pytest.mark.parametrize(
+    ("lines", "found"),
+    [
+        ("a = atan2(y, x)\nturn = 2 * (a - self.pose.theta)", [5]),
+        ("turn = math.atan2(y, x) - yaw", [4]),
+        ("def steer(p):\n    return atan2(y, x)\nturn = steer(p) - theta", [6]),
+        ("turn = math.atan2(y, x) - yaw\nwhile turn > math.pi:\n    turn -= 2 * math.pi", []),
+        ("turn = normalize(atan2(y, x) - yaw)", []),
+        ("turn = atan2(y, x) - offset", []),
+    ],
+    ids=range(6),
+)
+def test_the_difference_of_two_angles(lines, found, tmp_path):
+    assert lines_of(angles, case(tmp_path, "py", lines)) == found
+
+
+@pytest.mark.parametrize(("read", "found"), [("atoll(argv[1])", [4]), ("std::stoll(argv[1])", [])])
+def test_an_argument_that_is_no_number(read, found, tmp_path):
+    assert lines_of(arguments, case(tmp_path, "cpp", f"if (argc > 1) a = {read};"), NOTE) == found
+
+
+@pytest.mark.parametrize(
+    ("line", "found"),
+    [
+        ("add_compile_options(-std=c++11)", [6]),
+        ("set(CMAKE_CXX_STANDARD 14)", [6]),
+        ("set(CMAKE_CXX_STANDARD 17)", []),
+        ("# add_compile_options(-std=c++11)", []),
+    ],
+)
+def test_a_standard_of_cpp_that_newer_headers_do_not_take(line, found, tmp_path):
+    known = case(tmp_path, "cpp", INIT, CMakeLists_DOT_txt=f"{MADE_BY_CMAKE}{line}\n")
+    known.package_folder = known.package.root
+    known.built = types.SimpleNamespace(ok=True, output="")
+    assert lines_of(compile, known) == found
+
+
+@pytest.mark.parametrize(
+    ("file", "text", "found"),
+    [
+        ("msg__RobotState", "int32 battery_level  # in %\nint32 MAX=3", []),
+        ("msg__robot_state", "int32 level", [("msg/robot_state.msg", 1)]),
+        ("msg__State", "\nint32[] Level  # in %", [("msg/State.msg", 2)]),
+    ],
+    ids=range(3),
+)
+def test_the_names_of_types_and_fields(file, text, found, tmp_path):
+    known = case(tmp_path, "cpp", INIT, **{f"{file}_DOT_msg": text})
+    said = [one for one in check_rules.of(definitions.RULE, known) if one.severity == NOTE]
+    assert [(one.file, one.line) for one in said] == found
+
+
+@pytest.mark.parametrize(
+    ("line", "found"), [("from distutils.core import setup", [2]), ("import setuptools", [])]
+)
+def test_setup_takes_what_goes_on_to_be_there(line, found, tmp_path):
+    text = f"{MADE_BY_CMAKE}catkin_python_setup()\n"
+    known = case(tmp_path, "cpp", INIT, CMakeLists_DOT_txt=text, setup_DOT_py=f"\n{line}\n")
+    assert lines_of(python_setup, known, NOTE) == found
+
+
+GENERATES = """project(some_pkg)
+find_package(catkin REQUIRED COMPONENTS message_generation)
+add_message_files(FILES A.msg)
+generate_messages()
+catkin_package(
+  CATKIN_DEPENDS {}
+)
+"""
+
+
+@pytest.mark.parametrize(
+    ("tag", "passed_on", "found"),
+    [
+        ("build_depend", "message_runtime", []),
+        ("exec_depend", "message_runtime", [("package.xml", 11)]),
+        ("build_depend", "message_generation", [("CMakeLists.txt", 6)]),
+    ],
+    ids=range(3),
+)
+def test_what_makes_messages_is_needed_to_build_alone(tag, passed_on, found, tmp_path):
+    named = f"<{tag}>message_generation</{tag}>\n  <exec_depend>message_runtime</exec_depend>"
+    made = check_rules.MANIFEST.replace("<depend>std_msgs</depend>", named)
+    known = case(
+        *(tmp_path, "cpp", INIT),
+        package_DOT_xml=made,
+        CMakeLists_DOT_txt=GENERATES.format(passed_on),
+        msg__A_DOT_msg="int32 a",
+    )
+    known.manifest = manifest.parse(known.package)
+    known.spec = types.SimpleNamespace(**vars(known.spec), messages={}, services={})
+    said = [one for one in check_rules.of(messages.RULE, known) if one.severity == NOTE]
+    assert [(one.file, one.line) for one in said] == found

@@ -41,6 +41,24 @@ def test_what_ends_a_goal(ending, lines, found, tmp_path):
     assert lines_of(goal_ends, known) == found
 
 
+@pytest.mark.parametrize(
+    ("result", "end", "found"),
+    [
+        ("int32 sum", "server.setSucceeded()", [4]),
+        ("int32 sum", "server.setSucceeded(result)", []),
+        ("", "server.setSucceeded()", []),
+        ("# int32 sum", "server.setSucceeded()", []),
+    ],
+    ids=range(4),
+)
+def test_a_goal_that_succeeds_has_a_result(result, end, found, tmp_path):
+    action = f"int32 a\n---\n{result}\n---\nint32 done\n"
+    known = case(tmp_path, "cpp", f"{end}; {SERVES}", action__Do_DOT_action=action)
+    assert [
+        one.line for one in check_rules.of(goal_ends.RULE, known) if one.id == "values"
+    ] == found
+
+
 SERVER = "a = actionlib.SimpleActionServer('a', A, work, False)"
 WORK = f"def work(goal):\n    {{}}\n        rospy.sleep(1)\n{SERVER}"
 

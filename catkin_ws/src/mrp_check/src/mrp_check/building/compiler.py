@@ -178,6 +178,26 @@ def finding(package: Package, problem: Problem) -> Finding:
     )
 
 
+_OLD = r"^[^#]*(?:-std=(?:c|gnu)\+\+(?:0x|11|14)\b|CMAKE_CXX_STANDARD\s+(?:11|14)\b)"
+
+
+def older_standard(package: Package) -> Iterator[Finding]:
+    """Yield a warning about a standard of C++ with which the package compiled here, and where ROS
+    has a newer log4cxx, it does not."""
+    place = package.first_match(["CMakeLists.txt"], _OLD)
+    if place and package.of_kind("cpp"):
+        yield Finding(
+            "compile",
+            "CMakeLists.txt sets a standard of C++ that is older than C++17: it works here, and"
+            " ROS's headers do not compile with it where log4cxx is newer.",
+            *place,
+            WARNING,
+            expected="no such line, as the compiler takes C++17 by itself",
+            seen=package.line(*place),
+            fix="Take the line out, or set the standard to 17.",
+        )
+
+
 def _old_standard(package: Package, needed: str, problem: Problem) -> Finding:
     """Return the Finding about a standard of C++ that is too old, as CMakeLists.txt sets it."""
     file = "CMakeLists.txt"

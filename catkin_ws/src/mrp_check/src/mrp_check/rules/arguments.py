@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A program looks whether an argument was given before it reads it."""
+"""A program looks whether an argument was given, and is a number, before it takes it for one."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import re
 from typing import Iterator
 
 from mrp_check.case import Case
-from mrp_check.contract.finding import WARNING, Finding
+from mrp_check.contract.finding import NOTE, WARNING, Finding
 from mrp_check.contract.requirements import ANY, Rule
 from mrp_check.contract.words import line_of
 from mrp_check.sources import uses
@@ -20,6 +20,7 @@ _TAKEN = re.compile(r"\bint\s+argc\b|\bros::init\s*\(\s*argc\b")
 _COUNTED = re.compile(
     r"\bargc\b|\bif\s*\(\s*!?\s*argv\b|\bargv\s*\[\s*\d\s*\]\s*[!=]=\s*(?:NULL|nullptr|0)\b"
 )
+_NUMBER = re.compile(r"\bato(?:i|l|ll|f)\s*\(\s*argv\b")
 # Only one count goes on past this.
 _ONLY = re.compile(
     r"\bif\s*\(\s*argc\s*!=\s*(\d+)\s*\)\s*(?:\{[^{}]*?)?\b(?:return|exit)\b[^;{}]*;"
@@ -35,6 +36,7 @@ def _findings(case: Case) -> Iterator[Finding]:
             elif case.package.kind(file) == "cpp":
                 code = _TAKEN.sub(uses.blank, uses.code(case.package, file))
                 yield from _of(node, file, code)
+                yield from _of_number(case, node, file, code)
 
 
 def _of_python(case: Case, node: str, source: Source) -> Iterator[Finding]:
@@ -66,6 +68,27 @@ def _of_python(case: Case, node: str, source: Source) -> Iterator[Finding]:
             expected="len(rospy.myargv()), before an argument is read",
             seen=case.package.line(source.file, read.lineno),
             fix="Count the arguments first, and say how the program is used if some are missing.",
+            node=node,
+        )
+
+
+def _of_number(case: Case, node: str, file: str, code: str) -> Iterator[Finding]:
+    """Yield a note about the first argument that becomes 0 if it is no number.
+
+    https://en.cppreference.com/w/cpp/string/byte/atoi
+    """
+    read = _NUMBER.search(code)
+    if read:
+        name = read[0].partition("(")[0].strip()
+        yield Finding(
+            "starts",
+            f"{name}() makes 0 of an argument that is no number: {node} goes on with a wrong one.",
+            file,
+            line_of(read),
+            NOTE,
+            expected="std::stoll(), or std::stod(), which throws std::invalid_argument",
+            seen=case.package.line(file, line_of(read)),
+            fix=f"Write std::stoll() or std::stod() for {name}(), and say what was wrong.",
             node=node,
         )
 

@@ -8,6 +8,7 @@ here, too.
 from __future__ import annotations
 
 import pathlib
+import re
 from typing import Iterator
 
 import genmsg
@@ -16,9 +17,9 @@ from genmsg.msgs import BUILTIN_TYPES, bare_msg_type
 
 from mrp_check.case import Case
 from mrp_check.contract import resources
-from mrp_check.contract.finding import Finding
+from mrp_check.contract.finding import NOTE, Finding
 from mrp_check.contract.requirements import ANY, Rule
-from mrp_check.contract.words import nearest, perhaps
+from mrp_check.contract.words import last_part, nearest, perhaps
 from mrp_check.sources import uses
 from mrp_check.student.package import Package
 
@@ -26,14 +27,46 @@ UNREADABLE = "which ROS cannot read"
 _BETWEEN = "---"  # a request and its response
 # Types of C++ and Python.
 _OF_LANGUAGES = {"int": "int32", "float": "float32", "double": "float64", "str": "string"}
+# https://wiki.ros.org/ROS/Patterns/Conventions
+_USUAL_TYPE = re.compile(r"[A-Z][A-Za-z0-9]*")
+_UNUSUAL_FIELD = re.compile(r"^\s*[\w/]+(?:\[\d*\])?\s+(\w*[A-Z]\w*)\s*(?:#|$)")
 
 
 def _findings(case: Case) -> Iterator[Finding]:
+    yield from _unusual(case.package)
     package, context = case.package, genmsg.MsgContext.create_default()
     for path in sorted({*package.of_kind(*uses.DEFINITIONS)} & {*case.model.message_files}):
         for line, text in enumerate(package.lines(path), 1):
             if not text.startswith(_BETWEEN):
                 yield from _of_line(package, context, path, line, text)
+
+
+def _unusual(package: Package) -> Iterator[Finding]:
+    """Yield a note if types, or fields, have other names than ROS's own have."""
+    types: dict[str, tuple[str, int]] = {}
+    fields: dict[str, tuple[str, int]] = {}
+    for path in sorted(package.of_kind(*uses.DEFINITIONS)):
+        name = last_part(path).partition(".")[0]
+        if not _USUAL_TYPE.fullmatch(name):
+            types.setdefault(name, (path, 1))
+        for line, text in enumerate(package.lines(path), 1):
+            field = _UNUSUAL_FIELD.match(text)
+            if field:
+                fields.setdefault(field[1], (path, line))
+    for what, usual, found in (
+        ("types", "CamelCase, as RobotState", types),
+        ("fields", "small letters and _, as battery_level", fields),
+    ):
+        if found:
+            yield Finding(
+                "messages",
+                f"ROS writes the names of {what} in {usual}; here: {', '.join(found)}.",
+                *next(iter(found.values())),
+                NOTE,
+                expected=f"names in {usual}",
+                seen=", ".join(found),
+                fix="Rename them, where they are not in use yet.",
+            )
 
 
 def _of_line(

@@ -15,7 +15,7 @@ from mrp_check.contract.words import nearest
 from mrp_check.sources import uses
 from mrp_check.sources.uses import Use
 from mrp_check.student.cmake import Call, Model
-from mrp_check.student.manifest import FILE, declared, last_dependency
+from mrp_check.student.manifest import FILE, declared, first_dependency
 from mrp_check.student.package import Package
 
 
@@ -45,7 +45,7 @@ def _findings(case: Case) -> Iterator[Finding]:
     if manifest is not None:
         yield from _several(package, manifest)
         yield from _no_packages(package, manifest, used)
-        yield from _passed_on(used, manifest, model)
+        yield from _passed_on(package, used, manifest, model)
         if model.catkin and not case.spec.is_contract:
             yield from _asked_for(package, manifest, model, used)
             yield from _not_found(model)
@@ -141,7 +141,7 @@ def _not_in_manifest(
     package: Package, name: str, use: Use, manifest: Manifest, used: Collection[str]
 ) -> Finding:
     near = _misspelt(name, _all(manifest, tests=True), used)
-    line = (near and package.find_line(FILE, f">{near}<")) or last_dependency(package)
+    line = (near and package.find_line(FILE, f">{near}<")) or first_dependency(package)
     text = package.lines(FILE)[line - 1]  # with its indent
     tags = f"<depend>{name}</depend>"
     if manifest is not None and manifest.package_format < 2:  # which knows no <depend>
@@ -228,7 +228,9 @@ def _not_found(model: Model) -> Iterator[Finding]:
             )
 
 
-def _passed_on(used: Mapping[str, Use], manifest: Manifest, model: Model) -> Iterator[Finding]:
+def _passed_on(
+    package: Package, used: Mapping[str, Use], manifest: Manifest, model: Model
+) -> Iterator[Finding]:
     """Yield a finding about CATKIN_DEPENDS."""
     call = model.catkin_package
     if call is None:
@@ -244,7 +246,7 @@ def _passed_on(used: Mapping[str, Use], manifest: Manifest, model: Model) -> Ite
             "catkin_package() does not pass on what the package's code depends on: CATKIN_DEPENDS"
             f" has no {', no '.join(missing)}. Within this package it works all the same.",
             call.file,
-            call.line,
+            call.line_of(package.lines(call.file), "CATKIN_DEPENDS"),
             NOTE,
             expected=f"catkin_package(CATKIN_DEPENDS {' '.join([*model.depends, *missing])})",
             seen=f"catkin_package({' '.join(call.arguments)})",

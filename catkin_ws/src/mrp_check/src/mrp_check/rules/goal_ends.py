@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What ends the goals of an action server is called, and is the server's own.
+"""What ends the goals of an action server is called, is the server's own, and gives a result.
 
 A goal that nothing ends stays active: its client waits for ever.
 https://wiki.ros.org/actionlib/DetailedDescription
@@ -25,6 +25,8 @@ _PYTHON_ENDS = ("set_succeeded", "set_aborted", "set_preempted")
 _CPP_ENDS = re.compile(r"(?:\.|->)\s*set(?:Succeeded|Aborted)\s*\(")
 # A function that is defined: its name is group 1.
 _FUNCTION = re.compile(r"\bvoid\s+(?:\w+::)*(\w+)\s*\([^;{}]*\)\s*(?=\{)")
+_SUCCEEDS = re.compile(r"\b(?:setSucceeded|set_succeeded)\s*\(\s*\)")
+_FIELD = re.compile(r"^\s*[\w/]+(?:\[\d*\])?\s+(\w+)\s*(?:#|$)", re.MULTILINE)
 _SERVER = "SimpleActionServer"
 
 
@@ -35,6 +37,7 @@ def _findings(case: Case) -> Iterator[Finding]:
             continue
         if one.python:
             yield from _of_others(one, one.python)
+        yield from _without_result(one, text)
         ends = _in_python(one.python) if one.python else _in_cpp(one.code)
         if ends and all(name and not _is_used(case.package, name) for _, name in ends):
             line, name = ends[0]
@@ -48,6 +51,21 @@ def _findings(case: Case) -> Iterator[Finding]:
                 expected=f"a call of {name}()",
                 fix=f"Call {name}() when the goal is reached.",
             )
+
+
+def _without_result(one: OfNode, text: str) -> Iterator[Finding]:
+    """Yield a finding if a goal succeeds, and nobody says with which result."""
+    results = [one.package.text(file).split("---")[1:2] for file in one.package.of_kind("action")]
+    fields = [_FIELD.findall(result[0]) if result else [] for result in results]
+    end = _SUCCEEDS.search(one.code or uses.code(one.package, one.file))
+    if end and fields and all(fields):
+        yield one.finding(
+            "values",
+            "The goal succeeds without a result: its client gets one of nothing but zeros.",
+            line_of(end),
+            expected=f"a result with {', '.join(fields[0])}",
+            fix="Fill a result, and hand it over here.",
+        )
 
 
 def _in_python(source: Source) -> list[tuple[int, str]]:
@@ -106,4 +124,4 @@ def _of_others(one: OfNode, source: Source) -> Iterator[Finding]:
             )
 
 
-RULE = Rule("static", 113, ("facts",), _findings, also=("callbacks",), only=ANY)
+RULE = Rule("static", 113, ("facts",), _findings, also=("callbacks", "values"), only=ANY)

@@ -9,16 +9,19 @@ from catkin_pkg.package import Package as Manifest
 
 from mrp_check import evidence
 from mrp_check.case import Case
-from mrp_check.contract.finding import ERROR, WARNING, Finding
+from mrp_check.contract.finding import ERROR, NOTE, WARNING, Finding, Line
 from mrp_check.contract.requirements import Requirement, Rule
 from mrp_check.contract.spec import PACKAGE
 from mrp_check.contract.words import last_part, nearest
 from mrp_check.sources import uses
 from mrp_check.student.cmake import Model, Target
-from mrp_check.student.manifest import declared, last_dependency
+from mrp_check.student.manifest import declared, first_dependency
 from mrp_check.student.package import Package
 
 FILE = "CMakeLists.txt"
+_GENERATION = "message_generation"
+# What of package.xml asks for it where nothing is built, too.
+_AFTER_BUILD = rf"^\s*<(?:exec_|run_)?depend>\s*{_GENERATION}\s*<"
 # The commands that only message_generation brings.
 _BROUGHT = r"^\s*(add_(message|service|action)_files|generate_messages)\s*\("
 
@@ -39,7 +42,35 @@ def _findings(case: Case) -> Iterator[Finding]:
         yield from _in_cmake(case, files)
     if manifest and (files or model.message_files):
         yield from _in_manifest(package, manifest, _is_brought_along(model))
+        yield from () if case.spec.is_contract else _after_build(package, manifest, model)
     yield from _order(package, model)
+
+
+def _after_build(package: Package, manifest: Manifest, model: Model) -> Iterator[Finding]:
+    """Yield a note for each place that asks for message_generation where nothing is built.
+
+    https://docs.ros.org/en/noetic/api/catkin/html/howto/format2/building_msgs.html
+    """
+    places: list[Line] = []
+    named = package.first_match(["package.xml"], _AFTER_BUILD)
+    if named and _GENERATION in declared(manifest)["exec"]:
+        places.append(named)
+    if model.catkin_package and _GENERATION in model.depends:
+        call = model.catkin_package
+        places.append((call.file, call.line_of(package.lines(call.file), _GENERATION)))
+    for file, line in places:
+        yield Finding(
+            "dependencies",
+            f"{_GENERATION} is needed to build the package alone; who uses it needs"
+            " message_runtime.",
+            file,
+            line,
+            NOTE,
+            expected="message_runtime",
+            seen=package.line(file, line),
+            fix=f"Write message_runtime here, and <build_depend>{_GENERATION}</build_depend> in"
+            " package.xml.",
+        )
 
 
 def _in_cmake(case: Case, files: list[str]) -> Iterator[Finding]:
@@ -135,7 +166,7 @@ def _in_manifest(package: Package, manifest: Manifest, is_brought: bool) -> Iter
                 f"package.xml does not name {name} as a <{tag}>: the package has a message of"
                 " its own, and needs it.",
                 "package.xml",
-                last_dependency(package),
+                first_dependency(package),
                 severity=WARNING if builds else ERROR,
                 expected=f"<{tag}>{name}</{tag}>",
                 seen=f"no <{tag}> with {name}",

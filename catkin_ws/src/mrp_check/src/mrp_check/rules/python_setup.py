@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The Python packages that setup.py names are there."""
+"""The Python packages that setup.py names are there, and it imports no distutils."""
 
 from __future__ import annotations
 
@@ -8,18 +8,39 @@ import posixpath
 from typing import Iterator
 
 from mrp_check.case import Case
-from mrp_check.contract.finding import WARNING, Finding
+from mrp_check.contract.finding import NOTE, WARNING, Finding
 from mrp_check.contract.requirements import Rule
+from mrp_check.student.package import Package
 
 FILE = "setup.py"
 
 
 def _findings(case: Case) -> Iterator[Finding]:
-    """Yield a finding for each: catkin_make takes it, and `catkin_make install` fails."""
     package = case.package
     is_used = any(call.command == "catkin_python_setup" for call in case.model.calls)
-    if not is_used or FILE not in package.files:
-        return
+    if is_used and FILE in package.files:
+        yield from _old(package)
+        yield from _no_folder(package)
+
+
+def _old(package: Package) -> Iterator[Finding]:
+    """https://wiki.ros.org/noetic/Migration#Setuptools_instead_of_Distutils"""
+    place = package.first_match([FILE], r"^\s*(?:from|import)\s+distutils\b")
+    if place:
+        yield Finding(
+            "cmake",
+            f"{FILE} imports distutils, which Python has not any more from 3.12 on.",
+            *place,
+            NOTE,
+            expected="from setuptools import setup",
+            seen=package.line(*place),
+            fix="Take setup from setuptools; package.xml then needs"
+            " <buildtool_depend>python3-setuptools</buildtool_depend>.",
+        )
+
+
+def _no_folder(package: Package) -> Iterator[Finding]:
+    """Yield a finding for each: catkin_make takes it, and `catkin_make install` fails."""
     given = {
         keyword.arg: _plain(keyword.value)
         for call in ast.walk(package.tree(FILE))

@@ -73,10 +73,9 @@ def declared(manifest: Manifest) -> dict[str, set[str]]:
     }
 
 
-_DEPEND = re.compile(r"<\w*depend\b")
-
-
-def last_dependency(package: Package) -> int:
-    """Return the line of the last dependency in package.xml: where a missing one would stand."""
-    lines = [n for n, text in enumerate(package.lines(FILE), 1) if _DEPEND.search(text)]
-    return max(lines) if lines else package.find_line(FILE, "<package", 1)
+def first_dependency(package: Package) -> int:
+    """Return the line in package.xml at which its dependencies begin, other than catkin: where a
+    reader looks for one that is missing."""
+    named = [one for one in elements(package.bytes(FILE)) if one.tag.endswith("depend")]
+    named = [one for one in named if one.tag != "buildtool_depend"] or named
+    return named[0].line if named else package.find_line(FILE, "<package", 1)
