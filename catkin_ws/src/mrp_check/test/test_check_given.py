@@ -5,7 +5,7 @@ import types
 
 import check_rules
 import pytest
-from mrp_check.contract.finding import NOTE
+from mrp_check.contract.finding import ERROR, NOTE, WARNING
 from mrp_check.rules import (
     angles,
     arguments,
@@ -325,3 +325,21 @@ def test_what_makes_messages_is_needed_to_build_alone(tag, passed_on, found, tmp
     known.spec = types.SimpleNamespace(**vars(known.spec), messages={}, services={})
     said = [one for one in check_rules.of(messages.RULE, known) if one.severity == NOTE]
     assert [(one.file, one.line) for one in said] == found
+
+
+@pytest.mark.parametrize(
+    ("source", "severity"), [("b.cpp", ERROR), ("left.cpp", WARNING), ("b.msg", ERROR)]
+)
+def test_a_definition_of_which_no_code_is_made(source, severity, tmp_path):
+    text = "project(some_pkg)\nfind_package(catkin REQUIRED COMPONENTS message_generation)\n"
+    folder = "msg" if source.endswith(".msg") else "src"
+    known = case(
+        *(tmp_path, "cpp", INIT),
+        CMakeLists_DOT_txt=f"{text}add_executable(a src/a.cpp src/b.cpp)\n",
+        msg__Own_DOT_msg="int32 a",
+        **{f"{folder}__{source.replace('.', '_DOT_')}": "#include <some_pkg/Own.h>\nOwn a"},
+    )
+    known.manifest = manifest.parse(known.package)
+    known.spec = types.SimpleNamespace(**vars(known.spec), messages={}, services={})
+    (found,) = [one for one in check_rules.of(messages.RULE, known) if "Own.msg" in one.message]
+    assert found.severity == severity

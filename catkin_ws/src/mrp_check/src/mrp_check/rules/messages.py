@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import Iterator, Mapping
 
 from catkin_pkg.package import Package as Manifest
@@ -105,6 +106,7 @@ def _in_cmake(case: Case, files: list[str]) -> Iterator[Finding]:
                 call.line if call else catkin_line,
                 f"{command}(FILES {file})",
                 f"Add {file} to {command}(FILES ...).",
+                ERROR if case.spec.is_contract or _is_used(case, path) else WARNING,
             )
     if call and model.message_files and model.generate is None:
         yield _message_finding(
@@ -113,6 +115,17 @@ def _in_cmake(case: Case, files: list[str]) -> Iterator[Finding]:
             f"generate_messages(...) after {call.command}(...)",
             "Add generate_messages(DEPENDENCIES std_msgs).",
         )
+
+
+def _is_used(case: Case, path: str) -> bool:
+    """Return whether a source that is built, a header, a file in Python or another definition names
+    what is made of a definition."""
+    package, targets = case.package, case.model.targets.values()
+    built = {file for one in targets for file in one.sources if file in package.files}
+    others = package.of_kind("header", "python", *uses.DEFINITIONS)
+    files = {*built, *others} - {path}
+    names = rf"\b(?:{'|'.join(map(re.escape, uses.generated(path)))})\b"
+    return not targets or any(re.search(names, uses.code(package, file)) for file in files)
 
 
 def _is_of_action(path: str, model: Model) -> bool:
