@@ -145,8 +145,10 @@ WORK = "def work(goal):\n    for i in range(9):\n        "
         (unfilled, "py", "print('%s, %d', a, b)", [4]),
         (unfilled, "py", "print('%s, %d' % (a, b))", []),
         (unfilled, "py", "print('100 %', a)", []),
+        (unfilled, "py", "print('%s, %d') % (a, b)", [4]),
+        (unfilled, "py", "print('%s, %d' % (a, b)) or b", []),
     ],
-    ids=range(82),
+    ids=range(84),
 )
 def test_what_beginners_are_used_to(rule, ending, lines, found, tmp_path):
     assert lines_of(rule, case(tmp_path, ending, lines)) == found
@@ -263,6 +265,7 @@ def test_what_cmake_alone_names(tmp_path):
     assert "CMakeLists.txt asks for nowhere_srv" in {one.message.split(",")[0] for one in said}
     assert uses.absent_header(package, "nowhere_srv/A.h") == "nowhere_srv"
     assert uses.absent_header(package, "elsewhere_srv/A.h") is None
+    assert uses.absent_header(package, "opencv2/opencv.hpp") == "opencv2"
 
 
 def test_a_first_line_without_its_slash(tmp_path):

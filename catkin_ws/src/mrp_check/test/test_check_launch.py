@@ -8,7 +8,14 @@ import check_rules
 import pytest
 from check_rules import PUB_SUB, told
 from mrp_check.confined import launch_dump
-from mrp_check.rules import launch_file, launch_group, launch_nodes, launch_output, launch_remap
+from mrp_check.rules import (
+    launch_file,
+    launch_gone,
+    launch_group,
+    launch_nodes,
+    launch_output,
+    launch_remap,
+)
 from mrp_check.student import launch as launching
 
 pytestmark = pytest.mark.slow  # each test imports roslaunch anew, in a process of its own
@@ -199,3 +206,21 @@ def test_a_node_of_this_package_that_another_one_is_asked_for(package, type_, fo
     spec = types.SimpleNamespace(is_contract=False, nodes={})
     told_ = check_rules.file_findings(launch_nodes, made, launch=launch, spec=spec)
     assert [(finding.id, finding.severity) for finding in told_] == found
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize(
+    ("line", "found"),
+    [
+        ('<node pkg="robot_state_publisher" type="state_publisher"/>', [("error", 2)]),
+        ('<param name="use_gui"/>', [("warning", 2)]),
+        ('<param command="$(find xacro)/xacro.py a.xacro"/>', [("error", 2)]),
+        ('<!-- <node type="state_publisher"/> -->', []),
+    ],
+    ids=range(4),
+)
+def test_what_went_with_noetic(line, found, tmp_path):
+    text = f'<launch>\n{line}\n<node type="joint_state_publisher"/>\n</launch>\n'
+    made = check_rules.make(tmp_path, launch__a_DOT_launch=text)
+    said = check_rules.file_findings(launch_gone, made)
+    assert [(one.severity, one.line) for one in said] == found

@@ -6,6 +6,7 @@ import types
 import check_rules
 import pytest
 from mrp_check import judging
+from mrp_check.confined.launch_dump import Started
 from mrp_check.confined.places import Kind, Place
 from mrp_check.confined.seen import Registration, Seen
 from mrp_check.contract.finding import ERROR, NOTE, WARNING, Finding
@@ -178,6 +179,9 @@ def test_the_ends_of_a_topic_in_what_did_not_run(publishes, takes, hears, is_up,
     ("body", "is_up", "found"),
     [
         ("while (true)\n  {\n    f();\n  }", False, [WARNING]),
+        ("while (!done() || ros::ok()) { f(); }", True, [WARNING]),
+        ("while (ros::ok() || !done()) { f(); }", True, [WARNING]),
+        ("while ((a || b) && ros::ok()) { f(); }", True, []),
         ("for (;;) { g(); }", False, [WARNING]),
         ("while (1) { if (f()) { break; } }", False, []),
         ("while (1) { switch (f()) { case 1: { break; } } }", False, [WARNING]),
@@ -202,7 +206,7 @@ def test_the_ends_of_a_topic_in_what_did_not_run(publishes, takes, hears, is_up,
         ("do {\n  cin >> x; p.publish(x); }\n  while (x != 'q');", True, [ERROR]),
         ("while (1) { cin >> x; p.publish(x); }", True, [ERROR]),
     ],
-    ids=range(24),
+    ids=range(27),
 )
 def test_a_loop_asks_whether_the_node_is_to_go_on(body, is_up, found, tmp_path):
     findings = [*check_rules.of(deaf_loop.RULE, of_main(tmp_path, body, is_up))]
@@ -313,3 +317,19 @@ def test_a_long_loop_says_the_same_however_long_the_node_is_watched(node, found)
     loop.node = "a"
     case = types.SimpleNamespace(built=None)
     assert len(judging.judged(case, [loop, end], [])) == found
+
+
+@pytest.mark.parametrize(
+    ("arguments", "severity", "file"),
+    [("", WARNING, "a.launch"), ("1 2", NOTE, "src/a.cpp"), (None, NOTE, "src/a.cpp")],
+)
+def test_a_launch_file_gives_a_node_no_arguments(arguments, severity, file):
+    said = Finding("starts", "a ends.", "src/a.cpp", 1, severity=ERROR, node="a", stage="run")
+    direct = types.SimpleNamespace(lines=[(0, 0, "usage: a X Y")], code=1)
+    package = types.SimpleNamespace(name="some_pkg", lines=lambda file: [])
+    node = types.SimpleNamespace(name="a", direct=direct, not_up=[said], package=package)
+    started = Started("some_pkg", "a", "a", "/", "", [], [], arguments or "", "", "a.launch", 2)
+    launches = [] if arguments is None else [types.SimpleNamespace(nodes=[started])]
+    case = types.SimpleNamespace(nodes={"a": node}, package=package, launches=launches, built=True)
+    judging.weigh(case, [said])
+    assert (said.severity, said.file) == (severity, file)

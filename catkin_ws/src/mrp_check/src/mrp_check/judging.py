@@ -8,6 +8,7 @@ import re
 from typing import Iterable
 
 from mrp_check.case import Case
+from mrp_check.confined.launch_dump import Started
 from mrp_check.contract.finding import ERROR, NOTE, WARNING, Finding, Line
 from mrp_check.contract.words import last_part
 from mrp_check.rules.deaf_loop import ASKS_KEYBOARD
@@ -46,6 +47,7 @@ _WAITS = (
 # Beside the line at which a program ends, it misses some of the arguments that it counts.
 _COUNTS = re.compile(COUNTS)
 _ENDS = re.compile(r"\bexit\s*\(|\bquit\s*\(|\breturn\s+(-?[1-9]|EXIT_FAILURE)")
+_WAITS_FOR_ARGUMENTS = "waits for arguments on its command line"
 _ENDS_IN_PEACE = "does its work, and ends"
 _FEW = 6  # lines
 # The same of a launch file: an argument, a variable of the environment, or another's launch file.
@@ -154,6 +156,17 @@ def _of_run(case: Case, finding: Finding) -> None:
             finding.severity = WARNING
     elif finding.stage == "run" and finding in node.not_up:
         _of_start(case, node, finding)
+        started = _without_arguments(case, node)
+        if finding.severity == NOTE and _WAITS_FOR_ARGUMENTS in finding.message and started:
+            finding.message += f" {started.file} gives none, and starts it all the same."
+            finding.severity, finding.file, finding.line = WARNING, started.file, started.line
+
+
+def _without_arguments(case: Case, node: Node) -> Started | None:
+    """Return a <node> of a launch file that starts a node, and gives it no arguments."""
+    started = (one for launch in case.launches for one in launch.nodes)
+    own = (one for one in started if (one.package, one.type) == (case.package.name, node.name))
+    return next((one for one in own if not one.arguments.strip() and one.file), None)
 
 
 def _of_start(case: Case, node: Node, finding: Finding) -> None:
@@ -168,7 +181,7 @@ def _of_start(case: Case, node: Node, finding: Finding) -> None:
             return
     if not any("Error:" in line for line in lines) and misses_arguments(node, finding):
         finding.severity = NOTE
-        finding.message = f"{node.name} waits for arguments on its command line."
+        finding.message = f"{node.name} {_WAITS_FOR_ARGUMENTS}."
         return
     file = _works_under(case, node)
     if file:

@@ -22,6 +22,7 @@ ASKS_KEYBOARD = "This loop only asks the keyboard"
 _HANDLER = re.compile(r"\b(?:sigaction|signal)\s*\(")
 _HEAD = re.compile(r"\b(?P<word>while\s*(?=\()|for\s*(?=\(\s*;\s*;\s*\))|do\s*(?=\{))")
 _ASKS = re.compile(r"\b(?:ok|isShuttingDown|isStarted)\s*\(|\bexit\s*\(|\bthrow\b")
+_EITHER = re.compile(r"\bok\s*\(\s*\)\s*\|\||\|\|\s*(?:\w+(?:::|\.))?ok\s*\(")
 _ENDLESS = re.compile(r"\s*(?:true|1|;\s*;)?\s*")
 _LEAVES = re.compile(r"\b(?:break|return)\b")
 _BREAK = re.compile(r"\bbreak\b")
@@ -61,9 +62,14 @@ def _findings(case: Case) -> Iterator[Finding]:
 
 
 def _of(case: Case, place: tuple[str, str], loop: _Loop, is_up: bool) -> Iterator[Finding]:
+    asks = " ".join(loop.asks.split())
+    if _EITHER.search(asks) and "&&" not in asks:
+        said = "With ||, this loop goes on after Ctrl-C as long as the other side of it holds."
+        (node, file), line = place, line_of(loop.head, "word")
+        wanted, fix = asks.replace("||", "&&"), "Write && for ||."
+        yield Finding("exit", said, file, line, WARNING, wanted, asks, fix, node=node)
     if _ASKS.search(loop.asks + loop.block):
         return
-    asks = " ".join(loop.asks.split())
     is_endless = _ENDLESS.fullmatch(asks)
     wanted = "while (ros::ok())" if is_endless else f"while (ros::ok() && {asks})"
     said, severity = "", WARNING

@@ -93,9 +93,8 @@ def _in_cmake(case: Case, files: list[str]) -> Iterator[Finding]:
         )
     for path in files:
         file = last_part(path)
-        if _is_of_action(path, model):
-            continue
-        if path not in model.message_files and (not own or file[:-4] in own):
+        is_made = path in model.message_files or _is_of_action(path, model)
+        if not is_made and (not own or file[:-4] in own):
             command = f"add_{case.package.kind(path)}_files"
             elsewhere = _elsewhere(case, path)
             if elsewhere:
@@ -106,7 +105,7 @@ def _in_cmake(case: Case, files: list[str]) -> Iterator[Finding]:
                 call.line if call else catkin_line,
                 f"{command}(FILES {file})",
                 f"Add {file} to {command}(FILES ...).",
-                ERROR if case.spec.is_contract or _is_used(case, path) else WARNING,
+                ERROR if _is_used(case, path) else WARNING,
             )
     if call and model.message_files and model.generate is None:
         yield _message_finding(
@@ -119,13 +118,14 @@ def _in_cmake(case: Case, files: list[str]) -> Iterator[Finding]:
 
 def _is_used(case: Case, path: str) -> bool:
     """Return whether a source that is built, a header, a file in Python or another definition names
-    what is made of a definition."""
+    what is made of a definition; with a contract, each one is used."""
     package, targets = case.package, case.model.targets.values()
     built = {file for one in targets for file in one.sources if file in package.files}
     others = package.of_kind("header", "python", *uses.DEFINITIONS)
     files = {*built, *others} - {path}
     names = rf"\b(?:{'|'.join(map(re.escape, uses.generated(path)))})\b"
-    return not targets or any(re.search(names, uses.code(package, file)) for file in files)
+    is_asked = case.spec.is_contract or not targets
+    return is_asked or any(re.search(names, uses.code(package, file)) for file in files)
 
 
 def _is_of_action(path: str, model: Model) -> bool:

@@ -17,6 +17,7 @@ _NAME = re.compile(r"\{([A-Za-z_]\w*)[\w.\[\]]*(?:![rsa])?(?::[^{}]*)?\}")
 
 class Unfilled(PythonRule):
     def findings(self) -> Iterator[Finding]:
+        yield from self._behind_print()
         for call in self.source.nodes(ast.Call):
             texts = [one for one in call.args if isinstance(one, ast.Constant)]
             for text in texts if self._shows(call) else ():
@@ -41,6 +42,20 @@ class Unfilled(PythonRule):
                         expected='f"..." or "...".format(...)',
                         fix="Write f before the text.",
                     )
+
+    def _behind_print(self) -> Iterator[Finding]:
+        for sum_ in self.source.nodes(ast.BinOp):
+            shown = sum_.left
+            if isinstance(shown, ast.Call) and getattr(shown.func, "id", "") == "print":
+                yield self.finding(
+                    "python-names",
+                    "print() gives None, and what is done with that here ends with a TypeError:"
+                    " a bracket stands too early.",
+                    sum_,
+                    severity=WARNING,
+                    expected="print(TEXT % (VALUES))",
+                    fix="Put the values before the last bracket.",
+                )
 
     def _shows(self, call: ast.Call) -> bool:
         """Return whether a call logs, prints or publishes what it is given."""

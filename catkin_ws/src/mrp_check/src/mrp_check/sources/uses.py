@@ -88,10 +88,15 @@ class Use(typing.NamedTuple):
 
 
 _ALL = 20000  # a Debian release has more packages; without its lists, apt knows the installed ones
-# Python modules whose Debian package is called otherwise.
+# Python modules, and folders of headers, whose Debian package is called otherwise.
 _DEBIAN = {
     **{"cv2": "python3-opencv", "PIL": "python3-pil", "OpenGL": "python3-opengl"},
     "tkinter": "python3-tk",
+}
+_LIBRARIES = {
+    **{"opencv2": "libopencv-dev", "Eigen": "libeigen3-dev", "GL": "libgl-dev"},
+    **{"SDL2": "libsdl2-dev", "nlohmann": "nlohmann-json3-dev", "json": "libjsoncpp-dev"},
+    **{"curl": "libcurl4-openssl-dev", "gazebo": "libgazebo-dev"},
 }
 # Python's own modules: Debian keeps some of them in packages of their own.
 STANDARD: frozenset[str] = getattr(sys, "stdlib_module_names", frozenset(("tkinter",)))
@@ -103,7 +108,8 @@ def _guesses(name: str, language: str) -> list[str]:
     python = _DEBIAN.get(name, f"python3-{plain}")
     if language in ("msg", "program"):
         return [f"ros-{plain}" if language == "msg" else name]
-    return [f"lib{plain}-dev", f"ros-{plain}", python, plain] if language == "cpp" else [python]
+    library = _LIBRARIES.get(name, f"lib{plain}-dev")
+    return [library, f"ros-{plain}", python, plain] if language == "cpp" else [python]
 
 
 def exists(name: str) -> bool:
@@ -199,7 +205,8 @@ def absent_header(package: Package, header: str) -> str | None:
     asked = rf"(?m)^[^#\n]*\b{re.escape(name)}\b"
     cmake = package.text("CMakeLists.txt") if "CMakeLists.txt" in package.files else ""
     is_named = package.find_line("package.xml", f">{name}<") or re.search(asked, cmake)
-    return name if is_named or is_debian or is_called_so(name) else None
+    is_known = is_debian or name in _LIBRARIES or is_called_so(name)
+    return name if is_named or is_known else None
 
 
 def is_test(path: str) -> bool:
