@@ -267,6 +267,11 @@ def test_a_standard_of_cpp_that_newer_headers_do_not_take(line, found, tmp_path)
     known.package_folder = known.package.root
     known.built = types.SimpleNamespace(ok=True, output="")
     assert lines_of(compile, known) == found
+    said = (
+        "a.h:1:2: error: #error This file requires compiler support for the ISO C++ 2011 standard"
+    )
+    known.built.output = said
+    assert lines_of(compile, known) == []  # it is said as an error where the compiler says so
 
 
 @pytest.mark.parametrize(

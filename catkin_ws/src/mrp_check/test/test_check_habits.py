@@ -295,6 +295,13 @@ def test_behind_what_python_cannot_read(tmp_path):
     assert lines_of(unparsed, known) == [4]
 
 
+@pytest.mark.parametrize(("given", "found"), [("", [4]), (", queue_size=1", [])])
+def test_a_queue_behind_what_python_cannot_read(given, found, tmp_path):
+    known = case(tmp_path, "py", f"p = rospy.Publisher('a', String{given})")
+    known.facts.unread.add("src/a.py")
+    assert lines_of(unparsed, known) == found
+
+
 @pytest.mark.parametrize(
     ("text", "args", "found"),
     [

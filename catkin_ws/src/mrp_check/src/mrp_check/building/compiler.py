@@ -160,7 +160,7 @@ def _place(match: re.Match[str], copy: pathlib.Path) -> Line | None:
 def finding(package: Package, problem: Problem) -> Finding:
     """Return the Finding about a Problem."""
     lines = package.lines(problem.file)
-    standard = re.search(r"support for the ISO C\+\+ (?:20)?(\d+) standard", problem.text)
+    standard = _STANDARD.search(problem.text)
     if standard:
         return _old_standard(package, standard.group(1), problem)
     words = cpp_words.of(package, problem)
@@ -178,13 +178,14 @@ def finding(package: Package, problem: Problem) -> Finding:
     )
 
 
+_STANDARD = re.compile(r"support for the ISO C\+\+ (?:20)?(\d+) standard")
 _OLD = r"^[^#]*(?:-std=(?:c|gnu)\+\+(?:0x|11|14)\b|CMAKE_CXX_STANDARD\s+(?:11|14)\b)"
 
 
-def older_standard(package: Package) -> Iterator[Finding]:
-    """Yield a warning about a standard of C++ with which the package compiled here, and where ROS
-    has a newer log4cxx, it does not."""
-    place = package.first_match(["CMakeLists.txt"], _OLD)
+def older_standard(package: Package, output: str) -> Iterator[Finding]:
+    """Yield a warning about a standard of C++ that the compiler takes here, and does not where ROS
+    has a newer log4cxx."""
+    place = None if _STANDARD.search(output) else package.first_match(["CMakeLists.txt"], _OLD)
     if place and package.of_kind("cpp"):
         yield Finding(
             "compile",

@@ -25,7 +25,7 @@ def findings(case: Case) -> Iterator[Finding]:
     yield from compiler.without_return(package, output, case.package_folder)
     if not case.spec.is_contract:
         yield from compiler.doubts(package, output, case.package_folder)
-        yield from compiler.older_standard(package) if case.built.ok else ()
+        yield from compiler.older_standard(package, output)
     if case.built.ok:
         return
     problems = compiler.problems(output, case.package_folder)

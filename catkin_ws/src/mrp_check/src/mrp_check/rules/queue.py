@@ -11,6 +11,11 @@ from mrp_check.contract.finding import ERROR, WARNING, Finding
 from mrp_check.contract.requirements import CONTRACT, Requirement, Rule
 from mrp_check.sources.node import Node, each_node
 
+NO_QUEUE = (
+    "rospy.Publisher() is given no queue_size: it then sends each message before it returns, and"
+    " warns of it."
+)
+
 
 def _of(node: Node) -> Iterator[Finding]:
     wanted = node.wanted
@@ -65,8 +70,7 @@ def no_queue(node: Node, place: Place, id_: str, expected: str, size: int) -> Fi
     """Return the Finding about a rospy.Publisher() without queue_size; size: what to give it"""
     return node.finding(
         id_,
-        "rospy.Publisher() is given no queue_size: it then sends each message before it returns,"
-        " and warns of it.",
+        NO_QUEUE,
         place,
         severity=WARNING,
         expected=expected,

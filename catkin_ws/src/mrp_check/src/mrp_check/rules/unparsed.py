@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What rospy has not, in a source that Python cannot read: that is found behind the first fault."""
+"""What is wrong behind the first fault of a source that Python cannot read: a name that rospy has
+not, and a publisher without a queue."""
 
 from __future__ import annotations
 
@@ -9,16 +10,21 @@ from typing import Iterator
 from mrp_check.case import Case
 from mrp_check.contract.finding import WARNING, Finding
 from mrp_check.contract.requirements import ANY, Rule
-from mrp_check.contract.words import line_of, nearest, perhaps
+from mrp_check.contract.words import braced, line_of, nearest, perhaps
+from mrp_check.rules.queue import NO_QUEUE
 from mrp_check.sources import uses
 from mrp_check.sources.python_modules import resolve
 
+_PUBLISHER = re.compile(r"\brospy\.Publisher\s*(?=\()")
+_WITH_QUEUE = 6  # commas: queue_size is the seventh
 _NAMED = re.compile(r"\brospy\.(\w+)")
 
 
 def _findings(case: Case) -> Iterator[Finding]:
     everything, missing = resolve("rospy")
     for node, files in case.facts.sources.items():
+        for file in sorted(case.facts.unread & {*files}):
+            yield from _no_queue(case, node, file)
         unread = case.facts.unread - {*case.facts.python} if missing is None else set()
         for file in unread & {*files}:
             for match in _NAMED.finditer(uses.code(case.package, file)):
@@ -38,4 +44,23 @@ def _findings(case: Case) -> Iterator[Finding]:
                     )
 
 
-RULE = Rule("static", 104, ("facts",), _findings, also=("python-names",), only=ANY)
+def _no_queue(case: Case, node: str, file: str) -> Iterator[Finding]:
+    text = uses.code(case.package, file) if case.package.kind(file) == "python" else ""
+    for match in _PUBLISHER.finditer(text):
+        given, line = braced(text, match.end(), "()"), line_of(match)
+        if "queue_size" not in given and "**" not in given and given.count(",") < _WITH_QUEUE:
+            yield Finding(
+                "warnings",
+                NO_QUEUE,
+                file,
+                line,
+                WARNING,
+                expected="queue_size=10, or whatever the topic needs",
+                seen=case.package.line(file, line),
+                fix="Add queue_size=10.",
+                node=node,
+                why="queue-size-missing",
+            )
+
+
+RULE = Rule("static", 104, ("facts",), _findings, also=("python-names", "warnings"), only=ANY)
