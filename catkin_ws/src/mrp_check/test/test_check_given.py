@@ -348,3 +348,18 @@ def test_a_definition_of_which_no_code_is_made(source, severity, tmp_path):
     known.spec = types.SimpleNamespace(**vars(known.spec), messages={}, services={})
     (found,) = [one for one in check_rules.of(messages.RULE, known) if "Own.msg" in one.message]
     assert found.severity == severity
+
+
+@pytest.mark.parametrize(
+    ("lines", "found"),
+    [
+        ("import Queue", ["queue"]),
+        ("from urllib2 import urlopen", ["urllib.request"]),
+        ("try:\n    import Queue\nexcept ImportError:\n    import queue as Queue", []),
+        ("import queue", []),
+    ],
+    ids=range(4),
+)
+def test_a_module_of_python_2(lines, found, tmp_path):
+    said = check_rules.python_findings(tmp_path, f"{lines}\n")
+    assert [one.expected for one in said if "Python 2" in one.message] == found

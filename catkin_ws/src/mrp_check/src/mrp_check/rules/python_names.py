@@ -16,7 +16,14 @@ from mrp_check.contract.requirements import Requirement, Rule
 from mrp_check.contract.words import last_part, nearest, perhaps
 from mrp_check.sources import uses
 from mrp_check.sources.python_facts import last_line
-from mrp_check.sources.python_modules import is_module, is_ros, load, resolve, ros_modules
+from mrp_check.sources.python_modules import (
+    OF_PYTHON_2,
+    is_module,
+    is_ros,
+    load,
+    resolve,
+    ros_modules,
+)
 from mrp_check.sources.python_rule import PythonRule, of_sources
 from mrp_check.sources.python_source import Source
 from mrp_check.student.package import Package
@@ -75,6 +82,9 @@ class Names(PythonRule):
         if missing is None:
             return
         self.not_imported.append(name.split(".")[-1])
+        if missing in OF_PYTHON_2:
+            yield self._renamed(node, missing)
+            return
         if parent is None:
             known = set(sys.modules) | ros_modules()
             # Of short names many are alike: cv2 is no misspelt csv.
@@ -110,6 +120,17 @@ class Names(PythonRule):
             node,
             expected=f"files in {part}/, and generate_messages() in CMakeLists.txt",
             fix=f"Add them; or import the {part} module of the package that has them.",
+        )
+
+    def _renamed(self, node: ast.stmt, name: str) -> Finding:
+        right = OF_PYTHON_2[name]
+        return self.finding(
+            "python-names",
+            f"{name} is a module of Python 2, which Python 3 has as {right}: Python ends with a"
+            " ModuleNotFoundError.",
+            node,
+            expected=right,
+            fix=f"Import {right}, and call what you need of it by that name.",
         )
 
     def _old_name(self, node: ast.stmt, name: str) -> Finding:

@@ -28,6 +28,18 @@ def ros_modules() -> set[str]:
     }
 
 
+# Module of Python 2 -> what Python 3 has in its place. https://peps.python.org/pep-3108/
+OF_PYTHON_2 = {
+    **{"Tkinter": "tkinter", "ttk": "tkinter.ttk", "tkMessageBox": "tkinter.messagebox"},
+    **{"tkFileDialog": "tkinter.filedialog", "Queue": "queue", "ConfigParser": "configparser"},
+    **{"SocketServer": "socketserver", "BaseHTTPServer": "http.server"},
+    **{"SimpleHTTPServer": "http.server", "httplib": "http.client", "urllib2": "urllib.request"},
+    **{"urlparse": "urllib.parse", "xmlrpclib": "xmlrpc.client", "StringIO": "io"},
+    **{"cStringIO": "io", "cPickle": "pickle", "__builtin__": "builtins", "thread": "_thread"},
+    "commands": "subprocess",
+}
+
+
 @functools.lru_cache(maxsize=None)
 def of_rospy() -> set[str]:
     """Return the names of the modules that Python loads when a node imports rospy."""
