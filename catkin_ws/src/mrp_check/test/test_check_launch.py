@@ -213,14 +213,15 @@ def test_a_node_of_this_package_that_another_one_is_asked_for(package, type_, fo
     ("line", "found"),
     [
         ('<node pkg="robot_state_publisher" type="state_publisher"/>', [("error", 2)]),
-        ('<param name="use_gui"/>', [("warning", 2)]),
+        ('<node type="joint_state_publisher"/> <param name="use_gui"/>', [("warning", 2)]),
+        ('<param name="use_gui"/>', []),
         ('<param command="$(find xacro)/xacro.py a.xacro"/>', [("error", 2)]),
         ('<!-- <node type="state_publisher"/> -->', []),
     ],
-    ids=range(4),
+    ids=range(5),
 )
 def test_what_went_with_noetic(line, found, tmp_path):
-    text = f'<launch>\n{line}\n<node type="joint_state_publisher"/>\n</launch>\n'
+    text = f"<launch>\n{line}\n</launch>\n"
     made = check_rules.make(tmp_path, launch__a_DOT_launch=text)
     said = check_rules.file_findings(launch_gone, made)
     assert [(one.severity, one.line) for one in said] == found

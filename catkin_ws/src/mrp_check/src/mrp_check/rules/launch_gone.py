@@ -15,23 +15,27 @@ from mrp_check.contract.requirements import ANY, Rule
 from mrp_check.contract.words import line_of
 from mrp_check.sources import uses
 
-# What stands in the file -> what to say of it, how severe it is, and what to write for it.
+# What stands in the file -> what to say of it, how severe it is, what to write for it, and which
+# word the file has, too.
 _GONE = {
     r"\btype\s*=\s*\"(state_publisher)\"": (
         "robot_state_publisher has no executable state_publisher any more: roslaunch cannot start"
         " it",
         ERROR,
         "robot_state_publisher",
+        "",
     ),
     r"\(find xacro\)/(xacro\.py)\b": (
         "xacro has no xacro.py any more: roslaunch cannot load the file",
         ERROR,
         "xacro",
+        "",
     ),
     r"\bname\s*=\s*\"(use_gui)\"": (
         "joint_state_publisher does not read use_gui any more: no window with sliders comes",
         WARNING,
         "a node of type joint_state_publisher_gui",
+        "joint_state_publisher",
     ),
 }
 
@@ -39,8 +43,8 @@ _GONE = {
 def _findings(case: Case) -> Iterator[Finding]:
     for file in case.package.of_kind("launch"):
         text = uses.code(case.package, file)
-        for shape, (said, severity, instead) in _GONE.items():
-            for match in re.finditer(shape, text) if "_state_publisher" in text else ():
+        for shape, (said, severity, instead, beside) in _GONE.items():
+            for match in re.finditer(shape, text) if beside in text else ():
                 yield Finding(
                     "launch-nodes",
                     f"{said} (it went with Noetic).",
