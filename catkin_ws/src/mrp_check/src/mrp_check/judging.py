@@ -158,7 +158,7 @@ def _of_run(case: Case, finding: Finding) -> None:
         _of_start(case, node, finding)
         started = _without_arguments(case, node)
         if finding.severity == NOTE and _WAITS_FOR_ARGUMENTS in finding.message and started:
-            finding.message += f" {started.file} gives none, and starts it all the same."
+            finding.message = f"{node.name} {_WAITS_FOR_ARGUMENTS}, and {started.file} gives none."
             finding.severity, finding.file, finding.line = WARNING, started.file, started.line
 
 
