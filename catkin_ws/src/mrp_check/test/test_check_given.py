@@ -363,3 +363,12 @@ def test_a_definition_of_which_no_code_is_made(source, severity, tmp_path):
 def test_a_module_of_python_2(lines, found, tmp_path):
     said = check_rules.python_findings(tmp_path, f"{lines}\n")
     assert [one.expected for one in said if "Python 2" in one.message] == found
+
+
+@pytest.mark.parametrize("line", ["#!/usr/bin/no_python", "#!no_python", "#!/usr/bin/env python2"])
+def test_what_starts_all_the_same_has_a_warning(line, tmp_path):
+    text = f"{MADE_BY_CMAKE}catkin_install_python(PROGRAMS scripts/a.py DESTINATION bin)\n"
+    known = {"CMakeLists_DOT_txt": text, "scripts__a_DOT_py": f"{line}\nimport rospy\n"}
+    package = check_rules.make(tmp_path / "some_pkg", **known)
+    said = [one.severity for one in check_rules.file_findings(scripts, package, spec=SPEC)]
+    assert said == [WARNING]

@@ -57,6 +57,7 @@ def test_what_the_text_of_a_node_shows_that_was_not_built(body, is_up, found, tm
 
 
 HEARD = "rospy.Subscriber('b', A, hear)\n"
+END = "ended = False\ndef end():\n    global ended\n    ended = True\n"
 HEAR = f"def hear(m):\n    global far\n    far = m.data\n{HEARD}"
 
 
@@ -87,11 +88,15 @@ HEAR = f"def hear(m):\n    global far\n    far = m.data\n{HEARD}"
         ("while not rospy.is_shutdown():\n    print(input())", True, [5]),
         ("def input():\n    pass\nprint(input())", True, []),
         ("rospy.init_node('b', disable_signals=True)\nprint(input())", False, []),
+        ("while p.get_num_connections() < 1:\n    rospy.sleep(1)", False, [4]),
+        ("while p.get_num_connections() < 1:\n    print(1)", True, []),
+        (f"{END}while not ended:\n    rate.sleep()", True, [8]),
+        (f"{END}rospy.on_shutdown(end)\nwhile not ended:\n    rate.sleep()", True, []),
         ("tty.setraw(0)\nkey = ask()", False, [4]),
         ("tty.setraw(0)\nif ask() == '\\x03':\n    exit()", False, []),
         ("tty.setcbreak(0)\nkey = ask()", False, []),
     ],
-    ids=range(27),
+    ids=range(31),
 )
 def test_a_loop_in_python_asks_whether_the_node_is_to_go_on(loop, is_up, found, tmp_path):
     text = f"import rospy\nimport time, tty\nrospy.init_node('a')\n{loop}\n"

@@ -116,9 +116,6 @@ def _is_rule(case: Case, finding: Finding) -> bool:
     is_python = bool(finding.file) and case.package.kind(finding.file or "") == "python"
     if finding.id == "python-syntax":
         return finding.file in {f for files in case.facts.sources.values() for f in files}
-    if finding.id == "scripts" and is_python:
-        # catkin_install_python() makes an executable of what lacks a first line, too.
-        return not (finding.file in case.model.relayed() and _came_up(case, finding.file))
     if any(said in finding.message for said in _SURE):
         return True
     if finding.id in ("spin", "lifetime") and not is_python:
@@ -126,13 +123,6 @@ def _is_rule(case: Case, finding: Finding) -> bool:
     if finding.id == "launch-file":
         return _wants(finding) is None
     return finding.id in _RULES
-
-
-def _came_up(case: Case, file: str | None) -> bool:
-    nodes = vars(case).get("nodes") or {}
-    return any(
-        node.is_up and file in case.facts.sources.get(name, ()) for name, node in nodes.items()
-    )
 
 
 def _wants(finding: Finding) -> str | None:

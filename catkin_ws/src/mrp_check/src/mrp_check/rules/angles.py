@@ -41,7 +41,7 @@ def _findings(case: Case) -> Iterator[Finding]:
         found = re.search(rf"(?:{angle})(?:\([^()\n]*\))?{_HEADING}", text)
         if found:
             yield one.finding(
-                "values",
+                "callbacks",
                 "The difference of two angles may be nearly two pi: the robot then turns the long"
                 " way round.",
                 line_of(found),
@@ -50,4 +50,4 @@ def _findings(case: Case) -> Iterator[Finding]:
             )
 
 
-RULE = Rule("static", 115, ("facts",), _findings, also=("values",), only=ANY)
+RULE = Rule("static", 115, ("facts",), _findings, also=("callbacks",), only=ANY)

@@ -15,6 +15,7 @@ from mrp_check.case import Case
 from mrp_check.contract.finding import WARNING, Finding
 from mrp_check.contract.requirements import ANY, Rule
 from mrp_check.rules.unheard import callbacks, in_threads
+from mrp_check.sources.python_facts import argument
 from mrp_check.sources.python_source import Source, Variable
 
 _LEAVES = (ast.Break, ast.Raise, ast.Return)
@@ -129,7 +130,16 @@ def _asks_others(source: Source, loop: ast.While) -> str | None:
     is_heard = all(keys & heard for keys in found) or all(found) and "sleep" in named
     if not found or not is_heard or named & {*_ENDS}:
         return None
+    if set().union(*found) & _set_at_shutdown(source):
+        return None
     return min(key[1] for key in found[0] & heard or found[0])
+
+
+def _set_at_shutdown(source: Source) -> set[Variable]:
+    """Return what a function changes that rospy.on_shutdown() is given: Ctrl-C changes it."""
+    calls = (c for c in source.nodes(ast.Call) if source.dotted(c.func) == "rospy.on_shutdown")
+    hooks = (source.definition(argument(call, 0, "h")) for call in calls)
+    return {key for hook in hooks if hook for key in _keys(source, hook, ast.Store)}
 
 
 def _depends_on(source: Source, within: list[ast.AST], ask: ast.expr) -> set[Variable]:
@@ -160,6 +170,8 @@ def _changes(node: ast.AST, above: ast.AST) -> bool:
 
 
 def _only_computes(source: Source, call: ast.Call) -> bool:
+    if getattr(call.func, "attr", "") == "get_num_connections":
+        return True  # others change that
     named = source.dotted(call.func) or str(getattr(call.func, "id", ""))
     return named.split(".")[0] in _COMPUTES
 

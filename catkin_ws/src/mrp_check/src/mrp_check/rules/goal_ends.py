@@ -60,7 +60,7 @@ def _without_result(one: OfNode, text: str) -> Iterator[Finding]:
     end = _SUCCEEDS.search(one.code or uses.code(one.package, one.file))
     if end and fields and all(fields):
         yield one.finding(
-            "values",
+            "callbacks",
             "The goal succeeds without a result: its client gets one of nothing but zeros.",
             line_of(end),
             expected=f"a result with {', '.join(fields[0])}",
@@ -124,4 +124,4 @@ def _of_others(one: OfNode, source: Source) -> Iterator[Finding]:
             )
 
 
-RULE = Rule("static", 113, ("facts",), _findings, also=("callbacks", "values"), only=ANY)
+RULE = Rule("static", 113, ("facts",), _findings, also=("callbacks",), only=ANY)

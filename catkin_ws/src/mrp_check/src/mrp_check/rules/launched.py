@@ -75,10 +75,11 @@ def _gave_up(case: Case, launched: Launched, lines: list[str]) -> Iterator[Findi
     said = next((text for text in lines if text.startswith(_GIVES_UP)), None)
     if launched.seen.ending != "itself" or said is None:
         return
-    place: Where = launched.file or None, 1
+    place: Where = (launched.file, 1) if launched.file else (None, None)
+    what = launched.file or "all nodes together"
     yield Finding(
         "starts",
-        f"roslaunch gives up on {launched.file}: {said[len(_GIVES_UP) :][:300]}",
+        f"roslaunch gives up on {what}: {said[len(_GIVES_UP) :][:300]}",
         *place,
         severity=NOTE,
         expected="a launch file that goes on until Ctrl-C",

@@ -34,7 +34,7 @@ def _findings(case: Case) -> Iterator[Finding]:
             if put and not _is_left(between) and not re.search(filled, between):
                 said = f"push_back() puts this behind the values that {match[1]}.resize() has made"
                 yield one.finding(
-                    "values",
+                    "callbacks",
                     f"{said}, in line {line_of(match)}: they stay 0.",
                     line_of(put),
                     expected=f"{match[1]}[i] = ..., or reserve() in place of resize()",
@@ -49,4 +49,4 @@ def _is_left(between: str) -> bool:
     return min(depths, default=0) < 0
 
 
-RULE = Rule("static", 114, ("facts",), _findings, also=("values",), only=ANY)
+RULE = Rule("static", 114, ("facts",), _findings, also=("callbacks",), only=ANY)

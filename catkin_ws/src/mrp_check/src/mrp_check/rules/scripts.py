@@ -52,9 +52,7 @@ def _findings(case: Case) -> Iterator[Finding]:
         is_node = path in case.started or path in nodes or path in {s.path for s in model.scripts}
         if is_node or shebang and _is_node(package, path):
             # What catkin_install_python() puts beside it starts it; once installed, nothing does.
-            plain = shebang[2:].strip()
-            is_left = "python2" in shebang or not plain.startswith("/")
-            runs = path in relayed and is_left and not case.spec.is_contract
+            runs = path in relayed and not case.spec.is_contract
             for finding in _of(package, model, path, shebang, path in relayed):
                 is_less = runs and finding.severity == ERROR
                 yield dataclasses.replace(finding, severity=WARNING) if is_less else finding
