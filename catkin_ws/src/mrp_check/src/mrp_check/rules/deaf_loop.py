@@ -63,9 +63,9 @@ def _findings(case: Case) -> Iterator[Finding]:
 
 def _of(case: Case, place: tuple[str, str], loop: _Loop, is_up: bool) -> Iterator[Finding]:
     asks = " ".join(loop.asks.split())
+    (node, file), line = place, line_of(loop.head, "word")
     if _EITHER.search(asks) and "&&" not in asks:
         said = "With ||, this loop goes on after Ctrl-C as long as the other side of it holds."
-        (node, file), line = place, line_of(loop.head, "word")
         wanted, fix = asks.replace("||", "&&"), "Write && for ||."
         yield Finding("exit", said, file, line, WARNING, wanted, asks, fix, node=node)
     if _ASKS.search(loop.asks + loop.block):
@@ -85,7 +85,6 @@ def _of(case: Case, place: tuple[str, str], loop: _Loop, is_up: bool) -> Iterato
             " itself, and no callback is called any more."
         )
     if said:
-        (node, file), line = place, line_of(loop.head, "word")
         seen = case.package.line(file, line)
         yield Finding(
             "exit", said, file, line, severity, wanted, seen, f"Write {wanted}.", node=node

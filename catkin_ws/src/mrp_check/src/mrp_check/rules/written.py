@@ -49,40 +49,25 @@ def _findings(case: Case) -> Iterator[Finding]:
         ran = all(case.nodes[one.node].is_up for one in ends if one.node in case.nodes)
         if ran or end.type in {one.type for one in others}:
             continue
-        if near:
-            yield _of_names(end, near[0])
-        elif others:
-            yield _of_types(end, others[0])
+        yield from _apart(end, near[0], "topic") if near else ()
+        yield from _apart(end, others[0], "type") if others else ()
 
 
-def _of_names(end: End, other: End) -> Finding:
-    return Finding(
-        "topic",
-        f"{end.node} subscribes to {end.topic}, where no node of this package publishes, and"
-        f" {other.node} publishes on {other.topic}, with the same type.",
-        end.file,
-        end.line,
-        WARNING,
-        expected=other.topic,
-        seen=end.topic,
-        fix="Give both topics one name; a <remap> in the launch file does so, too.",
-        node=end.node,
-    )
-
-
-def _of_types(end: End, other: End) -> Finding:
-    return Finding(
-        "type",
-        f"{end.node} subscribes to {end.topic} with messages of type {end.type}, and"
-        f" {other.node} publishes {other.type} there: with these names, nothing arrives.",
-        end.file,
-        end.line,
-        WARNING,
-        expected=other.type,
-        seen=end.type,
-        fix="Let both use the same type, or give the topics two names.",
-        node=end.node,
-    )
+def _apart(end: End, other: End, id_: str) -> Iterator[Finding]:
+    """Yield the Finding about two ends that do not meet, as their topics or their types differ."""
+    if id_ == "topic":
+        where = f"{end.topic}, where no node of this package publishes, and"
+        what = f"publishes on {other.topic}, with the same type."
+        expected, seen = other.topic, end.topic
+        fix = "Give both topics one name; a <remap> in the launch file does so, too."
+    else:
+        where = f"{end.topic} with messages of type {end.type}, and"
+        what = f"publishes {other.type} there: with these names, nothing arrives."
+        expected, seen = other.type, end.type
+        fix = "Let both use the same type, or give the topics two names."
+    said = f"{end.node} subscribes to {where} {other.node} {what}"
+    place = end.file, end.line
+    yield Finding(id_, said, *place, WARNING, expected, seen, fix, node=end.node)
 
 
 def _of_cpp(shape: re.Pattern[str], text: str, node: str, file: str) -> Iterator[End]:
