@@ -7,11 +7,11 @@ import check_rules
 import pytest
 from mrp_check.contract.finding import NOTE, WARNING
 from mrp_check.rules import (
+    agreed,
     arguments,
     before_init,
     cmake,
     copied,
-    dependencies,
     divided,
     first_message,
     goals,
@@ -256,12 +256,12 @@ def test_what_cmake_alone_names(tmp_path):
     text = check_rules.CMAKE.replace("rospy std", "rospy rostest std", 1)
     text += "generate_messages(DEPENDENCIES std_msgs roslib)\n"
     package = check_rules.make(tmp_path / "some_pkg", CMakeLists_DOT_txt=text)
-    said = check_rules.file_findings(dependencies, package, spec=SPEC)
+    said = check_rules.file_findings(agreed, package, spec=SPEC)
     said = [one.message.split(",")[0] for one in said if one.severity == WARNING]
     assert said == ["CMakeLists.txt asks for rostest", "generate_messages() names roslib"]
     text = check_rules.CMAKE.replace("rospy std", "rospy nowhere_srv std", 1)
     package = check_rules.make(tmp_path / "other_pkg", CMakeLists_DOT_txt=text)
-    said = check_rules.file_findings(dependencies, package, spec=SPEC)
+    said = check_rules.file_findings(agreed, package, spec=SPEC)
     assert "CMakeLists.txt asks for nowhere_srv" in {one.message.split(",")[0] for one in said}
     assert uses.absent_header(package, "nowhere_srv/A.h") == "nowhere_srv"
     assert uses.absent_header(package, "elsewhere_srv/A.h") is None

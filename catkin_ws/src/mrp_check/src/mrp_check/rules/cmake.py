@@ -19,6 +19,11 @@ _ROUND = re.compile(
     r"^[^#\n]*\$\(((?:CATKIN|CMAKE|PROJECT|catkin)_\w+|PROJECT_NAME)\)", re.MULTILINE
 )
 _USES_FOUND = ("include_directories", "target_include_directories", "target_link_libraries")
+# Commands that are called once, and what a second call does.
+_ONCE = {
+    "project": "a second CMakeLists.txt may have been pasted below the first",
+    "catkin_package": "what it says replaces all that the first one said",
+}
 _LOST = ", and its executables are put where roslaunch and rosrun do not look"
 
 
@@ -29,7 +34,9 @@ def _findings(case: Case) -> Iterator[Finding]:
         yield from _no_folder(case.package, case.model)
         yield from _in_round_brackets(case.package)
         yield from _twice(case.model)
-        yield from () if case.spec.is_contract else _old(case.package, case.model)
+        if not case.spec.is_contract:
+            yield from _old(case.package, case.model)
+            yield from _again(case.package, case.model)
     else:
         yield Finding(
             "cmake",
@@ -58,16 +65,19 @@ def _in_round_brackets(package: Package) -> Iterator[Finding]:
 
 
 def _old(package: Package, model: Model) -> Iterator[Finding]:
-    """Yield a note if CMakeLists.txt is written for a CMake that catkin itself does not take."""
+    """Yield a finding if CMakeLists.txt is written for an older CMake than catkin is: a warning
+    where CMake warns, too. https://cmake.org/cmake/help/latest/release/3.19.html#deprecated
+    """
     asked = next((one for one in model.calls if one.command == "cmake_minimum_required"), None)
     numbers = [int(part) for part in re.findall(r"\d+", " ".join(asked.arguments))] if asked else []
     if asked and numbers and numbers < [3, 0, 2]:
         yield Finding(
             "cmake",
-            "This asks for a CMake older than catkin's own: CMake warns of it, and CMake 4 stops.",
+            "This asks for a CMake older than catkin's own: a newer CMake warns of it, and CMake 4"
+            " stops.",
             FILE,
             asked.line,
-            NOTE,
+            WARNING if numbers < [2, 8, 12] else NOTE,
             expected="cmake_minimum_required(VERSION 3.10)",
             seen=package.line(FILE, asked.line),
             fix="Write cmake_minimum_required(VERSION 3.10).",
@@ -92,6 +102,25 @@ def _twice(model: Model) -> Iterator[Finding]:
                 expected="one call, which names all",
                 seen=f"find_package({' '.join(call.arguments)})",
                 fix=f"Write all of it into line {first.line}, and take this one out.",
+            )
+
+
+def _again(package: Package, model: Model) -> Iterator[Finding]:
+    """Yield a warning for each call that does over again what an earlier one did."""
+    if not model.complete and any(call.command == "if" for call in model.calls):
+        return  # CMake makes one of the two
+    for command, why in _ONCE.items():
+        calls = [one for one in model.calls if (one.command, one.file) == (command, FILE)]
+        for call in [one for one in calls[1:] if one.line != calls[0].line]:
+            yield Finding(
+                "cmake",
+                f"{command}() is called again, after line {calls[0].line}: {why}.",
+                FILE,
+                call.line,
+                WARNING,
+                expected="one call",
+                seen=package.line(FILE, call.line),
+                fix=f"Write all of it into line {calls[0].line}, and take this one out.",
             )
 
 

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from typing import Collection, Iterable, Iterator, Mapping
+from typing import Collection, Iterable, Iterator
 
 from catkin_pkg.package import Package as Manifest
 
@@ -15,22 +15,20 @@ from mrp_check.contract.words import nearest
 from mrp_check.sources import uses
 from mrp_check.sources.uses import Use
 from mrp_check.student.cmake import Call, Model
-from mrp_check.student.manifest import FILE, declared, first_dependency
+from mrp_check.student.manifest import FILE, declared, first_dependency, named
 from mrp_check.student.package import Package
 
 
 def _findings(case: Case) -> Iterator[Finding]:
     package, model, (manifest, _) = case.package, case.model, case.manifest
-    is_known = uses.is_ros_package if case.spec.is_contract else uses.is_called_so
-    used = uses.of(package, model, is_known)
+    used = uses.of_all(package, model, case.spec.is_contract)
     # Which packages the exercise is about: to leave one of them out is the manifest's fault. Any
     # other is the fault of the line that uses it.
     own = {"roscpp", "rospy"} | {topic.type.split("/")[0] for topic in case.spec.topics.values()}
     if not case.spec.is_contract:
-        used = {**uses.of_launch(package), **used}
         own.update(used)
     for name, use in sorted(used.items()):
-        in_manifest = manifest is None or name in _all(manifest, tests=not use.firm)
+        in_manifest = manifest is None or name in named(manifest, tests=not use.firm)
         is_open = model.catkin is None or model.finds_all or use.language == "launch"
         in_cmake = is_open or name in model.components
         if in_manifest and manifest is not None:
@@ -42,18 +40,6 @@ def _findings(case: Case) -> Iterator[Finding]:
             yield _not_in_manifest(package, name, use, manifest, used)
         if not in_cmake and model.catkin:
             yield _not_in_cmake(name, use, model, model.catkin)
-    if manifest is not None:
-        yield from _several(package, manifest)
-        yield from _no_packages(package, manifest, used)
-        yield from _passed_on(package, used, manifest, model)
-        if model.catkin and not case.spec.is_contract:
-            yield from _asked_for(package, manifest, model, used)
-            yield from _not_found(model)
-
-
-def _all(manifest: Manifest, tests: bool) -> set[str]:
-    known = declared(manifest)
-    return set().union(*(names for kind, names in known.items() if kind != "test" or tests))
 
 
 def _foreign(package: Package, name: str, use: Use) -> Finding:
@@ -99,48 +85,10 @@ def _misspelt(name: str, names: Iterable[str], used: Collection[str]) -> str | N
     return nearest(name, others, 0.8)
 
 
-def _several(package: Package, manifest: Manifest) -> Iterator[Finding]:
-    """Yield a warning for each tag of package.xml that has the names of several packages."""
-    for name in sorted(_all(manifest, tests=True)):
-        if len(name.split()) > 1:
-            line = package.find_line(FILE, name.split()[0], 1)
-            yield Finding(
-                "dependencies",
-                f"package.xml names several packages in one tag: '{name}' is taken for the name of"
-                " one, which does not exist.",
-                FILE,
-                line,
-                WARNING,
-                expected="a tag for each package",
-                seen=package.line(FILE, line),
-                fix="Write one tag for each.",
-            )
-
-
-def _no_packages(package: Package, manifest: Manifest, used: Collection[str]) -> Iterator[Finding]:
-    """Yield a warning for each misspelt name that package.xml has beside the right one."""
-    names = _all(manifest, tests=True)
-    for name in sorted(names - {*used}):
-        near = nearest(name, names - {name}, 0.9)
-        if near and "-" not in name and uses.exists(near) and not uses.exists(name):
-            line = package.find_line(FILE, f">{name}<", 1)
-            yield Finding(
-                "dependencies",
-                f"package.xml names {name}, and there is no such package. Perhaps {near} is meant.",
-                FILE,
-                line,
-                WARNING,
-                expected="the name of a package",
-                seen=package.line(FILE, line),
-                fix=f"Write {near} for {name}.",
-                change=(f">{name}<", f">{near}<"),
-            )
-
-
 def _not_in_manifest(
     package: Package, name: str, use: Use, manifest: Manifest, used: Collection[str]
 ) -> Finding:
-    near = _misspelt(name, _all(manifest, tests=True), used)
+    near = _misspelt(name, named(manifest), used)
     line = (near and package.find_line(FILE, f">{near}<")) or first_dependency(package)
     text = package.lines(FILE)[line - 1]  # with its indent
     tags = f"<depend>{name}</depend>"
@@ -181,77 +129,6 @@ def _not_in_cmake(name: str, use: Use, model: Model, call: Call) -> Finding:
         fix=f"Write {name} for {near}." if near else f"Add {name} to COMPONENTS.",
         change=(near, name) if near else None,
     )
-
-
-def _asked_for(
-    package: Package, manifest: Manifest, model: Model, used: Collection[str]
-) -> Iterator[Finding]:
-    """Yield a warning for each package that CMakeLists.txt alone names: nothing uses it."""
-    known = {*_all(manifest, tests=True), *used, "catkin", "message_generation", "genmsg"}
-    for name, call in model.components.items():
-        is_here = uses.is_ros_package(name)
-        is_absent = call.arguments[0] == "catkin" and not nearest(name, known, 0.8)
-        if name not in known and (is_here or is_absent):
-            yield Finding(
-                "dependencies",
-                f"CMakeLists.txt asks for {name}, and package.xml does not name it: where it is not"
-                " installed, CMake stops.",
-                call.file,
-                call.line_of(package.lines(call.file), name),
-                WARNING,
-                expected=f"<build_depend>{name}</build_depend>; or no {name} in COMPONENTS",
-                seen=f"{name} in {call.file}, and not in package.xml",
-                fix=f"Take {name} out of COMPONENTS if nothing of it is used; or declare it.",
-            )
-
-
-def _of_messages(model: Model) -> list[str]:
-    """Return the packages whose messages the package's own ones have parts of."""
-    named = model.generate.arguments if model.generate else []
-    return [name for name in named if uses.is_ros_package(name)]
-
-
-def _not_found(model: Model) -> Iterator[Finding]:
-    """Yield a warning for each package that generate_messages() names, and nothing finds."""
-    for name in _of_messages(model):
-        if model.generate and name not in model.components:
-            yield Finding(
-                "dependencies",
-                f"generate_messages() names {name}, and find_package(catkin ...) does not: CMake"
-                " knows it only if another package brings it along.",
-                model.generate.file,
-                model.generate.line,
-                WARNING,
-                expected=f"{name} in find_package(catkin REQUIRED COMPONENTS ...)",
-                seen=f"generate_messages({' '.join(model.generate.arguments)})",
-                fix=f"Add {name} to the COMPONENTS of find_package().",
-            )
-
-
-def _passed_on(
-    package: Package, used: Mapping[str, Use], manifest: Manifest, model: Model
-) -> Iterator[Finding]:
-    """Yield a finding about CATKIN_DEPENDS."""
-    call = model.catkin_package
-    if call is None:
-        return
-    cpp = {n for n, use in used.items() if use.language == "cpp" and use.firm}
-    needed = cpp & declared(manifest)["build"]
-    if model.generate and model.message_files:
-        needed |= {"message_runtime", *_of_messages(model)}
-    missing = sorted(needed - set(model.depends))
-    if missing:
-        yield Finding(
-            "dependencies",
-            "catkin_package() does not pass on what the package's code depends on: CATKIN_DEPENDS"
-            f" has no {', no '.join(missing)}. Within this package it works all the same.",
-            call.file,
-            call.line_of(package.lines(call.file), "CATKIN_DEPENDS"),
-            NOTE,
-            expected=f"catkin_package(CATKIN_DEPENDS {' '.join([*model.depends, *missing])})",
-            seen=f"catkin_package({' '.join(call.arguments)})",
-            fix=f"Add {' '.join(missing)} to CATKIN_DEPENDS.",
-        )
 
 
 RULE = Rule(

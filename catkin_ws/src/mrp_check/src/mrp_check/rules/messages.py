@@ -10,7 +10,7 @@ from catkin_pkg.package import Package as Manifest
 
 from mrp_check import evidence
 from mrp_check.case import Case
-from mrp_check.contract.finding import ERROR, NOTE, WARNING, Finding, Line
+from mrp_check.contract.finding import ERROR, WARNING, Finding, Line
 from mrp_check.contract.requirements import Requirement, Rule
 from mrp_check.contract.spec import PACKAGE
 from mrp_check.contract.words import last_part, nearest
@@ -22,7 +22,8 @@ from mrp_check.student.package import Package
 FILE = "CMakeLists.txt"
 _GENERATION = "message_generation"
 # What of package.xml asks for it where nothing is built, too.
-_AFTER_BUILD = rf"^\s*<(?:exec_|run_)?depend>\s*{_GENERATION}\s*<"
+_AFTER_BUILD = rf"^\s*<(?:exec_|run_|build_export_)?depend>\s*{_GENERATION}\s*<"
+_OF_MESSAGES = ("_msgs", "_srvs", "_msg", "_srv")  # how packages of messages are called
 # The commands that only message_generation brings.
 _BROUGHT = r"^\s*(add_(message|service|action)_files|generate_messages)\s*\("
 
@@ -36,6 +37,7 @@ def _findings(case: Case) -> Iterator[Finding]:
         for half, said in enumerate((service.request, service.response)):
             yield from _definition(package, path, said, half) if said else ()
     files = [path for path in package.of_kind(*uses.DEFINITIONS) if path.count("/") <= 1]
+    yield from () if case.spec.is_contract else _of_others(package, model)
     made = model.message_files or model.generate
     if not files and not made or not model.complete and model.catkin is None:
         return
@@ -48,13 +50,13 @@ def _findings(case: Case) -> Iterator[Finding]:
 
 
 def _after_build(package: Package, manifest: Manifest, model: Model) -> Iterator[Finding]:
-    """Yield a note for each place that asks for message_generation where nothing is built.
+    """Yield a warning for each place that asks for message_generation where nothing is built.
 
     https://docs.ros.org/en/noetic/api/catkin/html/howto/format2/building_msgs.html
     """
     places: list[Line] = []
-    named = package.first_match(["package.xml"], _AFTER_BUILD)
-    if named and _GENERATION in declared(manifest)["exec"]:
+    named, known = package.first_match(["package.xml"], _AFTER_BUILD), declared(manifest)
+    if named and _GENERATION in known["exec"] | known["export"]:
         places.append(named)
     if model.catkin_package and _GENERATION in model.depends:
         call = model.catkin_package
@@ -66,7 +68,7 @@ def _after_build(package: Package, manifest: Manifest, model: Model) -> Iterator
             " message_runtime.",
             file,
             line,
-            NOTE,
+            WARNING,
             expected="message_runtime",
             seen=package.line(file, line),
             fix=f"Write message_runtime here, and <build_depend>{_GENERATION}</build_depend> in"
@@ -240,11 +242,9 @@ def _order(package: Package, model: Model) -> Iterator[Finding]:
     own = uses.made(package)
     for target in model.targets.values():
         used = [
-            (file, line, header)
-            for file in [*target.sources, *_headers(package, model, target)]
-            if file in package.files
-            for header, line in uses.includes(package, file)
-            if header.split("/")[0] == package.name and header.split("/")[-1][:-2] in own
+            one
+            for one in _included(package, model, target)
+            if one[2].split("/")[0] == package.name and last_part(one[2])[:-2] in own
         ]
         waits = any(_is_made(package, model, word) for word in target.dependencies)
         if used and not waits and _knows_what_waits(model) and model.generate is not None:
@@ -260,6 +260,45 @@ def _order(package: Package, model: Model) -> Iterator[Finding]:
                 fix=f"Add add_dependencies({target.name} ${{${{PROJECT_NAME}}_EXPORTED_TARGETS}})"
                 " after its add_executable().",
             )
+
+
+def _of_others(package: Package, model: Model) -> Iterator[Finding]:
+    """Yield a warning for each target that does not wait for the messages of a package which can
+    only be made in the same workspace.
+
+    https://docs.ros.org/en/noetic/api/catkin/html/howto/format2/cpp_msg_dependencies.html
+    """
+    others = [one for one in model.components if one.endswith(_OF_MESSAGES)]
+    others = [one for one in others if one != package.name and not uses.exists(one)]
+    for target in model.targets.values() if _knows_what_waits(model) else ():
+        for name in others:
+            used = [one for one in _included(package, model, target) if f"/{name}/" in f"/{one[2]}"]
+            waits = (f"{name}_", "catkin_EXPORTED_TARGETS")
+            if used and not any(one in word for word in target.dependencies for one in waits):
+                file, line, header = used[0]
+                yield Finding(
+                    "messages",
+                    f"The target {target.name} does not wait until {header}, which {file} includes"
+                    f" in line {line}, has been made by {name}.",
+                    target.file,
+                    target.line,
+                    WARNING,
+                    expected=f"add_dependencies({target.name} ${{catkin_EXPORTED_TARGETS}})",
+                    seen="no such call",
+                    fix=f"Add add_dependencies({target.name} ${{catkin_EXPORTED_TARGETS}}) after"
+                    " its add_executable().",
+                )
+
+
+def _included(package: Package, model: Model, target: Target) -> list[tuple[str, int, str]]:
+    """Return (file, line, header) of what a target's own files include."""
+    files = [*target.sources, *_headers(package, model, target)]
+    return [
+        (file, line, header)
+        for file in files
+        if file in package.files
+        for header, line in uses.includes(package, file)
+    ]
 
 
 def _is_made(package: Package, model: Model, word: str) -> bool:

@@ -11,6 +11,7 @@ from mrp_check import evidence
 from mrp_check.case import Case
 from mrp_check.contract.finding import WARNING, Finding
 from mrp_check.contract.requirements import Requirement, Rule
+from mrp_check.sources import uses
 from mrp_check.student.package import Package
 
 # https://www.ros.org/reps/rep-0144.html
@@ -22,6 +23,7 @@ def _findings(case: Case) -> Iterator[Finding]:
     package, launch = case.package, case.launch
     if not case.spec.is_contract:
         yield from _unusual(package)
+        yield from _of_ros(package)
     if case.manifest[0] is None or case.model.project is None:
         return
     project, call = case.model.project
@@ -65,6 +67,25 @@ def _unusual(package: Package) -> Iterator[Finding]:
         seen=package.line("package.xml", line),
         fix="Rename the package, where it is not in use yet.",
     )
+
+
+def _of_ros(package: Package) -> Iterator[Finding]:
+    """Yield a warning if the package is called like one of ROS's own, and is another one: that has
+    its page in its package.xml."""
+    name, text = package.name, package.text("package.xml")
+    if uses.is_of_ros(name) and f"ros.org/{name}" not in text:
+        line = package.find_line("package.xml", "<name", 1)
+        yield Finding(
+            "package-name",
+            f"ROS has a package {name}: within this workspace, and after it in a shell, that one"
+            " cannot be found any more.",
+            "package.xml",
+            line,
+            WARNING,
+            expected="a name of its own",
+            seen=package.line("package.xml", line),
+            fix=f"Rename the package, such as my_{name}.",
+        )
 
 
 RULE = Rule(

@@ -8,7 +8,7 @@ import posixpath
 from typing import Iterator
 
 from mrp_check.case import Case
-from mrp_check.contract.finding import NOTE, WARNING, Finding
+from mrp_check.contract.finding import WARNING, Finding
 from mrp_check.contract.requirements import Rule
 from mrp_check.student.package import Package
 
@@ -31,7 +31,7 @@ def _old(package: Package) -> Iterator[Finding]:
             "cmake",
             f"{FILE} imports distutils, which Python has not any more from 3.12 on.",
             *place,
-            NOTE,
+            WARNING,
             expected="from setuptools import setup",
             seen=package.line(*place),
             fix="Take setup from setuptools; package.xml then needs"

@@ -19,6 +19,7 @@ from mrp_check.student.package import Package
 _LAUNCH_FILE = {"add_rostest": 0, "add_rostest_gtest": 1, "add_rostest_gmock": 1}  # its place
 _NO_LAUNCH_FILES = (".cpp", ".cc", ".cxx", ".py")
 _MAIN = re.compile(r"\bint\s+main\s*\(")
+_EXPORTED = re.compile(r"\$\{(\w+)_EXPORTED_TARGETS\}")
 _NO_FOLDERS = ("BEFORE", "AFTER", "SYSTEM")
 
 
@@ -29,7 +30,9 @@ def _findings(case: Case) -> Iterator[Finding]:
     yield from _no_system_libraries(case.package, case.model)
     yield from _no_folders(case.package, case.model)
     yield from _no_launch_files(case.package)
-    yield from _commented_out(case) if not case.spec.is_contract else ()
+    if not case.spec.is_contract:
+        yield from _commented_out(case)
+        yield from _empty_dependencies(case.package, case.model)
 
 
 def _no_sources(case: Case) -> Iterator[Finding]:
@@ -72,6 +75,27 @@ def _no_dependencies(package: Package, model: Model) -> Iterator[Finding]:
                     + (" generate_messages() makes it, where it is called." if of_messages else ""),
                     f"a target {name}",
                     f"Write {near} for {name}." if near else f"Take {name} out.",
+                )
+
+
+def _empty_dependencies(package: Package, model: Model) -> Iterator[Finding]:
+    """Yield a warning for each ${x_EXPORTED_TARGETS} of a package x that CMake does not find: it is
+    empty, so that CMake's own trace has nothing of it."""
+    file = "CMakeLists.txt"
+    known = {"catkin", package.name, *model.components, *(model.project or ())[:1]}
+    for call in parsed(package.text(file), file):
+        for word in call.arguments[1:] if call.command == "add_dependencies" else ():
+            match = _EXPORTED.fullmatch(word)
+            if match and match[1] not in known:
+                near = nearest(match[1], known)
+                yield _missing(
+                    package,
+                    call,
+                    f"{match[1]}_EXPORTED_TARGETS",
+                    f"{word} is empty, as find_package() names no {match[1]}: {call.arguments[0]}"
+                    f" waits for nothing of it.{perhaps(near)}",
+                    "a package that find_package() names, or this one",
+                    f"Write {near} for {match[1]}." if near else f"Take {word} out.",
                 )
 
 

@@ -218,16 +218,21 @@ _WELL_KNOWN = set(
     (
         "turtlesim actionlib tf tf2_ros cv_bridge image_transport dynamic_reconfigure pcl_ros"
         " moveit_commander rviz gazebo_ros controller_manager actionlib_tutorials roscpp_tutorials"
-        " rospy_tutorials learning_tf turtle_tf turtlebot3_gazebo tf_conversions laser_geometry"
+        " rospy_tutorials turtle_tf turtlebot3_gazebo tf_conversions laser_geometry"
         " tf2_geometry_msgs tf2_sensor_msgs"
     ).split()
 )
 
 
+def is_of_ros(name: str) -> bool:
+    """Return whether a name is that of one of ROS's own packages, on this machine or elsewhere."""
+    return name in _WELL_KNOWN or is_ros_package(name)
+
+
 def is_called_so(name: str) -> bool:
     """Return whether a name is that of a ROS package, on this machine or elsewhere."""
     is_messages = name.endswith(("_msgs", "_srvs")) and not nearest(name, ["std_msgs"], 0.85)
-    return is_messages or name in _WELL_KNOWN or is_ros_package(name)
+    return is_messages or name == "learning_tf" or is_of_ros(name)
 
 
 def of(
@@ -255,6 +260,14 @@ def of(
             if is_known(name):
                 _add(found, package, name, Use(file, line, "python", True))
     return found
+
+
+def of_all(package: Package, model: Model, is_contract: bool) -> dict[str, Use]:
+    """Return name -> Use of what the sources use; without a contract, of what need not be on this
+    machine and of what the launch files start, too."""
+    if is_contract:
+        return of(package, model)
+    return {**of_launch(package), **of(package, model, is_called_so)}
 
 
 def of_launch(package: Package) -> dict[str, Use]:

@@ -6,16 +6,20 @@ from __future__ import annotations
 import re
 import xml.parsers.expat
 import xml.sax.saxutils
+from typing import Iterator
 
 from catkin_pkg.package import InvalidPackage, parse_package_string
 from catkin_pkg.package import Package as Manifest
 
 from mrp_check.contract.finding import Finding
+from mrp_check.contract.words import line_of
 from mrp_check.student.package import Package
 from mrp_check.student.workspace import Workspace
 from mrp_check.student.xml_file import elements, xml_finding
 
 FILE = "package.xml"
+# A comment, or a tag with the name of a package.
+_DEPENDENCY = re.compile(r"<!--.*?-->|<(\w+_depend)\b[^>]*>\s*([\w-]+)\s*<", re.DOTALL)
 
 
 def parse(package: Package) -> tuple[Manifest | None, Finding | None]:
@@ -71,6 +75,23 @@ def declared(manifest: Manifest) -> dict[str, set[str]]:
         "export": {d.name for d in manifest.build_export_depends},
         "test": {d.name for d in manifest.test_depends},
     }
+
+
+def named(manifest: Manifest, tests: bool = True) -> set[str]:
+    """Return the names of all packages that a manifest declares, with or without those of tests."""
+    known = declared(manifest).items()
+    return set().union(*(names for kind, names in known if kind != "test" or tests))
+
+
+def doubled(package: Package) -> Iterator[tuple[str, int]]:
+    """Yield (name, line) of each package that stands in one kind of tag already.
+
+    catkin_pkg refuses it for <depend>, and takes it for all others."""
+    seen: set[tuple[str, str]] = set()
+    for match in _DEPENDENCY.finditer(package.text(FILE)):
+        if match[1] and match.groups() in seen:
+            yield match[2], line_of(match, 1)
+        seen.add((match[1], match[2]))
 
 
 def first_dependency(package: Package) -> int:
