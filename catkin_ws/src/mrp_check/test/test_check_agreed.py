@@ -58,6 +58,21 @@ def test_what_the_two_files_say_of_other_packages(components, tags, severity, fo
 
 
 @pytest.mark.parametrize(
+    ("components", "text", "found"),
+    [
+        ("roscpp rospy tf)", "", [3]),
+        ("roscpp rospy tf)", "#include <tf/tf.h>\nimport rospy\n", []),
+        ("roscpp std_msgs message_runtime)", "<launch/>", []),
+    ],
+    ids=range(3),
+)
+def test_what_nothing_uses_is_a_note(components, text, found, tmp_path):
+    known = known_case(tmp_path, components, DEPEND, **{"some_DOT_txt": text, "msg__A_DOT_msg": ""})
+    known.model.catkin_package = None
+    assert lines_of(agreed, known, NOTE) == found
+
+
+@pytest.mark.parametrize(
     ("added", "severity", "found"),
     [
         ("", NOTE, []),

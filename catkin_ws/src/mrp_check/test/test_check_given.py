@@ -8,7 +8,6 @@ import pytest
 from mrp_check.contract.finding import ERROR, NOTE, WARNING
 from mrp_check.rules import (
     angles,
-    arguments,
     cmake,
     compile,
     definitions,
@@ -252,11 +251,6 @@ def test_a_script_hides_the_module_that_it_imports(line, found, tmp_path):
 )
 def test_the_difference_of_two_angles(lines, found, tmp_path):
     assert lines_of(angles, case(tmp_path, "py", lines)) == found
-
-
-@pytest.mark.parametrize(("read", "found"), [("atoll(argv[1])", [4]), ("std::stoll(argv[1])", [])])
-def test_an_argument_that_is_no_number(read, found, tmp_path):
-    assert lines_of(arguments, case(tmp_path, "cpp", f"if (argc > 1) a = {read};"), NOTE) == found
 
 
 @pytest.mark.parametrize(

@@ -70,11 +70,11 @@ def test_a_parameter_that_a_launch_file_sets_under_a_name_like_it_is_named(tmp_p
     ("code", "line", "says"),
     [
         ("std::string name = argv[1];\n  if (argc == 2) {}", 4, "look at argc first"),
-        ("if (argc != 3)\n  {\n    return 1;\n  }\n  a = atoi(argv[3]);", 8, "argc == 3 alone"),
-        ("if (argc != 3) return 1;\n  a = atoi(argv[2]);", None, ""),
-        ("if (argc < 2) {}\n  a = atoi(argv[1]);", None, ""),
-        ("if (argv[1] == nullptr) {}\n  a = atoi(argv[1]);", None, ""),
-        ("read(argc, argv);\n  a = atoi(argv[1]);", None, ""),
+        ("if (argc != 3)\n  {\n    return 1;\n  }\n  a = argv[3];", 8, "argc == 3 alone"),
+        ("if (argc != 3) return 1;\n  a = argv[2];", None, ""),
+        ("if (argc < 2) {}\n  a = argv[1];", None, ""),
+        ("if (argv[1] == nullptr) {}\n  a = argv[1];", None, ""),
+        ("read(argc, argv);\n  a = argv[1];", None, ""),
         ("// a = argv[1];", None, ""),
     ],
 )

@@ -127,7 +127,7 @@ def test_what_is_logged_is_no_format(logs, found, tmp_path):
     [
         (["a.py", "b.py"], None, ["b.py"]),
         (["a.cpp", "b.cpp"], None, ["b.cpp"]),
-        (["a.py", "b.cpp"], None, []),
+        (["a.py", "b.cpp"], None, ["b.cpp"]),
         (["a.py", "b.py"], True, []),
         (["a.py", "a.py"], None, []),
     ],

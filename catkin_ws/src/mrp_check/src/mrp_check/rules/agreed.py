@@ -26,6 +26,8 @@ _KEYS = {
     "PCL": ("pcl", "libpcl-all-dev"),
 }
 _MAKES = {"message_generation", "genmsg"}  # of ROS: they make code of messages
+# They bring commands of CMake.
+_OF_CMAKE = {*_MAKES, "message_runtime", "roslaunch", "roslint", "rostest", "rosunit"}
 
 
 def _findings(case: Case) -> Iterator[Finding]:
@@ -43,6 +45,7 @@ def _findings(case: Case) -> Iterator[Finding]:
             yield from _at_another_time(package, manifest, model, used)
             yield from _not_found(package, model)
             yield from _makes_nothing(package, model)
+            yield from _for_nothing(package, model, used)
 
 
 def _in_manifest(
@@ -200,6 +203,32 @@ def _makes_nothing(package: Package, model: Model) -> Iterator[Finding]:
             "no message_generation",
             "Take message_generation out, and out of package.xml, with message_runtime.",
         )
+
+
+def _for_nothing(package: Package, model: Model, used: Collection[str]) -> Iterator[Finding]:
+    """Yield a note about what CMake finds, and no file of the package names."""
+    files = [one for one in package.files if one not in (FILE, "CMakeLists.txt")]
+    known = {*used, *_of_messages(model), *_OF_CMAKE}
+    if package.of_kind(*uses.DEFINITIONS):
+        known.add("std_msgs")  # of a Header
+    unused = [
+        name
+        for name in model.components
+        if uses.is_called_so(name) and name not in known
+        if not package.first_match(files, rf"\b{'ros/ros.h' if name == 'roscpp' else name}\b")
+    ]
+    if unused and model.catkin and package.of_kind("cpp", "python"):
+        finding = _in_cmake(
+            package,
+            model.catkin,
+            unused[0],
+            f"CMakeLists.txt asks for {', '.join(unused)}, and nothing of the package uses"
+            f" {'it' if len(unused) == 1 else 'them'}.",
+            "what the package uses",
+            f"Take {', '.join(unused)} out, and out of package.xml.",
+        )
+        finding.severity = NOTE
+        yield finding
 
 
 def _passed_on(

@@ -8,7 +8,7 @@ import re
 from typing import Iterator
 
 from mrp_check.case import Case
-from mrp_check.contract.finding import NOTE, WARNING, Finding
+from mrp_check.contract.finding import WARNING, Finding
 from mrp_check.contract.requirements import ANY, Rule
 from mrp_check.contract.words import line_of
 from mrp_check.sources import uses
@@ -33,6 +33,7 @@ def _findings(case: Case) -> Iterator[Finding]:
             source = case.facts.python.get(file)
             if source:
                 yield from _of_python(case, node, source)
+                yield from _of_python_number(case, node, source)
             elif case.package.kind(file) == "cpp":
                 code = _TAKEN.sub(uses.blank, uses.code(case.package, file))
                 yield from _of(node, file, code)
@@ -72,8 +73,31 @@ def _of_python(case: Case, node: str, source: Source) -> Iterator[Finding]:
         )
 
 
+def _of_python_number(case: Case, node: str, source: Source) -> Iterator[Finding]:
+    """Yield a warning about the first argument that must be a number, if nobody catches what Python
+    raises of one that is none."""
+    for call in source.nodes(ast.Call):
+        name = call.func.id if isinstance(call.func, ast.Name) else ""
+        of = call.args[0] if name in ("int", "float") and call.args else None
+        is_argument = isinstance(of, ast.Subscript) and source.dotted(of.value) == "sys.argv"
+        if is_argument and not source.is_guarded(call, "ValueError"):
+            yield Finding(
+                "starts",
+                f"{name}() raises a ValueError if what is given is no number, and {node} does not"
+                " catch it: it ends with a traceback.",
+                source.file,
+                call.lineno,
+                WARNING,
+                expected="try and except ValueError, or argparse",
+                seen=case.package.line(source.file, call.lineno),
+                fix="Catch the ValueError, and say what was expected.",
+                node=node,
+            )
+            return
+
+
 def _of_number(case: Case, node: str, file: str, code: str) -> Iterator[Finding]:
-    """Yield a note about the first argument that becomes 0 if it is no number.
+    """Yield a warning about the first argument that becomes 0 if it is no number.
 
     https://en.cppreference.com/w/cpp/string/byte/atoi
     """
@@ -85,7 +109,7 @@ def _of_number(case: Case, node: str, file: str, code: str) -> Iterator[Finding]
             f"{name}() makes 0 of an argument that is no number: {node} goes on with a wrong one.",
             file,
             line_of(read),
-            NOTE,
+            WARNING,
             expected="std::stoll(), or std::stod(), which throws std::invalid_argument",
             seen=case.package.line(file, line_of(read)),
             fix=f"Write std::stoll() or std::stod() for {name}(), and say what was wrong.",

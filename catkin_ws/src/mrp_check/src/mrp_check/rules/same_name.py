@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""No two programs of one language call themselves the same: the second one ends the first.
+"""No two programs call themselves the same: the second one ends the first.
 
-A talker in Python and one in C++ are two ways of writing one node.
+A talker in Python and one in C++ are two ways of writing one node: of them it is a note.
 """
 
 from __future__ import annotations
@@ -10,21 +10,22 @@ from typing import Iterator
 
 from mrp_check.case import Case
 from mrp_check.confined.places import Kind, Place
-from mrp_check.contract.finding import WARNING, Finding
+from mrp_check.contract.finding import NOTE, WARNING, Finding
 from mrp_check.contract.requirements import ANY, Rule
 
 
 def _findings(case: Case) -> Iterator[Finding]:
-    named: dict[tuple[str, str], dict[str, Place]] = {}
+    named: dict[str, dict[str, Place]] = {}
     for node in case.facts.sources:
         for place in case.facts.of(node, Kind.INIT)[:1]:
             if place.text and place.anonymous is not True:
-                key = place.text, case.package.kind(place.file)
-                named.setdefault(key, {})[node] = place
-    for (name, _), places in named.items():
+                named.setdefault(place.text, {})[node] = place
+    for name, places in named.items():
         first, *others = places
+        kinds = {node: case.package.kind(place.file) for node, place in places.items()}
         for node in others:
             place = places[node]
+            is_twin = [*kinds.values()].count(kinds[node]) == 1
             if place.file != places[first].file:
                 yield Finding(
                     "starts",
@@ -32,7 +33,7 @@ def _findings(case: Case) -> Iterator[Finding]:
                     " own names, the second one ends the first.",
                     place.file,
                     place.line,
-                    WARNING,
+                    NOTE if is_twin else WARNING,
                     expected="a name that no other node has",
                     seen=case.package.line(place.file, place.line),
                     fix="Give it a name of its own.",

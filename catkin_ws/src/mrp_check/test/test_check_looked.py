@@ -1,0 +1,68 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What may fail or be missing is looked at first: a call, an argument, a value of a message."""
+
+import pytest
+from mrp_check.contract.finding import NOTE
+from mrp_check.rules import arguments, ignored, indexed, lost_global
+from mrp_testing.proves import proves
+from one_source import case, lines_of
+
+pytestmark = pytest.mark.quick
+
+CLIENT = "ros::ServiceClient c = n.serviceClient<A>(a);"
+WAITS = "c.wait_for_server(rospy.Duration(5))"
+RESULT = "c.wait_for_result(rospy.Duration(5))"
+HEAR = "def hear(m):\n    "
+HEARS = "auto hear = [](const A::ConstPtr& m) {{ {} }};"
+
+
+@proves("What can fail and is not looked at is a warning, such as a service that nobody offers.")
+@pytest.mark.parametrize(
+    ("rule", "ending", "lines", "found"),
+    [
+        (ignored, "cpp", "c.waitForServer(ros::Duration(5));", [4]),
+        (ignored, "cpp", "if (!c.waitForServer(ros::Duration(5))) { return 1; }", []),
+        (ignored, "cpp", "bool b = c.waitForServer(ros::Duration(5));", []),
+        (ignored, "cpp", "c.waitForServer();", []),
+        (ignored, "cpp", 'ros::service::waitForService("a", 5000);', [4]),
+        (ignored, "cpp", 'ros::service::waitForService("a");', []),
+        (ignored, "cpp", "c.waitForResult(ros::Duration(5));\nc.getResult();", [4]),
+        (ignored, "cpp", "c.waitForResult(ros::Duration(5));\nc.getState();", []),
+        (ignored, "cpp", f"{CLIENT}\nc.call(s);", [5]),
+        (ignored, "cpp", f"{CLIENT}\nif (c.call(s)) {{}}", []),
+        (ignored, "cpp", f"{CLIENT}\nd.call(s);", []),
+        (ignored, "py", WAITS, [4]),
+        (ignored, "py", "c.wait_for_server()", []),
+        (ignored, "py", f"if not {WAITS}:\n    sys.exit(1)", []),
+        (ignored, "py", RESULT, [4]),
+        (ignored, "py", f"{RESULT}\nc.get_state()", []),
+        (arguments, "cpp", "if (argc > 1) a = atoi(argv[1]);", [4]),
+        (arguments, "cpp", "if (argc > 1) a = std::stoi(argv[1]);", []),
+        (arguments, "py", "if len(sys.argv) > 1:\n    int(sys.argv[1])", [5]),
+        (
+            arguments,
+            "py",
+            "n = len(sys.argv)\ntry:\n    int(sys.argv[1])\nexcept ValueError: a()",
+            [],
+        ),
+        (indexed, "py", f"{HEAR}a = m.ranges[180]", [5]),
+        (indexed, "py", f"{HEAR}m.ranges[0] = 1", []),
+        (indexed, "py", f"{HEAR}a = len(m.ranges) > 9 and m.ranges[9]", []),
+        (indexed, "py", f"{HEAR}a = m.covariance[0]", []),
+        (indexed, "py", "a = m.ranges[180]", []),
+        (indexed, "cpp", HEARS.format("a = m->data[2];"), [4]),
+        (indexed, "cpp", HEARS.format("if (m->data.size() > 2) a = m->data[2];"), []),
+        (indexed, "cpp", "a.data[2] = 1;\nb = c.data[1];", []),
+        (lost_global, "py", f"state = 1\n{HEAR}global stat\n    stat", []),
+        (lost_global, "py", f"states = 1\n{HEAR}global state\n    states = m", [6]),
+        (lost_global, "py", f"states = 1\n{HEAR}global states\n    states = m", []),
+        (lost_global, "py", f"states = 1\n{HEAR}global other", []),
+    ],
+    ids=range(32),
+)
+def test_what_may_be_missing_is_looked_at(rule, ending, lines, found, tmp_path):
+    assert lines_of(rule, case(tmp_path, ending, lines)) == found
+
+
+def test_a_wait_without_end_is_a_note(tmp_path):
+    assert lines_of(ignored, case(tmp_path, "cpp", "c.waitForServer();"), NOTE) == [4]
