@@ -33,7 +33,7 @@ def known_case(folder, components, tags, **files):
     return known
 
 
-@proves("What CMakeLists.txt and package.xml say of other packages is one and the same.")
+@proves("So is a package that only one of CMakeLists.txt and package.xml names.")
 @pytest.mark.parametrize(
     ("components", "tags", "severity", "found"),
     [

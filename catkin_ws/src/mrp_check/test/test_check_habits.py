@@ -206,7 +206,10 @@ def test_a_service_in_python_divides(lines, found, tmp_path):
     assert lines_of(divided, case(tmp_path, "py", service)) == found
 
 
-@proves("So is a README that names a program, a launch file or a service that the package has not.")
+@proves(
+    "So is a call that can fail and whose result nobody looks at, and a README that names a "
+    "program, a launch file or a service that the package has not.",
+)
 @pytest.mark.parametrize(
     ("command", "found"),
     [

@@ -16,7 +16,10 @@ HEAR = "def hear(m):\n    "
 HEARS = "auto hear = [](const A::ConstPtr& m) {{ {} }};"
 
 
-@proves("What can fail and is not looked at is a warning, such as a service that nobody offers.")
+@proves(
+    "So is a call that can fail and whose result nobody looks at, and a README that names a "
+    "program, a launch file or a service that the package has not.",
+)
 @pytest.mark.parametrize(
     ("rule", "ending", "lines", "found"),
     [
