@@ -3,7 +3,7 @@
 
 import pytest
 from mrp_check.contract.finding import NOTE
-from mrp_check.rules import arguments, ignored, indexed, lost_global
+from mrp_check.rules import arguments, ignored, indexed, lost_global, no_pause
 from mrp_testing.proves import proves
 from one_source import case, lines_of
 
@@ -12,6 +12,7 @@ pytestmark = pytest.mark.quick
 CLIENT = "ros::ServiceClient c = n.serviceClient<A>(a);"
 WAITS = "c.wait_for_server(rospy.Duration(5))"
 RESULT = "c.wait_for_result(rospy.Duration(5))"
+LOOKS = "while a:\n    try:\n        t = l.look(a, rospy.Time(0))\n    except E:\n        "
 HEAR = "def hear(m):\n    "
 HEARS = "auto hear = [](const A::ConstPtr& m) {{ {} }};"
 
@@ -56,12 +57,24 @@ HEARS = "auto hear = [](const A::ConstPtr& m) {{ {} }};"
         (indexed, "cpp", HEARS.format("a = m->data[2];"), [4]),
         (indexed, "cpp", HEARS.format("if (m->data.size() > 2) a = m->data[2];"), []),
         (indexed, "cpp", "a.data[2] = 1;\nb = c.data[1];", []),
+        (no_pause, "py", f"{LOOKS}continue\n    r.sleep()", [8]),
+        (no_pause, "py", f"{LOOKS}r.sleep()\n        continue\n    r.sleep()", []),
+        (no_pause, "py", f"{LOOKS}continue\n    r.sleep()".replace("Time", "Duration"), []),
+        (no_pause, "py", f"{LOOKS}r.sleep()\n    p.publish(t)", [4]),
+        (no_pause, "py", f"{LOOKS}print(1)\n    r.sleep()", []),
+        (no_pause, "cpp", "try { l.look(a); } catch (E& e) { continue; }\nr.sleep();", [4]),
+        (
+            no_pause,
+            "cpp",
+            "try { l.look(a); } catch (E& e) { r.sleep(); continue; }\nr.sleep();",
+            [],
+        ),
         (lost_global, "py", f"state = 1\n{HEAR}global stat\n    stat", []),
         (lost_global, "py", f"states = 1\n{HEAR}global state\n    states = m", [6]),
         (lost_global, "py", f"states = 1\n{HEAR}global states\n    states = m", []),
         (lost_global, "py", f"states = 1\n{HEAR}global other", []),
     ],
-    ids=range(32),
+    ids=range(39),
 )
 def test_what_may_be_missing_is_looked_at(rule, ending, lines, found, tmp_path):
     assert lines_of(rule, case(tmp_path, ending, lines)) == found

@@ -1,0 +1,73 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A loop pauses in each turn: in those in which something fails, and in all others."""
+
+from __future__ import annotations
+
+import ast
+import re
+from typing import Iterable, Iterator
+
+from mrp_check.case import Case
+from mrp_check.contract.finding import Finding
+from mrp_check.contract.requirements import ANY, Rule
+from mrp_check.contract.words import line_of
+from mrp_check.sources import in_both
+from mrp_check.sources.python_source import Source
+
+# What waits, or may: a name that looks like it is believed.
+_WAITS = re.compile(r"(?i)sleep|wait|spin|input|recv|accept|select|poll|read|get_?key|join|call")
+_CAUGHT = re.compile(r"\bcatch\s*\([^)]*\)\s*\{([^{}]*)\bcontinue\s*;\s*\}")
+_AT_FAULT = "goes on at once, past the pause in line {0}: until it works, the loop never pauses"
+_AT_REST = "pauses in line {0} alone, where something has failed: otherwise it never pauses"
+
+
+def _findings(case: Case) -> Iterator[Finding]:
+    for one in in_both.each(case):
+        places = _in_python(one.python) if one.python else _in_cpp(one.code)
+        for line, text in [*places][:1]:
+            yield one.finding(
+                "spin",
+                f"The loop {text}, and keeps a processor busy.",
+                line,
+                expected="a sleep() in each turn",
+                fix="Let the loop sleep here, too.",
+            )
+
+
+def _in_cpp(text: str) -> Iterator[tuple[int, str]]:
+    for caught in _CAUGHT.finditer(text):
+        pause = re.compile(r"\bsleep\s*\(").search(text, caught.end())
+        before = text[text.rfind("try", 0, caught.start()) : caught.end()]
+        if pause and not _WAITS.search(before) and "Duration" not in before:
+            yield line_of(caught, 0), _AT_FAULT.format(line_of(pause))
+
+
+def _in_python(source: Source) -> Iterator[tuple[int, str]]:
+    for loop in source.nodes(ast.While):
+        for number, one in enumerate(loop.body):
+            if isinstance(one, ast.Try):
+                pause = next(_waits(loop.body[number + 1 :]), None)
+                for handler in one.handlers if pause and not any(_waits(one.body)) else ():
+                    last = handler.body[-1]
+                    if isinstance(last, ast.Continue) and not any(_waits(handler.body)):
+                        yield last.lineno, _AT_FAULT.format(pause.lineno if pause else 0)
+        handlers = [node for node in ast.walk(loop) if isinstance(node, ast.ExceptHandler)]
+        late = [*_waits(handlers)]
+        if late and len([*_waits([loop])]) == len(late):
+            yield loop.lineno, _AT_REST.format(late[0].lineno)
+
+
+def _waits(parts: Iterable[ast.AST]) -> Iterator[ast.Call]:
+    """Yield the calls that may wait: by their names, or as they are given a time."""
+    for call in (one for part in parts for one in ast.walk(part) if isinstance(one, ast.Call)):
+        words = [keyword.arg or "" for keyword in call.keywords] + [_name(call.func)]
+        words += [_name(one.func) for one in call.args if isinstance(one, ast.Call)]
+        if any(_WAITS.search(word) or word in ("timeout", "Duration") for word in words):
+            yield call
+
+
+def _name(function: ast.expr) -> str:
+    return getattr(function, "attr", getattr(function, "id", ""))
+
+
+RULE = Rule("static", 119, ("facts",), _findings, also=("spin",), only=ANY)
