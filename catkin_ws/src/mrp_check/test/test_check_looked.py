@@ -60,7 +60,8 @@ HEARS = "auto hear = [](const A::ConstPtr& m) {{ {} }};"
         (no_pause, "py", f"{LOOKS}continue\n    r.sleep()", [8]),
         (no_pause, "py", f"{LOOKS}r.sleep()\n        continue\n    r.sleep()", []),
         (no_pause, "py", f"{LOOKS}continue\n    r.sleep()".replace("Time", "Duration"), []),
-        (no_pause, "py", f"{LOOKS}r.sleep()\n    p.publish(t)", [4]),
+        (no_pause, "py", f"{LOOKS}r.sleep()\n    p.publish(t)".replace("a:", "True:", 1), [4]),
+        (no_pause, "py", f"{LOOKS}r.sleep()\n    p.publish(t)", []),
         (no_pause, "py", f"{LOOKS}print(1)\n    r.sleep()", []),
         (no_pause, "cpp", "try { l.look(a); } catch (E& e) { continue; }\nr.sleep();", [4]),
         (
@@ -74,7 +75,7 @@ HEARS = "auto hear = [](const A::ConstPtr& m) {{ {} }};"
         (lost_global, "py", f"states = 1\n{HEAR}global states\n    states = m", []),
         (lost_global, "py", f"states = 1\n{HEAR}global other", []),
     ],
-    ids=range(39),
+    ids=range(40),
 )
 def test_what_may_be_missing_is_looked_at(rule, ending, lines, found, tmp_path):
     assert lines_of(rule, case(tmp_path, ending, lines)) == found

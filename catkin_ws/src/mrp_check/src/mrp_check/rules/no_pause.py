@@ -53,8 +53,15 @@ def _in_python(source: Source) -> Iterator[tuple[int, str]]:
                         yield last.lineno, _AT_FAULT.format(pause.lineno if pause else 0)
         handlers = [node for node in ast.walk(loop) if isinstance(node, ast.ExceptHandler)]
         late = [*_waits(handlers)]
-        if late and len([*_waits([loop])]) == len(late):
+        if late and _is_endless(loop) and len([*_waits([loop])]) == len(late):
             yield loop.lineno, _AT_REST.format(late[0].lineno)
+
+
+def _is_endless(loop: ast.While) -> bool:
+    """Return whether a loop goes on until the node ends."""
+    leaves = any(isinstance(node, (ast.Break, ast.Return)) for node in ast.walk(loop))
+    asks = {_name(node) for node in ast.walk(loop.test) if isinstance(node, ast.expr)}
+    return not leaves and (isinstance(loop.test, ast.Constant) or "is_shutdown" in asks)
 
 
 def _waits(parts: Iterable[ast.AST]) -> Iterator[ast.Call]:
