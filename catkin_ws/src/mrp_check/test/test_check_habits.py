@@ -279,6 +279,15 @@ def test_a_first_line_without_its_slash(tmp_path):
 CALLS = 'ros::ServiceClient c = n.serviceClient<A>("add");\nwhile (ros::ok()) { c.call(s); }'
 
 
+def test_a_client_that_calls_before_it_spins(tmp_path):
+    once = CALLS.replace("while (ros::ok())", "")
+    for lines, found in ((f"{once}\nros::spin();", [5]), (f"ros::spin();\n{once}", [])):
+        known = case(tmp_path / str(len(found)), "cpp", lines)
+        known.facts.of = lambda node, *kinds: ["a spin"]
+        known.nodes = {}
+        assert lines_of(waiting, known) == found
+
+
 @pytest.mark.parametrize(("launched", "found"), [(["a", "b"], [5]), (["a"], []), ([], [])])
 def test_a_client_that_is_launched_with_its_service(launched, found, tmp_path):
     offers = AROUND["cpp"].format('n.advertiseService("add", f);')

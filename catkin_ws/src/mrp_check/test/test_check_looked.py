@@ -3,7 +3,16 @@
 
 import pytest
 from mrp_check.contract.finding import NOTE
-from mrp_check.rules import arguments, ignored, indexed, lost_global, no_pause
+from mrp_check.rules import (
+    arguments,
+    guards,
+    ignored,
+    indexed,
+    lost_global,
+    no_pause,
+    same_condition,
+    unslept,
+)
 from mrp_testing.proves import proves
 from one_source import case, lines_of
 
@@ -70,12 +79,19 @@ HEARS = "auto hear = [](const A::ConstPtr& m) {{ {} }};"
             "try { l.look(a); } catch (E& e) { r.sleep(); continue; }\nr.sleep();",
             [],
         ),
+        (same_condition, "cpp", "if (a > 1) { b(); } else if (c) {} else if (a > 1) { d(); }", [4]),
+        (same_condition, "cpp", "if (a)\n{ b(); }\nelse if (c) {}\nelse if (a) { d(); }", [7]),
+        (same_condition, "cpp", "if (a > 1) { b(); } else if (a > 2) {}", []),
+        (same_condition, "cpp", "if (a()) { b(); } else if (a()) {}", []),
+        (same_condition, "cpp", "if (a) { if (b) {} } else if (b) {}\nif (a) {}", []),
+        (same_condition, "py", "if a == 1:\n    b()\nelif a == 1:\n    c()", [6]),
+        (same_condition, "py", "if a == 1:\n    b()\nelif a == 2:\n    c()", []),
         (lost_global, "py", f"state = 1\n{HEAR}global stat\n    stat", []),
         (lost_global, "py", f"states = 1\n{HEAR}global state\n    states = m", [6]),
         (lost_global, "py", f"states = 1\n{HEAR}global states\n    states = m", []),
         (lost_global, "py", f"states = 1\n{HEAR}global other", []),
     ],
-    ids=range(40),
+    ids=range(47),
 )
 def test_what_may_be_missing_is_looked_at(rule, ending, lines, found, tmp_path):
     assert lines_of(rule, case(tmp_path, ending, lines)) == found
@@ -83,3 +99,32 @@ def test_what_may_be_missing_is_looked_at(rule, ending, lines, found, tmp_path):
 
 def test_a_wait_without_end_is_a_note(tmp_path):
     assert lines_of(ignored, case(tmp_path, "cpp", "c.waitForServer();"), NOTE) == [4]
+
+
+@pytest.mark.parametrize(
+    ("lines", "found"),
+    [
+        ("r = rospy.Rate(1)\nwhile a:\n    r.sleep()", [6]),
+        ("rospy.sleep(1)", [4]),
+        ("time.sleep(1)", []),
+        ("try:\n    rospy.sleep(1)\nexcept rospy.ROSInterruptException:\n    pass", []),
+    ],
+    ids=range(4),
+)
+def test_what_sleep_raises_in_simulated_time_is_a_note(lines, found, tmp_path):
+    assert lines_of(unslept, case(tmp_path, "py", lines), NOTE) == found
+
+
+@pytest.mark.parametrize(
+    ("text", "found"),
+    [
+        ("class A {\n};\n", [1]),
+        ("#pragma once\nclass A {\n};\n", []),
+        ("#ifndef A_H\n#define A_H\nclass A {\n};\n#endif\n", []),
+        ("void a();\n", []),
+    ],
+    ids=range(4),
+)
+def test_a_header_can_be_included_twice(text, found, tmp_path):
+    known = case(tmp_path, "cpp", "", include__a_DOT_h=text)
+    assert lines_of(guards, known) == found

@@ -24,11 +24,15 @@ _TEXT = re.compile(r"\"[^\"\n]*\"|'[^'\n]*'")
 
 
 def _of(node: Node) -> Iterator[Finding]:
-    lines = {file: node.package.lines(file) for file in node.files}
-    loops = [p for p in node.places(Kind.LOOP) if _ENDLESS.search(lines[p.file][p.line - 1])]
+    codes = {file: uses.code(node.package, file) for file in node.files}
+    lines = {file: text.split("\n") for file, text in codes.items()}
+    loops = [(p.file, p.line) for p in node.places(Kind.LOOP)]
+    if not node.is_python:  # a source that nothing could compile has its loops all the same
+        loops += [(file, number) for file, text in lines.items() for number in range(1, len(text))]
+    loops = [(file, line) for file, line in loops if _ENDLESS.search(lines[file][line - 1])]
     if not loops or node.places(Kind.SLEEP):
         return
-    text = "\n".join(uses.code(node.package, file) for file in node.files)
+    text = "\n".join(codes.values())
     if not _WAITS.search(_TEXT.sub('""', text)):
         rate = "rospy.Rate" if node.is_python else "ros::Rate"
         fast = ", and publishes as fast as it can" if node.places(Kind.PUBLISH) else ""

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import Iterator, NamedTuple
 
 from mrp_check.case import Case
@@ -62,16 +63,26 @@ def _findings(case: Case) -> Iterator[Finding]:
     yield from _lacking(said, "reads", given, every, _PARAMETER, own)
 
 
+def _is_first(case: Case, file: str, line: int) -> bool:
+    """Return whether main() of a C++ source comes to a line once, before it spins or loops."""
+    before = "\n".join(uses.code(case.package, file).split("\n")[:line])
+    _, is_main, start = before.rpartition("int main")
+    return bool(is_main) and not re.search(r"\b(?:while|for)\b|\bspin", start)
+
+
 def _unwaited(
     case: Case, node: str, files: list[str], said: dict[str, list[Said]]
 ) -> Iterator[Finding]:
     """Yield a warning if a node calls a service once, or is launched with what offers it, and does
     not wait until it is there."""
     place = asked.unwaited(case.package, files)
-    if not place or case.facts.unread & {*files}:
+    if not place:
         return
-    if case.facts.of(node, Kind.SPIN, Kind.LOOP) and not _is_launched_with(case, node, said):
-        return
+    if not _is_first(case, *place):
+        if case.facts.unread & {*files}:
+            return
+        if case.facts.of(node, Kind.SPIN, Kind.LOOP) and not _is_launched_with(case, node, said):
+            return
     is_python = case.package.kind(place[0]) == "python"
     wait = "rospy.wait_for_service()" if is_python else "waitForExistence() of the client"
     yield Finding(
