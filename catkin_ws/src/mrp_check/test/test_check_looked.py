@@ -5,6 +5,7 @@ import pytest
 from mrp_check.contract.finding import NOTE
 from mrp_check.rules import (
     arguments,
+    busy_loop,
     guards,
     ignored,
     indexed,
@@ -128,3 +129,16 @@ def test_what_sleep_raises_in_simulated_time_is_a_note(lines, found, tmp_path):
 def test_a_header_can_be_included_twice(text, found, tmp_path):
     known = case(tmp_path, "cpp", "", include__a_DOT_h=text)
     assert lines_of(guards, known) == found
+
+
+BUSY = "#include <nowhere_msgs/A.h>\nint main() {\n  while (ros::ok())\n  {\n    {}\n  }\n}\n"
+
+
+@pytest.mark.parametrize(
+    ("line", "found"), [("ros::spinOnce();", [3]), ("ros::spinOnce(); r.sleep();", [])]
+)
+def test_a_loop_is_seen_where_a_header_is_missing(line, found, tmp_path):
+    known = case(tmp_path, "cpp", "", src__b_DOT_cpp=BUSY.replace("{}", line))
+    known.facts.sources["b"] = ["src/b.cpp"]
+    known.facts.unread = {"src/b.cpp"}
+    assert lines_of(busy_loop, known) == found

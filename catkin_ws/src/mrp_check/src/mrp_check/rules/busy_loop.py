@@ -6,11 +6,11 @@ from __future__ import annotations
 import re
 from typing import Iterator
 
+from mrp_check.case import Case
 from mrp_check.confined.places import Kind
 from mrp_check.contract.finding import WARNING, Finding
 from mrp_check.contract.requirements import ANY, Rule
 from mrp_check.sources import uses
-from mrp_check.sources.node import Node, each_node
 
 # The head of a loop that goes on until Ctrl-C.
 _ENDLESS = re.compile(r"\bwhile\b.*(\bok\s*\(\s*\)|is_shutdown|\(\s*(true|1)\s*\)|\bTrue\b|\b1:)")
@@ -23,27 +23,42 @@ _WAITS = re.compile(
 _TEXT = re.compile(r"\"[^\"\n]*\"|'[^'\n]*'")
 
 
-def _of(node: Node) -> Iterator[Finding]:
-    codes = {file: uses.code(node.package, file) for file in node.files}
-    lines = {file: text.split("\n") for file, text in codes.items()}
-    loops = [(p.file, p.line) for p in node.places(Kind.LOOP)]
-    if not node.is_python:  # a source that nothing could compile has its loops all the same
-        loops += [(file, number) for file, text in lines.items() for number in range(1, len(text))]
-    loops = [(file, line) for file, line in loops if _ENDLESS.search(lines[file][line - 1])]
-    if not loops or node.places(Kind.SLEEP):
-        return
-    text = "\n".join(codes.values())
-    if not _WAITS.search(_TEXT.sub('""', text)):
-        rate = "rospy.Rate" if node.is_python else "ros::Rate"
-        fast = ", and publishes as fast as it can" if node.places(Kind.PUBLISH) else ""
-        yield node.finding(
-            "spin",
-            f"The loop never pauses: it keeps a processor busy{fast}.",
-            loops[0],
-            severity=WARNING,
-            expected=f"a {rate}, whose sleep() is called in the loop",
-            fix=f"Make a {rate} before the loop, and call its sleep() at the end of it.",
-        )
+def _findings(case: Case) -> Iterator[Finding]:
+    for node, files in case.facts.sources.items():
+        codes = {file: uses.code(case.package, file) for file in files}
+        loops = [(p.file, p.line) for p in case.facts.of(node, Kind.LOOP) if p.file in codes]
+        # A source of C++ that nothing could read further has its loops all the same.
+        loops += [(file, n) for file in case.facts.unread & {*files} for n in _lines(codes[file])]
+        endless = [one for one in loops if _ENDLESS.search(_line(codes[one[0]], one[1]))]
+        sleeps = case.facts.of(node, Kind.SLEEP)
+        if endless and not sleeps and not _WAITS.search(_TEXT.sub('""', "\n".join(codes.values()))):
+            yield _finding(case, node, *endless[0])
 
 
-RULE = Rule("static", 51, ("facts",), each_node(_of), also=("spin",), only=ANY)
+def _lines(code: str) -> range:
+    return range(1, code.count("\n") + 1)
+
+
+def _line(code: str, number: int) -> str:
+    return code.split("\n")[number - 1]
+
+
+def _finding(case: Case, node: str, file: str, line: int) -> Finding:
+    package = case.package
+    rate = "rospy.Rate" if package.kind(file) == "python" else "ros::Rate"
+    below = "\n".join(uses.code(package, file).split("\n")[line:])
+    fast = ", and publishes as fast as it can" if "publish" in below else ""
+    return Finding(
+        "spin",
+        f"The loop never pauses: it keeps a processor busy{fast}.",
+        file,
+        line,
+        WARNING,
+        expected=f"a {rate}, whose sleep() is called in the loop",
+        seen=package.line(file, line),
+        fix=f"Make a {rate} before the loop, and call its sleep() at the end of it.",
+        node=node,
+    )
+
+
+RULE = Rule("static", 51, ("facts",), _findings, also=("spin",), only=ANY)
