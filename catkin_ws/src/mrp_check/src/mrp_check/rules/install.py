@@ -38,7 +38,7 @@ def _notes(case: Case) -> Iterator[Finding]:
     not installed, as far as CMakeLists.txt says it plainly."""
     package, model = case.package, case.model
     words = {word for call in model.installs for word in call.arguments}
-    if not model.complete or any("$" in word or "*" in word for word in words):
+    if any("$" in word or "*" in word for word in words):
         return
     targets = [target for target in model.executables().values() if target.name not in words]
     scripts = {script.path for script in model.scripts}
