@@ -115,7 +115,7 @@ def test_trials_on_packages_by_strangers():
         assert not packages & {one for others in tried for one in others}
         tried.append(packages)
         wrong.append(found.count("none"))
-    assert wrong == [0, 0, 3, 2, 0, 0, 0, 2, 4, 0, 0, 0, 0, 0]
+    assert wrong == [0, 0, 3, 2, 0, 0, 0, 2, 4, 0, 0, 0, 0, 0, 0]
 
 
 def checked(folder):
