@@ -27,10 +27,7 @@ HEAR = "def hear(m):\n    "
 HEARS = "auto hear = [](const A::ConstPtr& m) {{ {} }};"
 
 
-@proves(
-    "So is a call that can fail and whose result nobody looks at, and a README that names a "
-    "program, a launch file or a service that the package has not.",
-)
+@proves("So is a call that can fail and whose result nobody looks at.")
 @pytest.mark.parametrize(
     ("rule", "ending", "lines", "found"),
     [
