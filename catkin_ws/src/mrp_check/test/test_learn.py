@@ -24,6 +24,7 @@ pytestmark = [pytest.mark.slow, pytest.mark.usefixtures("open_folders")]
 
 FIRST = defects.exercises()[0]
 UP = "\x1b[A"
+DOWN = "\x1b[B"
 CHECK = 240  # seconds that a whole check has: ten times what it takes on a machine that is idle
 COMMAND = ("/usr/bin/python3", learn.__file__)
 # What other tests have compiled need not be compiled here.
@@ -90,6 +91,17 @@ class Terminal:
         self.program.send(keys)
         self.wait_for(*texts)
 
+    def scroll_to(self, text):
+        """Press the arrow down until the screen shows this."""
+
+        def is_shown():
+            self.read()
+            is_there = text in self.text
+            self.program.send("" if is_there else DOWN)
+            return is_there
+
+        assert within(CHECK, is_shown), f"{text} is not on the screen:\n{self.text}"
+
     def quit(self, keys):
         """Press keys that end the program; return its exit code."""
         self.program.send(keys)
@@ -129,7 +141,8 @@ def test_first_exercise_at_a_terminal(tmp_path, env):
     solve(mine)
     terminal.wait_for("Passed. n goes on to the next.", "| 1 passed")
     terminal.press("s", "+++ b/src/subscriber_py_node.py")
-    terminal.press("r", "[SUBSCRIBER PY NODE] received message with data = ")
+    terminal.press("r", "started roslaunch server")
+    terminal.scroll_to("[SUBSCRIBER PY NODE] received message")
     terminal.press("x", "x again deletes your changes")
     terminal.press("x", "A parenthesis")
     assert script.read_text() == broken
