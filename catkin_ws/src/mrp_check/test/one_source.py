@@ -30,7 +30,7 @@ def case(folder, ending, lines, launched=(), **files):
     facts = Facts(sources={"a": [file]}, python=python, relevant=[*python])
     nodes = [types.SimpleNamespace(type=name) for name in launched]
     model = check_rules.model_of(package)
-    launches = [types.SimpleNamespace(nodes=nodes)]
+    launches = [types.SimpleNamespace(nodes=nodes, params={})]
     return types.SimpleNamespace(
         package=package, facts=facts, launches=launches, launch=None, model=model, spec=SPEC
     )

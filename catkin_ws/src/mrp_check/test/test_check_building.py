@@ -70,12 +70,16 @@ def test_compilers_errors_in_plain_words(error, says, tmp_path):
     [
         (["no member named 'range'"], [1]),
         (["has no member named 'range'", "expected ')'", "'a' was not declared"], [1, 2]),
-        (["'a' was not declared", "has no member named 'range'"], [1]),
+        (["'a' was not declared", "has no member named 'range'"], [1, 2]),
+        (["'a' was not declared", "'c' is not a member", "'a' was not declared"], [1, 2]),
+        (["'C' was not declared", "'b' was not declared"], [1]),
+        (["expected ')'", "'b' was not declared"], [1]),
+        (["'C' does not name", "'b' was not declared"], [1]),
     ],
-    ids=range(3),
+    ids=range(7),
 )
 def test_an_error_that_no_other_follows_from_hides_none(said, found, tmp_path):
-    package = check_rules.make(tmp_path / "some_pkg", src__a_DOT_cpp="\n\n\n")
+    package = check_rules.make(tmp_path / "some_pkg", src__a_DOT_cpp="C b;\na;\na;\n")
     lines = [f"{package.root}/src/a.cpp:{n}:1: error: {text}" for n, text in enumerate(said, 1)]
     assert [one.line for one in compiler.problems("\n".join(lines), package.root)] == found
 

@@ -62,8 +62,9 @@ def test_windows_line_ends_of_cpp_are_a_note(tmp_path):
         ("<depend>rospy", "<dependd>rospy", 10, "dependd"),
         ("<depend>rospy</depend>", "<run_depend>rospy</run_depend>", 10, "run_depend"),
         ("  <buildtool_depend>catkin</buildtool_depend>\n", "", 8, "catkin"),
+        ("</description>", "</description> -->", 5, "nothing reads it: -->"),
     ],
-    ids=range(8),
+    ids=range(9),
 )
 def test_broken_manifest(old, new, line, says, tmp_path):
     assert MANIFEST.count(old) == 1

@@ -135,6 +135,19 @@ BROKEN = {
         [("launch-file", 6)],
         r"\$\(arg group\)",
     ),
+    "unknown_attribute": (
+        NODES[1],
+        NODES[1].replace("<node ", '<node ouput="log" '),
+        [("launch-file", 5)],
+        'output="..."',
+    ),
+    "element_elsewhere": (
+        NODES[1],
+        NODES[1].replace("/>", '><arg name="a" value="1"/></node>'),
+        [("launch-file", 5)],
+        "<arg> within <node>",
+    ),
+    "text_between": (NODES[1], f"/{NODES[1]}", [("launch-file", 5)], "between the tags"),
     "unknown_element": ("  <arg name", "  <prameter/>\n  <arg name", [("launch-file", 2)], "param"),
 }
 
@@ -170,6 +183,17 @@ def test_other_file_name(tmp_path):
 )
 def test_what_looks_like_it_is_not_flagged(old, new, tmp_path):
     assert told(findings(tmp_path, replaced(old, new), scripts__a_DOT_py="")) == []
+
+
+def test_what_asks_for_an_argument_is_read_all_the_same(tmp_path):
+    text = LAUNCH.replace(
+        "  <arg", '  <arg name="a"/>\n  <param name="b" value="$(arg a)"/>\n  <arg', 1
+    )
+    package = check_rules.make(tmp_path / "some_pkg", launch__pub_sub_DOT_launch=text)
+    case = check_rules.case_of(package, tmp_path / "scratch")
+    assert "requires the 'a' arg to be set" in case.launch.error
+    assert (case.launch.params, len(case.launch.nodes)) == ({"/b": 1}, 4)
+    case.close()
 
 
 def test_nodes_may_be_in_an_included_file(tmp_path):

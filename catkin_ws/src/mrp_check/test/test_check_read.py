@@ -35,7 +35,7 @@ MAIN = "int main()\n{{\n  {}\n}}\n"
 
 def case(package):
     facts = Facts(sources={file: [file] for file in package.of_kind("cpp")})
-    return types.SimpleNamespace(package=package, facts=facts, launch=None)
+    return types.SimpleNamespace(package=package, facts=facts, launch=None, launches=[])
 
 
 @pytest.mark.parametrize(
@@ -47,10 +47,15 @@ def case(package):
         (MAIN.format('int a; a = 3; n.getParam("a", a);'), None),
         (MAIN.format('int a; if (n.hasParam("a")) { n.getParam("a", a); }'), None),
         (MAIN.format('int a; if (!n.getParam("a", a)) a = 3;'), None),
+        (MAIN.format('int a; if (!n.getParam("a", a)) { warn(); }\n  f(a);\n'), 3),
+        (MAIN.format('int a; if (!n.getParam("a", a)) { return 1; }\n  f(a);\n'), None),
+        (MAIN.format('int a; if (n.getParam("a", a)) { say(); } else { warn(); }\n  f(a);\n'), 3),
+        (MAIN.format('int a; if (n.getParam("a", a)) {} else { a = 1; }\n  f(a);\n'), None),
+        (MAIN.format('int a; if (n.getParam("a", a)) { f(a); }\n'), None),
         (MAIN.format('std::string a; n.getParam("a", a);'), None),
         ("int a;\n" + MAIN.format('n.getParam("a", a);'), None),
     ],
-    ids=range(8),
+    ids=range(13),
 )
 def test_a_number_without_a_value_is_found_where_a_parameter_is_read_into_it(text, line, tmp_path):
     package = check_rules.make(tmp_path / "some_pkg", src__a_DOT_cpp=text)
@@ -61,7 +66,7 @@ def test_a_number_without_a_value_is_found_where_a_parameter_is_read_into_it(tex
 def test_a_parameter_that_a_launch_file_sets_under_a_name_like_it_is_named(tmp_path):
     text = MAIN.format('int a; n.getParam("print_rate", a);')
     known = case(check_rules.make(tmp_path / "some_pkg", src__a_DOT_cpp=text))
-    known.launch = types.SimpleNamespace(params={"/a/print_rat": 2})
+    known.launches = [types.SimpleNamespace(params={"/a/print_rat": 2})]
     (found,) = check_rules.of(unset.RULE, known)
     assert found.message.endswith("A launch file sets print_rat.")
 

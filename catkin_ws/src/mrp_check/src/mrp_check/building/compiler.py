@@ -47,12 +47,17 @@ _INCLUDED = re.compile(r"^(?:In file included from| +from) (?P<file>[^:]+):(?P<l
 
 # An error that no other one follows from: the name is right but for its last part.
 _ALONE = re.compile(r"has no member named")
+# An error about a name: others follow from it only where they name what its line declares.
+_NAMED = re.compile(
+    r"[‘'](?P<name>\w+)[^’']*[’'] (?:was not declared|is not a member|has not been declared)"
+    r"|has no member named [‘'](?P<member>\w+)"
+)
 
 
 def problems(output: str, copy: pathlib.Path) -> list[Problem]:
-    """Return, for each source of the package, the first error that the compiler found in it, and
-    the next one behind each that no other follows from; and the first one behind a header of its
-    own messages, where it was built a second time."""
+    """Return, for each source of the package, the first error that the compiler found in it, the
+    next one behind each that no other follows from, and those about other names; and the first one
+    behind a header of its own messages, where it was built a second time."""
     lines = output.splitlines()
     found: list[Problem] = []
     chain: list[Line | None] = []  # of "required from"; None for a place in a header of others
@@ -95,9 +100,21 @@ def _first(found: list[Problem], copy: pathlib.Path) -> list[Problem]:
         is_own = bool(header and header[1].startswith(f"{copy.name}/"))
         of_file = first.setdefault((problem.file, is_own), [])
         lines = {one.line for one in of_file}
-        if all(map(_ALONE.search, (one.text for one in of_file))) and problem.line not in lines:
+        is_alone = all(map(_ALONE.search, (one.text for one in of_file)))
+        if problem.line not in lines and (is_alone or _is_other(problem, of_file, copy)):
             of_file.append(problem)
     return [problem for of_file in first.values() for problem in of_file]
+
+
+def _is_other(problem: Problem, before: list[Problem], copy: pathlib.Path) -> bool:
+    """Return whether an error about a name follows from none of those before, all about names."""
+    named = _NAMED.search(problem.text)
+    if not named or not all(_NAMED.search(one.text) for one in before):
+        return False
+    lines = (copy / problem.file).read_text(errors="replace").splitlines()
+    # What a line before was to declare, or names as well, is missing because of it.
+    told = " ".join(lines[one.line - 1] for one in before if 0 < one.line <= len(lines))
+    return not re.search(rf"\b{named['name'] or named['member']}\b", told)
 
 
 def is_no_header(problem: Problem) -> re.Match[str] | None:

@@ -11,6 +11,7 @@ import io
 import json
 import os
 import pathlib
+import re
 import sys
 from typing import Any, Dict, List, Optional, Tuple
 
@@ -21,6 +22,7 @@ if __name__ == "__main__":
 from mrp_check.confined import crossing
 
 Pair = Tuple[str, str]
+_ASKED = re.compile(r"requires the .(\w+). arg to be set")
 
 
 @dataclasses.dataclass
@@ -57,12 +59,18 @@ class Started:
 
 @dataclasses.dataclass
 class Dump:
-    """What roslaunch makes of a file. error: what it said instead, or an empty text."""
+    """What roslaunch makes of a file.
+
+    error: what it said instead, or an empty text. If it only asks for arguments, the rest is what
+        it makes of the file with 1 for each
+    warned: what it says of elements and attributes that it passes over
+    """
 
     error: str
     nodes: List[Started] = dataclasses.field(default_factory=list)
     files: List[str] = dataclasses.field(default_factory=list)
     params: Dict[str, object] = dataclasses.field(default_factory=dict)
+    warned: List[str] = dataclasses.field(default_factory=list)
 
 
 def main() -> None:
@@ -73,16 +81,29 @@ def main() -> None:
 
 
 def load(path: str) -> Dump:
+    """Return what roslaunch makes of a file, with a value for each argument that it asks for."""
+    given: List[str] = []
+    first = dump = _load(path, given)
+    while dump.error and (asked := _ASKED.search(dump.error)):
+        argument = f"{asked[1]}:=1"
+        if argument in given:
+            return first  # an included file asks for it: who includes it has to give it
+        given.append(argument)
+        dump = _load(path, given)
+    return first if dump.error else dataclasses.replace(dump, error=first.error)
+
+
+def _load(path: str, given: List[str]) -> Dump:
     import roslaunch.config
     import roslaunch.core
     import roslaunch.xmlloader
 
-    sys.argv = ["roslaunch", path]  # there roslaunch looks for the arguments
+    sys.argv = ["roslaunch", path, *given]  # there roslaunch looks for the arguments
     config = roslaunch.config.ROSLaunchConfig()
     loader = roslaunch.xmlloader.XmlLoader(resolve_anon=False)
     loader.ignore_unset_args = False  # as load_config_default() has it
     try:
-        loader.load(path, config, argv=[], verbose=False)
+        loader.load(path, config, argv=given, verbose=False)
         error = ""
     except (roslaunch.core.RLException, roslaunch.xmlloader.XmlParseException) as problem:
         error = str(problem)
@@ -93,6 +114,7 @@ def load(path: str) -> Dump:
         [_started(one) for one in config.nodes],
         [os.path.realpath(name) for name in config.roslaunch_files],
         {name: one.value for name, one in config.params.items() if _is_plain(one.value)},
+        config.config_errors,
     )
 
 

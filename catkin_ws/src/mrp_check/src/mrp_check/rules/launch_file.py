@@ -12,9 +12,14 @@ from mrp_check.contract.finding import WARNING, Finding, Line
 from mrp_check.contract.requirements import Requirement, Rule
 from mrp_check.contract.words import last_part, line_of, nearest
 from mrp_check.student.launch import Launch
-from mrp_check.student.xml_file import Element
+from mrp_check.student.xml_file import Element, stray
 
 _TAGS = ("launch node group arg param rosparam remap include env machine test master").split()
+_OF_NODES = "env param remap rosparam".split()
+_WITHIN = {"include": ["arg", "env"], "node": _OF_NODES, "test": _OF_NODES}
+_ATTRIBUTES = (
+    "args clear_params cwd if launch-prefix name ns output pkg respawn type unless".split()
+)
 # https://wiki.ros.org/roslaunch/XML says what there is.
 _BRACES = re.compile(r"\$\{(?:anon|arg|dirname|env|eval|find|optenv)\b[^{}\n]*\}")
 
@@ -25,8 +30,9 @@ def _findings(case: Case) -> Iterator[Finding]:
         tags = launch.elements(case.package)
         if launch.error:
             yield _error(launch, tags)
-        else:
-            yield from _unknown(tags)
+        yield from _unknown(tags)
+        yield from _no_attributes(launch, tags)
+        yield from stray("launch-file", case.package, tags, ("rosparam",))
     for file in case.package.of_kind("launch"):
         for match in _BRACES.finditer(case.package.text(file)):
             yield _in_braces(file, line_of(match), match[0])
@@ -49,13 +55,16 @@ def _in_braces(file: str, line: int, written: str) -> Finding:
 
 
 def _unknown(tags: Sequence[tuple[str, Element]]) -> Iterator[Finding]:
-    """roslaunch passes over elements and attributes that it does not know."""
+    """roslaunch passes over elements that it does not know, or not there."""
     for file, element in tags:
-        if element.tag not in _TAGS:
-            near = nearest(element.tag, _TAGS, 0.5)
+        above = element.parents[-1].tag if element.parents else ""
+        known = _WITHIN.get(above, _TAGS)
+        if element.tag not in known:
+            near = nearest(element.tag, known, 0.5)
+            where = f" within <{above}>" if element.tag in _TAGS else ""
             yield Finding(
                 "launch-file",
-                f"roslaunch knows no element <{element.tag}>, and passes over it.",
+                f"roslaunch knows no element <{element.tag}>{where}, and passes over it.",
                 file,
                 element.line,
                 WARNING,
@@ -63,6 +72,28 @@ def _unknown(tags: Sequence[tuple[str, Element]]) -> Iterator[Finding]:
                 seen=f"<{element.tag}>",
                 fix=f"Write <{near}>." if near else "Take it out.",
                 why="launch-unknown-tag",
+            )
+
+
+# What roslaunch says of an attribute that it passes over.
+_NO_ATTRIBUTE = re.compile(r"unknown <(\w+)> attribute '([\w-]+)'")
+
+
+def _no_attributes(launch: Launch, tags: Sequence[tuple[str, Element]]) -> Iterator[Finding]:
+    """Yield a warning for each attribute that roslaunch does not know."""
+    said = {match.groups() for match in map(_NO_ATTRIBUTE.search, launch.warned) if match}
+    for file, element in tags:
+        for name in (one for one in element.attributes if (element.tag, one) in said):
+            near = nearest(name, _ATTRIBUTES, 0.7)
+            yield Finding(
+                "launch-file",
+                f"roslaunch knows no attribute {name} of <{element.tag}>, and passes over it.",
+                file,
+                element.line,
+                WARNING,
+                expected=f'{near}="..."' if near else "an attribute of roslaunch",
+                seen=f'{name}="{element.attributes[name]}"',
+                fix=f"Write {near} for {name}." if near else "Take it out.",
             )
 
 

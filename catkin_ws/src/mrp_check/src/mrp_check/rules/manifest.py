@@ -10,6 +10,7 @@ from mrp_check.case import Case
 from mrp_check.contract.finding import Finding
 from mrp_check.contract.requirements import Requirement, Rule
 from mrp_check.student.manifest import FILE
+from mrp_check.student.xml_file import elements, stray
 
 
 def _findings(case: Case) -> Iterator[Finding]:
@@ -28,6 +29,9 @@ def _findings(case: Case) -> Iterator[Finding]:
             fix="Add the line <buildtool_depend>catkin</buildtool_depend>.",
             why="buildtool-missing",
         )
+    if manifest:
+        tags = [(FILE, one) for one in elements(package.bytes(FILE)) if one.tag == "package"]
+        yield from stray("manifest", package, tags, ())
 
 
 RULE = Rule(

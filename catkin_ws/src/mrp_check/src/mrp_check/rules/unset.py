@@ -9,27 +9,47 @@ from typing import Iterator
 from mrp_check.case import Case
 from mrp_check.contract.finding import WARNING, Finding
 from mrp_check.contract.requirements import ANY, Rule
-from mrp_check.contract.words import last_part, line_of, nearest
+from mrp_check.contract.words import braced, last_part, line_of, nearest
 from mrp_check.sources import uses
 
+_CALL = r"""(?:\w+(?:\.|->)getParam|ros::param::get)\s*\(\s*"([~/\w]+)"\s*,\s*(\w+)\s*\)"""
 # A whole statement: what the call returns is not looked at.
-_READ = re.compile(
-    r"""(?<=[;{})])\s*(?:\w+(?:\.|->)getParam|ros::param::get)\s*\(\s*"([~/\w]+)"\s*,\s*(\w+)\s*\)\s*;"""
-)
+_READ = re.compile(rf"(?<=[;{{}})])\s*{_CALL}\s*;")
+# What it returns is looked at: the variable has no value where nothing there gives it one.
+_ASKED = re.compile(rf"\bif\s*\(\s*(?P<not>!\s*)?{_CALL}\s*\)\s*(?=\{{)")
+_ELSE = re.compile(r"\}\s*else\s*(?=\{)")
+_LEAVES = r"\b(?:return|throw|exit|abort|shutdown|continue|break)\b"
 _NUMBER = r"\b(?:int|double|float|bool|long|short|unsigned|size_t|u?int\d+_t)\s+(?:\w+\s*,\s*)*"
 
 
 def _findings(case: Case) -> Iterator[Finding]:
-    params = {last_part(name) for name in (case.launch.params if case.launch else {})}
+    params = {last_part(name) for launch in case.launches for name in launch.params}
     for node, files in case.facts.sources.items():
         for file in files:
             if case.package.kind(file) in ("cpp", "header"):
                 yield from _of(node, file, uses.code(case.package, file), params)
 
 
-def _of(node: str, file: str, text: str, params: set[str]) -> Iterator[Finding]:
+def _reads(text: str) -> Iterator[tuple[str, str, re.Match[str]]]:
+    """Yield (parameter, variable, where it is read) of each that may leave the variable as it is."""
     for match in _READ.finditer(text):
-        name, variable = match.groups()
+        yield match[1], match[2], match
+    for match in _ASKED.finditer(text):
+        name, variable = match[2], match[3]
+        otherwise = braced(text, match.end())
+        end = match.end() + len(otherwise)
+        if not match["not"]:
+            other = _ELSE.match(text, end)
+            otherwise = braced(text, other.end()) if other else ""
+            end = other.end() + len(otherwise) if other else end
+        is_given = re.search(rf"\b{variable}\s*=(?!=)|[,&]\s*{variable}\b|{_LEAVES}", otherwise)
+        function = text.find("\n}", end)
+        if not is_given and re.search(rf"\b{variable}\b", text[end:function]):
+            yield name, variable, match
+
+
+def _of(node: str, file: str, text: str, params: set[str]) -> Iterator[Finding]:
+    for name, variable, match in _reads(text):
         is_asked = re.search(rf'hasParam\s*\(\s*"{re.escape(name)}"', text)
         if is_asked or _has_value(text, variable, match.start()):
             continue
@@ -40,7 +60,7 @@ def _of(node: str, file: str, text: str, params: set[str]) -> Iterator[Finding]:
             " as it is, and it may be any number."
             + (f" A launch file sets {near}." if near and near != last_part(name) else ""),
             file,
-            line_of(match, 1),
+            line_of(match, match.lastindex or 0),
             WARNING,
             expected=f'param("{name}", {variable}, DEFAULT), or a value where {variable} is made',
             seen=match.group().strip(),

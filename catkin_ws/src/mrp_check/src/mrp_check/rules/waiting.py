@@ -52,7 +52,7 @@ def _findings(case: Case) -> Iterator[Finding]:
     sources = sorted(case.package.of_kind("cpp", "header", "python"))
     beside = [one for one in asked.of(case.package, sources) if one.what in _GIVES]
     every = [one for found in said.values() for one in found] + beside
-    params = {last_part(name) for name in (case.launch.params if case.launch else {})}
+    params = {last_part(name) for launch in case.launches for name in launch.params}
     services = {one.base for one in every if one.what == "offers"}
     given = params | {one.base for one in every if one.what == "sets"} | _OF_ROSCORE
     own = uses.made(case.package)

@@ -6,20 +6,22 @@ from __future__ import annotations
 import dataclasses
 import re
 import xml.parsers.expat
+from typing import Iterable, Iterator, Sequence
 
-from mrp_check.contract.finding import Finding
+from mrp_check.contract.finding import WARNING, Finding
 from mrp_check.contract.words import line_of
 from mrp_check.student.package import Package, declared_entity
 
 
 @dataclasses.dataclass
 class Element:
-    """One XML element; line: where it begins."""
+    """One XML element; line: where it begins; texts: what stands directly in it, and the lines."""
 
     tag: str
     attributes: dict
     line: int
     parents: list
+    texts: list[tuple[str, int]] = dataclasses.field(default_factory=list)
 
 
 class EntityError(xml.parsers.expat.ExpatError):
@@ -44,10 +46,34 @@ def elements(data: bytes) -> list[Element]:
         found.append(element)
         stack.append(element)
 
+    def say(text: str) -> None:
+        if text.strip() and stack:
+            stack[-1].texts.append((text.strip(), parser.CurrentLineNumber))
+
     parser.StartElementHandler = start
+    parser.CharacterDataHandler = say
     parser.EndElementHandler = lambda tag: stack.pop()
     parser.Parse(data, True)
     return found
+
+
+def stray(
+    id_: str, package: Package, tags: Iterable[tuple[str, Element]], readers: Sequence[str]
+) -> Iterator[Finding]:
+    """Yield a warning for each line of text that stands between elements. readers: the elements of
+    which the text is read"""
+    for file, element in tags:
+        for text, line in element.texts if element.tag not in readers else ():
+            yield Finding(
+                id_,
+                f"A text stands here between the tags, and nothing reads it: {text[:40]}",
+                file,
+                line,
+                WARNING,
+                expected="elements, and comments between <!-- and -->",
+                seen=package.line(file, line),
+                fix="Take it out, or make a comment of it.",
+            )
 
 
 def xml_finding(
