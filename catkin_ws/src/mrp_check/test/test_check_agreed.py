@@ -44,12 +44,13 @@ def known_case(folder, components, tags, **files):
         ("roscpp std_msgs)", "<exec_depend>std_msgs</exec_depend>", WARNING, [11]),
         ("roscpp)", "<exec_depend>std_msgs</exec_depend>", WARNING, []),
         ("roscpp)", f"{DEPEND}\n<depend>std-msgs</depend>", WARNING, [12]),
+        ("roscpp)", f"{DEPEND}\n<depend>rmessage_runtime</depend>", WARNING, [12]),
         ("roscpp)", "<depend>rospy std_msgs</depend>", WARNING, [11]),
         ("roscpp)", "<build_depend>tf</build_depend>\n<build_depend>tf</build_depend>", NOTE, [12]),
         ("roscpp)", "<build_depend>tf</build_depend>\n<exec_depend>tf</exec_depend>", NOTE, []),
         ("roscpp message_generation)", DEPEND, WARNING, [3]),
     ],
-    ids=range(11),
+    ids=range(12),
 )
 def test_what_the_two_files_say_of_other_packages(components, tags, severity, found, tmp_path):
     known = known_case(tmp_path, components, tags)
@@ -97,8 +98,11 @@ def test_what_messages_need_is_passed_on(added, severity, found, tmp_path):
         ("project(some_pkg)", [6]),
         ("if(A)\ncatkin_package()\nendif()", []),
         ("find_package(tf)", []),
+        ("add_executable(a src/b.cpp)\nadd_executable(a src/b.cpp)", [7]),
+        ("add_executable(a src/b.cpp)\nadd_executable(b src/b.cpp)", []),
+        ("add_executable(${a} b.cpp)\nadd_executable(${a} b.cpp)", []),
     ],
-    ids=range(4),
+    ids=range(7),
 )
 def test_what_is_called_once_is_not_called_again(line, found, tmp_path):
     text = f"{check_rules.CMAKE.replace('catkin_install_python', '# ')}{line}\n"

@@ -19,10 +19,12 @@ from mrp_check.rules import (
     launch_words,
     long_loop,
     methods,
+    not_called,
     not_kept,
     overwritten,
     param_result,
     readme,
+    rospy_calls,
     scripts,
     swallowed,
     typed,
@@ -46,6 +48,7 @@ HEARS = "s = rospy.Subscriber('a', String, print)"
 INIT = 'ros::init(argc, argv, "a");'
 START = "rospy.init_node('a')"
 MAKE = 'ros::Publisher p = n.advertise<std_msgs::String>("a", 1);'
+CLIENT = "c = actionlib.SimpleActionClient('a', A)"
 MADE = "p = rospy.Publisher('a', String, queue_size=1)"
 SERVER = "s = actionlib.SimpleActionServer('a', A, work, auto_start=False)"
 WORK = "def work(goal):\n    for i in range(9):\n        "
@@ -65,6 +68,9 @@ WORK = "def work(goal):\n    for i in range(9):\n        "
         (before_init, "py", f"rospy.loginfo('a')\n{START}", [4]),
         (before_init, "py", f"rospy.logerr('a')\n{START}", []),
         (before_init, "py", f"def say():\n    rospy.loginfo('a')\n{START}", []),
+        (before_init, "py", f"import time\ndef main():\n    {START}\ntime.sleep(2)\nmain()", [7]),
+        (before_init, "py", f"import time\n{START}\ntime.sleep(2)", []),
+        (before_init, "py", f"import time\ntime.sleep(0.1)\n{START}", []),
         (param_result, "cpp", 'int a;\na = n.getParam("a", a);', [5]),
         (
             param_result,
@@ -83,6 +89,20 @@ WORK = "def work(goal):\n    for i in range(9):\n        "
         (methods, "py", f"{MADE}\np.publish('a')", []),
         (methods, "py", f"{MADE}\np = find()\np.pub('a')", []),
         (methods, "py", "r = rospy.Rate(1)\nr.Sleep()", [5]),
+        (methods, "py", f"{CLIENT}\nc.send_goal()", [5]),
+        (methods, "py", f"{CLIENT}\nc.send_goal(a, done)", []),
+        (not_called, "py", f"def ask():\n    rospy.wait_for_service('a')\n{START}", [6]),
+        (not_called, "py", f"def ask():\n    rospy.wait_for_service('a')\n{START}\nask()", []),
+        (not_called, "py", f"def ask():\n    return 1\n{START}", []),
+        (not_called, "py", f"def ask():\n    rospy.spin()\n{START}\nrospy.spin()", []),
+        (rospy_calls, "py", "rospy.loginfo('a', 1)", [4]),
+        (rospy_calls, "py", "rospy.logwarn('%s %d%%', 'a')", [4]),
+        (rospy_calls, "py", "rospy.loginfo('%s %5.2f%%', 'a', 1)", []),
+        (rospy_calls, "py", "rospy.loginfo('100%')", []),
+        (rospy_calls, "py", "rospy.loginfo('%(a)s', {'a': 1})", []),
+        (rospy_calls, "py", "rospy.loginfo_throttle(1, '%*d', 9, 1)", []),
+        (rospy_calls, "py", "rospy.loginfo_throttle(1, 'a', 1)", [4]),
+        (not_kept, "py", f"def ask(r):\n    {MADE}\nrospy.Service('a', A, ask)", [5]),
         (not_kept, "py", f"for i in range(3):\n    {HEARS}", []),
         (not_kept, "py", f"if a:\n    while True:\n        {HEARS}", [6]),
         (not_kept, "py", f"while True:\n    if not s:\n        {HEARS}", []),
@@ -108,6 +128,7 @@ WORK = "def work(goal):\n    for i in range(9):\n        "
         (swallowed, "py", "try:\n    a()\nexcept ValueError:\n    pass", []),
         (swallowed, "py", "try:\n    import a\nexcept:\n    import b", []),
         (first_message, "cpp", f"{MAKE}\np.publish(m);", [5]),
+        (first_message, "cpp", 'auto p = it.advertise("a", 1);\np.publish(m);', [5]),
         (first_message, "cpp", f"{MAKE}\nfor (;;) {{\np.publish(m); }}", [6]),
         (first_message, "cpp", f"{MAKE}\nfor (;;) {{\np.publish(m); r.sleep(); }}", []),
         (first_message, "cpp", f"{MAKE}\nwhile (ros::ok()) {{ p.publish(m); }}", []),
@@ -148,7 +169,7 @@ WORK = "def work(goal):\n    for i in range(9):\n        "
         (unfilled, "py", "print('%s, %d') % (a, b)", [4]),
         (unfilled, "py", "print('%s, %d' % (a, b)) or b", []),
     ],
-    ids=range(84),
+    ids=range(102),
 )
 def test_what_beginners_are_used_to(rule, ending, lines, found, tmp_path):
     assert lines_of(rule, case(tmp_path, ending, lines)) == found

@@ -13,6 +13,7 @@ from mrp_check.rules import (
     no_pause,
     same_condition,
     unslept,
+    whole_numbers,
 )
 from mrp_testing.proves import proves
 from one_source import case, lines_of
@@ -84,12 +85,16 @@ HEARS = "auto hear = [](const A::ConstPtr& m) {{ {} }};"
         (same_condition, "cpp", "if (a) { if (b) {} } else if (b) {}\nif (a) {}", []),
         (same_condition, "py", "if a == 1:\n    b()\nelif a == 1:\n    c()", [6]),
         (same_condition, "py", "if a == 1:\n    b()\nelif a == 2:\n    c()", []),
+        (whole_numbers, "cpp", "ros::Rate r(2/3);", [4]),
+        (whole_numbers, "cpp", "double a = 3 / 2 * b;", [4]),
+        (whole_numbers, "cpp", "double a = 4/2 + 1.0/2 + 1/2.0 + b/2 + 2/b;", []),
+        (whole_numbers, "cpp", 'f("1/2");', []),
         (lost_global, "py", f"state = 1\n{HEAR}global stat\n    stat", []),
         (lost_global, "py", f"states = 1\n{HEAR}global state\n    states = m", [6]),
         (lost_global, "py", f"states = 1\n{HEAR}global states\n    states = m", []),
         (lost_global, "py", f"states = 1\n{HEAR}global other", []),
     ],
-    ids=range(47),
+    ids=range(51),
 )
 def test_what_may_be_missing_is_looked_at(rule, ending, lines, found, tmp_path):
     assert lines_of(rule, case(tmp_path, ending, lines)) == found

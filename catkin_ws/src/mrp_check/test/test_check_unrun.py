@@ -29,7 +29,7 @@ pytestmark = pytest.mark.quick
 
 def case(package):
     facts = Facts(sources={file: [file] for file in package.of_kind("cpp")})
-    return types.SimpleNamespace(package=package, facts=facts, launch=None)
+    return types.SimpleNamespace(package=package, facts=facts, launch=None, launches=[])
 
 
 def of_main(folder, body, is_up):
@@ -77,13 +77,19 @@ HEAR = f"def hear(m):\n    global far\n    far = m.data\n{HEARD}"
         ("while near:\n    print(1)", False, []),
         ("while near is None:\n    rospy.sleep(1)", False, [4]),
         ("while len(near) < 2:\n    rate.sleep()", False, [4]),
-        ("while far < 2:\n    rate.sleep()\n    far += 1", False, []),
-        ("while not is_near():\n    rate.sleep()", False, []),
+        ("while far < 2:\n    rate.sleep()\n    far += 1", False, [4]),
+        ("while far < 2:\n    far += 1", False, []),
+        ("while not is_near():\n    rate.sleep()", False, [4]),
+        (
+            "while not near:\n    try:\n        rate.sleep()\n    except E:\n        break",
+            False,
+            [4],
+        ),
         ("while not near and not rospy.is_shutdown():\n    rate.sleep()", False, []),
         (f"{HEAR}while True:\n    d = abs(far)\n    if d < 1:\n        break", True, [8]),
         (f"{HEAR}while True:\n    d = far - time.time()\n    if d < 1:\n        break", True, []),
         (f"{HEAR}while True:\n    n += 1\n    if far < n:\n        break", True, []),
-        ("while far:\n    far.pop()\n    rate.sleep()", False, []),
+        ("while far:\n    far.pop()\n    rate.sleep()", False, [4]),
         ("def hear(m):\n    while True:\n        print(1)\n" + HEARD, False, []),
         ("while not rospy.is_shutdown():\n    print(input())", True, [5]),
         ("def input():\n    pass\nprint(input())", True, []),
@@ -96,7 +102,7 @@ HEAR = f"def hear(m):\n    global far\n    far = m.data\n{HEARD}"
         ("tty.setraw(0)\nif ask() == '\\x03':\n    exit()", False, []),
         ("tty.setcbreak(0)\nkey = ask()", False, []),
     ],
-    ids=range(31),
+    ids=range(33),
 )
 def test_a_loop_in_python_asks_whether_the_node_is_to_go_on(loop, is_up, found, tmp_path):
     text = f"import rospy\nimport time, tty\nrospy.init_node('a')\n{loop}\n"
@@ -198,20 +204,21 @@ def test_the_ends_of_a_topic_in_what_did_not_run(publishes, takes, hears, is_up,
         ("while (ros::ok() && cin >> x) { p.publish(x); }", True, [WARNING]),
         ("while (cin >> x) { if (!ros::ok()) { break; } }", True, [WARNING]),
         ("signal(SIGINT, end);\n  while (cin >> x) { p.publish(x); }", True, []),
-        ("while (file >> x) { p.publish(x); }", True, []),
+        ("while (file >> x) { p.publish(x); }", True, [NOTE]),
         ("while (1) { ros::spinOnce(); if (near()) { break; } }", True, [WARNING]),
         ("do {\n  rate.sleep(); }\n  while (pose.x < 10.5);", True, [WARNING]),
         ("do { rate.sleep(); } while (ros::ok() && pose.x < 10.5);", True, []),
-        ("while (n < 5) { rate.sleep(); ++n; }", True, []),
-        ("do { rate.sleep(); t1 = ros::Time::now(); } while (t1 < end);", True, []),
+        ("while (n < 5) { rate.sleep(); ++n; }", True, [NOTE]),
+        ("while (n < 5) { ++n; }", True, []),
+        ("do { rate.sleep(); t1 = ros::Time::now(); } while (t1 < end);", True, [NOTE]),
         ("while (far > 1) { n++; rate.sleep(); }", True, [WARNING]),
-        ("while (far > 1) { far = v * t; t = ros::Time::now(); rate.sleep(); }", True, []),
+        ("while (far > 1) { far = v * t; t = ros::Time::now(); rate.sleep(); }", True, [NOTE]),
         ("while (ros::ok()) { std::cin >> x; p.publish(x); }", True, [WARNING]),
         ("while (ros::ok()) { file >> x; p.publish(x); }", True, []),
         ("do {\n  cin >> x; p.publish(x); }\n  while (x != 'q');", True, [ERROR]),
         ("while (1) { cin >> x; p.publish(x); }", True, [ERROR]),
     ],
-    ids=range(27),
+    ids=range(28),
 )
 def test_a_loop_asks_whether_the_node_is_to_go_on(body, is_up, found, tmp_path):
     findings = [*check_rules.of(deaf_loop.RULE, of_main(tmp_path, body, is_up))]

@@ -85,7 +85,8 @@ def _no_packages(package: Package, manifest: Manifest, used: Collection[str]) ->
     other signs between its words."""
     names = named(manifest)
     for name in sorted(names - {*used}):
-        near = nearest(name, names - {name}, 0.9) if not uses.exists(name) else None
+        others = {*names, "message_generation", "message_runtime"} - {name}
+        near = nearest(name, others, 0.9) if not uses.exists(name) else None
         plain = name.replace("-", "_")
         if plain != name and uses.is_called_so(plain):
             near = plain

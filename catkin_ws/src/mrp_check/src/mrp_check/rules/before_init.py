@@ -31,6 +31,7 @@ def _findings(case: Case) -> Iterator[Finding]:
     for node, files in case.facts.sources.items():
         yield from _never(case, node, files)
     for one in in_both.each(case):
+        yield from _asleep(one, one.python) if one.python else ()
         counted, logged = _in_python(one.python) if one.python else _in_cpp(one.code)
         start = "rospy.init_node()" if one.python else "ros::init()"
         if counted:
@@ -53,6 +54,28 @@ def _findings(case: Case) -> Iterator[Finding]:
                 logged,
                 expected=f"{start} before the first line that is logged",
                 fix=f"Move it to below {start}.",
+            )
+
+
+def _asleep(one: in_both.OfNode, source: Source) -> Iterator[Finding]:
+    """Yield a warning about a program in Python that sleeps before it becomes a node."""
+    calls = [(source.dotted(call.func), call) for call in source.nodes(ast.Call)]
+    starts = [call for name, call in calls if name == "rospy.init_node"]
+    # What starts the node, in the order of the program's own lines.
+    started = {source.function(call) for call in starts}
+    lines = [call.lineno for call in starts if source.function(call) is source.tree]
+    lines += [call.lineno for _, call in calls if source.definition(call.func) in started]
+    for name, call in calls:
+        seconds = source.value(call.args[0]) if name == "time.sleep" and call.args else None
+        is_main = source.function(call) is source.tree and lines and call.lineno < min(lines)
+        if is_main and isinstance(seconds, (int, float)) and seconds >= 1:
+            yield one.finding(
+                "node-start",
+                f"{one.node} sleeps before rospy.init_node(): it is no node yet, and Ctrl-C"
+                " ends it with a traceback.",
+                call.lineno,
+                expected="rospy.init_node() first, and a wait for what is needed",
+                fix="Start the node first; then wait for a message or a service.",
             )
 
 

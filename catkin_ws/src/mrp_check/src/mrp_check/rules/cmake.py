@@ -18,6 +18,7 @@ FILE = "CMakeLists.txt"
 _ROUND = re.compile(
     r"^[^#\n]*\$\(((?:CATKIN|CMAKE|PROJECT|catkin)_\w+|PROJECT_NAME)\)", re.MULTILINE
 )
+_MAKES = ("add_executable", "add_library")
 _USES_FOUND = ("include_directories", "target_include_directories", "target_link_libraries")
 # Commands that are called once, and what a second call does.
 _ONCE = {
@@ -37,6 +38,7 @@ def _findings(case: Case) -> Iterator[Finding]:
         if not case.spec.is_contract:
             yield from _old(case.package, case.model)
             yield from _again(case.package, case.model)
+            yield from _made_again(case.package, case.model)
     else:
         yield Finding(
             "cmake",
@@ -121,6 +123,27 @@ def _again(package: Package, model: Model) -> Iterator[Finding]:
                 expected="one call",
                 seen=package.line(FILE, call.line),
                 fix=f"Write all of it into line {calls[0].line}, and take this one out.",
+            )
+
+
+def _made_again(package: Package, model: Model) -> Iterator[Finding]:
+    """Yield a finding for each target that is made a second time. CMake says so where it comes to
+    that line."""
+    made: dict[str, int] = {}
+    if model.complete or any(call.command == "if" for call in model.calls):
+        return
+    for call in model.calls:
+        name = call.arguments[0] if call.command in _MAKES and call.arguments else "$"
+        first = made.setdefault(name, call.line)
+        if "$" not in name and call.file == FILE and call.line != first:
+            yield Finding(
+                "cmake",
+                f"{call.command}() makes the target {name} again, after line {first}: CMake stops.",
+                FILE,
+                call.line,
+                expected=f"one target {name}",
+                seen=package.line(FILE, call.line),
+                fix=f"Take this call out, or that in line {first}.",
             )
 
 

@@ -12,9 +12,10 @@ import re
 from typing import Iterator, NamedTuple
 
 from mrp_check.case import Case
-from mrp_check.contract.finding import ERROR, WARNING, Finding
+from mrp_check.contract.finding import ERROR, NOTE, WARNING, Finding
 from mrp_check.contract.requirements import ANY, Rule
 from mrp_check.contract.words import braced, line_of
+from mrp_check.rules.deaf_python import GOES_ON
 from mrp_check.sources import uses
 
 ASKS_KEYBOARD = "This loop only asks the keyboard"
@@ -32,6 +33,7 @@ _KEYBOARD = re.compile(r"\b(?:std::)?cin\b\s*>>|\bgetline\s*\(\s*(?:std::)?cin\b
 _STARTS = re.compile(r"\bros::init\s*\(")
 # What a loop does that goes on for long, and that waits for no time, and counts nothing.
 _WAITS = re.compile(r"\bspinOnce\s*\(|\bsleep\s*\(")
+_TAKES_TIME = re.compile(_WAITS.pattern + r"|\bpublish\s*\(")
 _TIME = re.compile(r"\bTime::now\b")
 _PASSES = re.compile(_TIME.pattern + r"|\+\+|--|[-+]=")
 _NAME = re.compile(r"\b[A-Za-z_]\w*\b(?!\s*\()")
@@ -84,6 +86,8 @@ def _of(case: Case, place: tuple[str, str], loop: _Loop, is_up: bool) -> Iterato
             "This loop does not ask ros::ok(): Ctrl-C does not end the node before the loop ends by"
             " itself, and no callback is called any more."
         )
+    elif not is_endless and _TAKES_TIME.search(loop.block):
+        said, severity = GOES_ON, NOTE
     if said:
         seen = case.package.line(file, line)
         yield Finding(

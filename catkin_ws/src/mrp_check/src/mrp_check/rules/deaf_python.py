@@ -12,7 +12,7 @@ import ast
 from typing import Iterator
 
 from mrp_check.case import Case
-from mrp_check.contract.finding import WARNING, Finding
+from mrp_check.contract.finding import NOTE, WARNING, Finding
 from mrp_check.contract.requirements import ANY, Rule
 from mrp_check.rules.unheard import callbacks, in_threads
 from mrp_check.sources.python_facts import argument
@@ -22,6 +22,9 @@ _LEAVES = (ast.Break, ast.Raise, ast.Return)
 # What asks, what ends the program, and what raises an error of rospy's once the node is to end.
 # publish() gives up in silence then.
 _ENDS = "_exit exit is_shutdown kill quit signal_shutdown spin wait_for_message".split()
+GOES_ON = (
+    "This loop does not ask whether the node is to end: after Ctrl-C it goes on to its own end."
+)
 _KEYBOARD = {"input", "raw_input"}
 _CTRL_C = "\x03"
 _COMPUTES = {"math", "abs", "float", "int", "len", "max", "min", "numpy", "pow", "round", "sqrt"}
@@ -34,7 +37,7 @@ def _findings(case: Case) -> Iterator[Finding]:
             is_up = bool(node and node.is_up)
             for line, said, expected, fix in _deaf(source, is_up) if _is_rospys(source) else ():
                 seen = case.package.line(source.file, line)
-                place = source.file, line, WARNING
+                place = source.file, line, NOTE if said is GOES_ON else WARNING
                 yield Finding("exit", said, *place, expected, seen, fix, node=name)
 
 
@@ -58,6 +61,13 @@ def _deaf(source: Source, is_up: bool) -> Iterator[tuple[int, str, str, str]]:
         elif not is_up and source.function(loop) not in let_off and _goes_on(source, loop):
             said = "This loop never ends: it does not ask rospy.is_shutdown(), so Ctrl-C does not"
             yield loop.lineno, f"{said} end the node.", wanted, f"Write {wanted}"
+        elif source.function(loop) not in let_off and _ends_late(source, loop):
+            yield (
+                loop.lineno,
+                GOES_ON,
+                "rospy.is_shutdown() in the loop",
+                "Let the loop end when rospy.is_shutdown(), too.",
+            )
     yield from _keyboard(source)
 
 
@@ -109,10 +119,22 @@ def _goes_on(source: Source, loop: ast.While) -> bool:
         return False
     if any(isinstance(node, _LEAVES) for node in within):
         return False
-    for function in source.called(loop.body):
-        within += ast.walk(function)  # what the loop calls belongs to it
-    named = (node for node in within if isinstance(node, (ast.Attribute, ast.Name)))
-    return not any(getattr(one, "attr", getattr(one, "id", "")) in _ENDS for one in named)
+    return not _named(source, loop) & {*_ENDS}
+
+
+def _ends_late(source: Source, loop: ast.While) -> bool:
+    """Return whether a loop waits or publishes until it comes to an end of its own."""
+    named, asked = _named(source, loop), _keys(source, loop.test, ast.Load)
+    if isinstance(loop.test, ast.Constant) or named & {*_ENDS} or asked & _set_at_shutdown(source):
+        return False
+    return bool(named & {"sleep", "publish"})
+
+
+def _named(source: Source, loop: ast.While) -> set[str]:
+    """Return all names in a loop, and in what it calls, which belongs to it."""
+    within = [loop, *source.called([loop])]
+    nodes = (node for one in within for node in ast.walk(one))
+    return {getattr(one, "attr", getattr(one, "id", "")) for one in nodes}
 
 
 def _asks_others(source: Source, loop: ast.While) -> str | None:
@@ -120,6 +142,8 @@ def _asks_others(source: Source, loop: ast.While) -> str | None:
     within = [node for one in loop.body for node in ast.walk(one)]
     asks = [] if isinstance(loop.test, ast.Constant) else [loop.test]
     for leaf in (node for node in within if isinstance(node, _LEAVES)):
+        if any(_catches_ctrl_c(one) for one in source.above(leaf)):
+            continue
         tests = [
             one.test for one in source.above(leaf) if isinstance(one, ast.If) and one in within
         ]
@@ -133,6 +157,12 @@ def _asks_others(source: Source, loop: ast.While) -> str | None:
     if set().union(*found) & _set_at_shutdown(source):
         return None
     return min(key[1] for key in found[0] & heard or found[0])
+
+
+def _catches_ctrl_c(node: ast.AST) -> bool:
+    """Return whether a node is an `except KeyboardInterrupt`, which rospy never lets happen."""
+    kind = node.type if isinstance(node, ast.ExceptHandler) else None
+    return isinstance(kind, ast.Name) and kind.id == "KeyboardInterrupt"
 
 
 def _set_at_shutdown(source: Source) -> set[Variable]:

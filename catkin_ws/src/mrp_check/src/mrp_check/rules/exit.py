@@ -100,7 +100,10 @@ def _cause(
     if traceback and direct.code == 1:  # of another thread than main's, it does not set the code
         return traceback[0], f" {traceback[1]}: {traceback[2]}"
     said = last_words(lines)
-    return _leaves(node, direct.code), f" Its last words: {said}" if said else ""
+    place = _leaves(node, direct.code)
+    if traceback and direct.code == -signal.SIGINT:  # Python ends so after a KeyboardInterrupt
+        place = _loop_around(node, traceback[0])
+    return place, f" Its last words: {said}" if said else ""
 
 
 def _runs(node: Node) -> list[tuple[str, LaunchResult | None]]:

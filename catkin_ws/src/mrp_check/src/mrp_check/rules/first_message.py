@@ -23,7 +23,7 @@ _MOMENTS = re.compile(
     r"(?i)sleep|wait|\bwhile\b|spin|getNumSubscribers|\bcin\b|get(line|ch|s)\b|scanf|Timer|usleep"
     r"|\bcall\s*\(|\bvoid\b|\bbool\b|\bclass\b"
 )
-_MADE = re.compile(r"\b(\w+)\s*=\s*\w+(?:\.|->)advertise\s*<[^;()]*>\s*\(([^;]*)\)\s*;")
+_MADE = re.compile(r"\b(\w+)\s*=\s*\w+(?:\.|->)advertise\s*(?:<[^;()]*>\s*)?\(([^;]*)\)\s*;")
 _FOR = re.compile(r"\bfor\s*\([^{}]*\{")
 _WAITS = ("sleep", "wait", "get_num_connections", "input", "spin", "impl", "call")
 

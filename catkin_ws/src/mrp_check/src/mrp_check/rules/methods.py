@@ -1,16 +1,18 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What is called of a publisher, a rate or another object of rospy's is one of its methods."""
+"""What is called of a publisher, a rate or another object of rospy's is one of its methods, and
+gets what that takes."""
 
 from __future__ import annotations
 
 import ast
 import inspect
+import types
 from typing import Iterator
 
 from mrp_check.contract.finding import Finding
 from mrp_check.contract.requirements import Rule
-from mrp_check.contract.words import nearest, perhaps
-from mrp_check.sources.python_modules import resolve
+from mrp_check.contract.words import nearest, perhaps, with_article
+from mrp_check.sources.python_modules import cannot_bind, resolve, signature
 from mrp_check.sources.python_rule import PythonRule, of_sources
 
 _OF = ("rospy.", "actionlib.")
@@ -34,6 +36,20 @@ class Methods(PythonRule):
                     expected=", ".join(known),
                     fix=f"Write {near} for {call.func.attr}." if near else "Call what there is.",
                 )
+                continue
+            function = inspect.getattr_static(class_, call.func.attr)
+            if inspect.isfunction(function):
+                method = types.MethodType(function, class_)
+                problem = cannot_bind(method, call)
+                if problem:
+                    yield self.finding(
+                        "python-names",
+                        f"{call.func.attr}() of {with_article(name)} is called with the wrong"
+                        f" arguments: {problem}.",
+                        call,
+                        expected=f"{call.func.attr}{signature(method)}",
+                        fix="Give it what it takes.",
+                    )
 
     def _maker(self, node: ast.expr) -> str | None:
         """Return the class of rospy's or actionlib's of which a variable is, if it is sure."""

@@ -37,6 +37,27 @@ class NotCalled(PythonRule):
         yield from self._statements()
         yield from self._tests_of_main()
         yield from self._own_callbacks()
+        yield from self._nothing()
+
+    def _nothing(self) -> Iterator[Finding]:
+        """Yield a finding if a program starts its node, and calls none of its functions."""
+        calls = [*self.source.nodes(ast.Call)]
+        own = [one for one in self.source.tree.body if isinstance(one, ast.FunctionDef)]
+        named = {self.source.definition(node) for node in self.source.nodes(ast.expr)}
+        lost = [one for one in own if one not in named]
+        main = [call for call in calls if self.source.function(call) is self.source.tree]
+        starts = [one for one in main if self.source.dotted(one.func) == "rospy.init_node"]
+        others = [one for one in main if not _says_only(self.source.dotted(one.func) or "")]
+        asks = {self.source.function(one) for one in calls if self.source.dotted(one.func)}
+        for function in [one for one in lost if one in asks][:1]:
+            if starts and not [one for one in others if one not in starts] and lost == own:
+                yield self.finding(
+                    "node-start",
+                    f"{function.name}() is never called: the program starts its node, and ends.",
+                    starts[0],
+                    expected=f"{function.name}() after rospy.init_node()",
+                    fix=f"Call {function.name}() below this line.",
+                )
 
     def _own_callbacks(self) -> Iterator[Finding]:
         """Yield a finding if a callback is asked for within itself alone."""
@@ -106,6 +127,10 @@ class NotCalled(PythonRule):
                     fix=f"Write {text}() with brackets.",
                     change=(text, f"{text}()") if not text.endswith("publish") else None,
                 )
+
+
+def _says_only(name: str) -> bool:
+    return name.startswith("rospy.log") or name == "print"
 
 
 _of_python = of_sources(NotCalled)

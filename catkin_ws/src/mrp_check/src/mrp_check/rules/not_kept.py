@@ -12,6 +12,7 @@ from mrp_check.contract.requirements import Rule
 from mrp_check.sources.python_rule import PythonRule, arguments_of, of_sources
 
 _CALLING = ("rospy.Timer", "rospy.Subscriber")  # each calls a function, again and again
+_ANSWERING = ("rospy.Service", "actionlib.SimpleActionServer")  # so does each of these
 _AROUND = (ast.While, ast.For, ast.If, ast.Try, ast.FunctionDef, ast.Lambda)
 
 
@@ -57,7 +58,7 @@ class NotKept(PythonRule):
         called = {
             self.source.definition(argument)
             for call in self.source.nodes(ast.Call)
-            if self.source.dotted(call.func) in _CALLING
+            if self.source.dotted(call.func) in (*_CALLING, *_ANSWERING)
             for argument in arguments_of(call)
         }
         for call in self.source.nodes(ast.Call):

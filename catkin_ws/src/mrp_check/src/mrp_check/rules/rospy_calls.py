@@ -24,6 +24,7 @@ class Calls(PythonRule):
             name = self.source.dotted(node.func)
             if name and name.startswith("rospy.") and not self.is_own("rospy"):
                 yield from self._call(node, name)
+                yield from self._logged(node, name)
             elif name == "actionlib.SimpleActionServer":
                 execute = argument(node, 2, "execute_cb")
                 if execute is not None:
@@ -49,6 +50,28 @@ class Calls(PythonRule):
             return
         if name in _CHECKED:
             yield from _CHECKED[name](self, node)
+
+    def _logged(self, node: ast.Call, name: str) -> Iterator[Finding]:
+        """Yield a finding if a text that is logged has more or fewer places than values."""
+        logs = _LOGS.fullmatch(name)
+        given = node.args[1:] if logs and logs["period"] else node.args
+        text = getattr(given[0], "value", None) if logs and len(given) > 1 else None
+        if not isinstance(text, str):
+            return
+        places = [one for one in _PLACES.finditer(text) if one["type"] != "%"]
+        is_open = any(isinstance(one, (ast.Starred, ast.Dict)) for one in given)
+        if is_open or any(one["name"] for one in places):
+            return
+        wanted = len(places) + sum(one.group().count("*") for one in places)
+        if wanted != len(given) - 1:
+            yield self.finding(
+                "python-names",
+                f"The text that is logged here has {_places(wanted)}, and is given"
+                f" {len(given) - 1}: Python ends with a TypeError when it comes here.",
+                node,
+                expected=f"{name}(... %s, ...), with a place for each value",
+                fix="Write a place such as %s into the text for each value.",
+            )
 
     def _init_node(self, node: ast.Call) -> Iterator[Finding]:
         given = argument(node, 0, "name")
@@ -208,12 +231,25 @@ class Calls(PythonRule):
             )
 
 
+_LOGS = re.compile(
+    r"rospy\.log(?:debug|info|warn|err|fatal)(?:(?P<period>_throttle(?:_identical)?)|_once)?"
+)
+# https://docs.python.org/3/library/stdtypes.html#printf-style-string-formatting
+_PLACES = re.compile(
+    r"%(?P<name>\(\w*\))?[-#0 +]*(?:\d+|\*)?(?:\.(?:\d+|\*))?[hlL]?(?P<type>[diouxXeEfFgGcrsa%])"
+)
 _CHECKED = {
     "rospy.init_node": Calls._init_node,
     "rospy.Publisher": Calls._publisher,
     "rospy.Subscriber": Calls._subscriber,
     "rospy.Timer": Calls._timer,
 }
+
+
+def _places(number: int) -> str:
+    return {0: "no place for a value", 1: "one place for a value"}.get(
+        number, f"{number} places for values"
+    )
 
 
 def _count(number: int) -> str:
