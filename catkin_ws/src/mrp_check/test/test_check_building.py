@@ -208,6 +208,13 @@ def test_the_compilers_error_has_another_cause(line, text, said, tmp_path):
     assert said in cpp_words.of(package, cpp_words.Problem("src/a.cpp", 2, text, "")).said
 
 
+def test_a_copy_keeps_a_header_from_being_made(tmp_path):
+    files = {"srv__Go_DOT_srv": "---\n", "include__some_pkg__Go_DOT_h": ""}
+    package = check_rules.make(tmp_path, src__a_DOT_cpp="\n", **files)
+    problem = cpp_words.Problem("src/a.cpp", 1, "some_pkg/Go.h: No such file or directory", "")
+    assert "is not made of Go.srv" in cpp_words.of(package, problem).said
+
+
 def test_what_stands_behind_a_header_that_is_not_there(tmp_path):
     source = "#include <ros/ros.h>\n#include <some_pkg/no.h>\nauto f = boost::bind(g, _1);\n"
     package = check_rules.make(tmp_path, src__a_DOT_cpp=source)

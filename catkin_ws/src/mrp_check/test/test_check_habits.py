@@ -112,6 +112,8 @@ WORK = "def work(goal):\n    for i in range(9):\n        "
         (goals, "py", f"{WORK}rospy.sleep(1)\n{SERVER}", [5]),
         (goals, "py", f"{WORK}rospy.sleep(s.is_preempt_requested())\n{SERVER}", []),
         (goals, "py", f"{WORK}print(i)\n{SERVER}", []),
+        (goals, "py", f"def work(goal):\n    rospy.sleep(goal.time)\n{SERVER}", [5]),
+        (goals, "py", f"def work(goal):\n    rospy.sleep(0.1)\n{SERVER}", []),
         (goals, "py", "s = actionlib.SimpleActionServer('a', A, work)", [4]),
         (goals, "py", "s = actionlib.SimpleActionServer('a', A, work, False)", []),
         (goals, "py", "s = actionlib.SimpleActionServer(name='a', auto_start=False)", []),
@@ -169,7 +171,7 @@ WORK = "def work(goal):\n    for i in range(9):\n        "
         (unfilled, "py", "print('%s, %d') % (a, b)", [4]),
         (unfilled, "py", "print('%s, %d' % (a, b)) or b", []),
     ],
-    ids=range(102),
+    ids=range(104),
 )
 def test_what_beginners_are_used_to(rule, ending, lines, found, tmp_path):
     assert lines_of(rule, case(tmp_path, ending, lines)) == found

@@ -135,6 +135,7 @@ BROKEN = {
         [("launch-file", 6)],
         r"\$\(arg group\)",
     ),
+    "unused_argument": ("  <arg", '  <arg name="b" default="1"/>\n  <arg', [], "changes nothing"),
     "unknown_attribute": (
         NODES[1],
         NODES[1].replace("<node ", '<node ouput="log" '),

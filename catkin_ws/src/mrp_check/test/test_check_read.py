@@ -322,6 +322,14 @@ def test_where_own_nodes_meet_is_no_global_name(published, heard, found, tmp_pat
     assert check_rules.told(check_rules.of(global_names.RULE, known)) == found
 
 
+def test_a_global_name_in_a_source_that_could_not_be_read(tmp_path):
+    text = 'int main()\n{\n  n.advertise<A>("/a", 1);\n  n.subscribe("/a", 1, f);\n}\n'
+    known = case(check_rules.make(tmp_path / "some_pkg", src__a_DOT_cpp=text))
+    assert not [*check_rules.of(global_names.RULE, known)]
+    known.facts.unread = {"src/a.cpp"}
+    assert check_rules.told(check_rules.of(global_names.RULE, known)) == [("topic", 3)]
+
+
 def test_a_service_of_a_global_name(tmp_path):
     text = 'int main()\n{ n.advertiseService("/go", f); }\n'
     known = case(check_rules.make(tmp_path / "some_pkg", src__a_DOT_cpp=text))
@@ -339,17 +347,19 @@ def test_load_manifest_names_a_package_that_is_there(name, found, tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("line", "kind", "time", "found"),
+    ("line", "kind", "time", "other", "found"),
     [
-        ("n = int(sys.argv[1])", "ValueError", 1, [NOTE]),
-        ("n = int(text)", "ValueError", 1, [ERROR, ERROR]),
-        ("n = int(text)", "ValueError", 5.1, [ERROR]),  # it was asked to end by then
-        ("n = ask()", "KeyboardInterrupt", 1, [ERROR]),  # that it died
+        ("n = int(sys.argv[1])", "ValueError", 1, "even", [NOTE]),
+        ("n = int(text)", "ValueError", 1, "even", [ERROR, ERROR]),
+        ("n = int(text)", "ValueError", 1, "odd", [WARNING, NOTE]),  # of the same name
+        ("n = int(text)", "ValueError", 5.1, "even", [ERROR]),  # it was asked to end by then
+        ("n = ask()", "KeyboardInterrupt", 1, "even", [ERROR]),  # that it died
     ],
-    ids=range(4),
+    ids=range(5),
 )
-def test_what_a_node_raises_under_roslaunch(line, kind, time, found, tmp_path):
-    package = check_rules.make(tmp_path / "some_pkg", src__odd_DOT_py=f"{line}\n")
+def test_what_a_node_raises_under_roslaunch(line, kind, time, other, found, tmp_path):
+    files = {"src__odd_DOT_py": f"{line}\n", "src__b_DOT_py": ""}
+    package = check_rules.make(tmp_path / "some_pkg", **files)
     places = types.SimpleNamespace(
         traceback=lambda lines: (("src/odd.py", 1), kind, "no") if kind in lines else None,
         sources=lambda node: ["src/odd.py"],
@@ -359,8 +369,11 @@ def test_what_a_node_raises_under_roslaunch(line, kind, time, found, tmp_path):
     lines = [(time, "err", kind), (4, "out", died)]
     seen = LaunchResult(ending="enough", asked=5, lines=lines, seen=Seen())
     launches = [types.SimpleNamespace(nodes={"/odd": "odd"}, file="", seen=seen)]
+    named = {"src/odd.py": "odd", "src/b.py": other}
+    starts = [Place(file, 1, Kind.INIT, name) for file, name in named.items()]
     known = types.SimpleNamespace(
         package=package,
+        facts=Facts(sources={file: [file] for file in named}, places=starts),
         places=places,
         nodes={"odd": types.SimpleNamespace(not_up=[])},
         observed=types.SimpleNamespace(launches=launches),

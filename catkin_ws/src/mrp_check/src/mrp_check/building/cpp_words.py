@@ -173,6 +173,8 @@ def _header(name: str, header: str) -> Words:
 def _no_member(error: Error, owner_group: int = 1, member_group: int = 2) -> Words:
     owner = re.sub(r"_<std::allocator<void> ?>", "", error.match.group(owner_group))
     member, suggested = error.match.group(member_group), error.suggested()
+    if suggested == last_part(owner.replace("::", "/")):  # its constructor
+        suggested = nearest(member, _METHODS)
     if re.search(r"(::(Const)?Ptr|shared_ptr<.*>)&?$", owner):
         return Words(
             f"{member} is asked of a pointer to a message, which has it behind ->.",
@@ -189,6 +191,7 @@ def _no_member(error: Error, owner_group: int = 1, member_group: int = 2) -> Wor
     return Words(f"{owner} has no {member}.{hint}", fix)
 
 
+_METHODS = "advertise call getNumSubscribers getTopic ok publish shutdown sleep subscribe".split()
 _CALLS = {
     "subscribe": (
         "the arguments of subscribe() do not fit: the topic's name, the queue's size, the"
@@ -233,6 +236,13 @@ def _missing_header(error: Error) -> Words:
     paths = package.of_kind(*uses.DEFINITIONS)
     own = {name: path for path in paths for name in uses.generated(path)}
     name = last_part(header)[:-2]
+    copy = f"include/{header}"
+    if name in own and copy in package.files:  # gencpp-extras.cmake, "user-provided header"
+        return Words(
+            f"{copy} is in the package, so that {header} is not made of {last_part(own[name])}; and"
+            " include_directories() has no include.",
+            f"Take {copy} away: then the header is made.",
+        )
     if name in own:
         return Words(
             f"there is no {header} yet: it is made of {last_part(own[name])}, and the target does"

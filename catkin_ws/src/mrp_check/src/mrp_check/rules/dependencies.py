@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import Collection, Iterable, Iterator
 
 from catkin_pkg.package import Package as Manifest
@@ -17,6 +18,10 @@ from mrp_check.sources.uses import Use
 from mrp_check.student.cmake import Call, Model
 from mrp_check.student.manifest import FILE, declared, first_dependency, named
 from mrp_check.student.package import Package
+
+
+# Of these, a node in C++ needs more than the headers: a library, or what shows a message.
+_RUNS = re.compile(r"^(?:roscpp|tf|tf2_ros|actionlib|rosbag)$|_msgs$|_srvs$")
 
 
 def _findings(case: Case) -> Iterator[Finding]:
@@ -61,7 +66,7 @@ def _kind(package: Package, name: str, use: Use, manifest: Manifest) -> Iterator
     known = declared(manifest)
     if use.language == "cpp" and name not in known["build"]:
         when = "when it is built"
-    elif use.language != "cpp" and name not in known["exec"]:
+    elif name not in known["exec"] and (use.language != "cpp" or _RUNS.search(name)):
         when = "when it runs"
     else:
         return

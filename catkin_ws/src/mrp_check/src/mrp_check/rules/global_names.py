@@ -6,16 +6,23 @@ https://wiki.ros.org/Names says which names are global.
 
 from __future__ import annotations
 
+import re
 from typing import Iterator
 
 from mrp_check.case import Case
 from mrp_check.confined.places import Kind
 from mrp_check.contract.finding import WARNING, Finding, Line
 from mrp_check.contract.requirements import ANY, Rule
+from mrp_check.contract.words import line_of
 from mrp_check.running.traces import ROS_TOPICS
-from mrp_check.sources import asked
+from mrp_check.sources import asked, uses
 
 _ENDS = (Kind.PUBLISHER, Kind.SUBSCRIBER)
+# The same in a source in C++ that could not be read, for want of a header.
+_SHAPES = {
+    Kind.PUBLISHER: re.compile(r'\badvertise\s*<[^;()]*>\s*\(\s*"(/\w[^"]*)"'),
+    Kind.SUBSCRIBER: re.compile(r'\bsubscribe\s*(?:<[^;()]*>\s*)?\(\s*"(/\w[^"]*)"'),
+}
 
 
 def _findings(case: Case) -> Iterator[Finding]:
@@ -24,6 +31,8 @@ def _findings(case: Case) -> Iterator[Finding]:
         for place in case.facts.of(node, *_ENDS):
             if place.text and place.text.startswith("/") and place.text not in ROS_TOPICS:
                 named[place.kind].setdefault(place.text, []).append((place.file, place.line))
+        for kind, match, file in _unread(case, files):
+            named[kind].setdefault(match[1], []).append((file, line_of(match, 1)))
         for one in asked.of(case.package, files):
             if one.what == "offers" and one.name.startswith("/"):
                 named[one.what].setdefault(one.name, []).append((one.file, one.line))
@@ -44,6 +53,13 @@ def _findings(case: Case) -> Iterator[Finding]:
                 fix=f"Write {name[1:]}.",
                 change=(name, name[1:]),
             )
+
+
+def _unread(case: Case, files: list[str]) -> Iterator[tuple[Kind, re.Match[str], str]]:
+    for file in sorted({*files} & case.facts.unread):
+        text = uses.code(case.package, file) if case.package.kind(file) == "cpp" else ""
+        for kind, shape in _SHAPES.items():
+            yield from ((kind, match, file) for match in shape.finditer(text))
 
 
 RULE = Rule("static", 53, ("facts",), _findings, also=("topic",), only=ANY)

@@ -26,6 +26,8 @@ _LOOP = re.compile(r"\b(?:for|while)\s*\(")
 _LASTS = re.compile(r"\bpublishFeedback\s*\(|\bsleep\s*\(")
 _OK = re.compile(r"\b(?:ok|isShuttingDown)\s*\(")
 _LASTING = {"sleep", "publish_feedback"}
+_LONG = 2  # seconds
+_SLEEPS = re.compile(r"\bsleep\s*\(")
 
 
 def _findings(case: Case) -> Iterator[Finding]:
@@ -35,7 +37,8 @@ def _findings(case: Case) -> Iterator[Finding]:
         if loop:
             shutdown = "rospy.is_shutdown()" if one.python else "ros::ok()"
             more = f" nor {shutdown}: it goes on, after Ctrl-C, too." if deaf else ": it goes on."
-            said = f"This loop does not ask whether its goal has been cancelled{more}"
+            what = "sleep()" if _SLEEPS.search(case.package.line(one.file, loop)) else "loop"
+            said = f"This {what} does not ask whether its goal has been cancelled{more}"
             fix = f"Ask {asked} in each turn, and end the goal as preempted."
             yield one.finding("callbacks", said, loop, f"{asked} in the loop", fix)
         if started:
@@ -75,12 +78,23 @@ def _in_python(source: Source) -> tuple[int, bool, int]:
         if isinstance(work, ast.FunctionDef) and not _asks(source):
             lasting = (one for one in ast.walk(work) if isinstance(one, (ast.For, ast.While)))
             found = next((one for one in lasting if _LASTING & _attributes(one)), None)
+            found = found or _long_sleep(source, work)
     deaf = isinstance(found, ast.While) and "is_shutdown" not in _attributes(found)
     return found.lineno if found else 0, deaf, started
 
 
 def _asks(source: Source) -> bool:
     return bool({"is_preempt_requested", "set_preempted"} & _attributes(source.tree))
+
+
+def _long_sleep(source: Source, work: ast.FunctionDef) -> ast.Call | None:
+    """Return a sleep in a function that is long, or as long as the goal says."""
+    for call in (one for one in ast.walk(work) if isinstance(one, ast.Call)):
+        if source.dotted(call.func) in ("time.sleep", "rospy.sleep") and call.args:
+            seconds = source.value(call.args[0])
+            if not isinstance(seconds, (int, float)) or seconds >= _LONG:
+                return call
+    return None
 
 
 def _attributes(within: ast.AST) -> set[str]:

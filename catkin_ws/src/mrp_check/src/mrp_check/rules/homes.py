@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""No source and no launch file names a path in the home folder of its author."""
+"""No source, no launch file and no file of parameters names a path in the home folder of its author."""
 
 from __future__ import annotations
 
@@ -14,6 +14,8 @@ from mrp_check.sources import uses
 from mrp_check.sources.python_source import Source
 
 _HOME = re.compile(r"/(?:home|Users)/[\w.-]+/[^\s\"'<>;:]*")
+_PARAMETERS = (".yaml", ".yml", ".ini")
+_COMMENT = re.compile(r"(?m)(?:^|[ \t])#.*$")
 _CPP_TEXT = re.compile(r'"(?:[^"\\\n]|\\.)*"')
 _INCLUDE = re.compile(r"^[ \t]*#[ \t]*include[^\n]*", re.MULTILINE)
 
@@ -28,6 +30,9 @@ def _findings(case: Case) -> Iterator[Finding]:
             yield from _first_of_each(file, _in_cpp(package.text(file)))
     for file in package.of_kind("launch"):
         text = uses.code(package, file)
+        yield from _first_of_each(file, _in_text(text, 0, text))
+    for file in (one for one in package.files if one.endswith(_PARAMETERS)):
+        text = _COMMENT.sub("", package.text(file))
         yield from _first_of_each(file, _in_text(text, 0, text))
 
 

@@ -8,10 +8,11 @@ from typing import Callable, Iterator, Optional, Sequence, Tuple
 
 from mrp_check import evidence
 from mrp_check.case import Case
-from mrp_check.contract.finding import WARNING, Finding, Line
+from mrp_check.contract.finding import NOTE, WARNING, Finding, Line
 from mrp_check.contract.requirements import Requirement, Rule
 from mrp_check.contract.words import last_part, line_of, nearest
 from mrp_check.student.launch import Launch
+from mrp_check.student.package import Package
 from mrp_check.student.xml_file import Element, stray
 
 _TAGS = ("launch node group arg param rosparam remap include env machine test master").split()
@@ -32,6 +33,7 @@ def _findings(case: Case) -> Iterator[Finding]:
             yield _error(launch, tags)
         yield from _unknown(tags)
         yield from _no_attributes(launch, tags)
+        yield from _unused(case.package, tags)
         yield from stray("launch-file", case.package, tags, ("rosparam",))
     for file in case.package.of_kind("launch"):
         for match in _BRACES.finditer(case.package.text(file)):
@@ -94,6 +96,27 @@ def _no_attributes(launch: Launch, tags: Sequence[tuple[str, Element]]) -> Itera
                 expected=f'{near}="..."' if near else "an attribute of roslaunch",
                 seen=f'{name}="{element.attributes[name]}"',
                 fix=f"Write {near} for {name}." if near else "Take it out.",
+            )
+
+
+def _unused(package: Package, tags: Sequence[tuple[str, Element]]) -> Iterator[Finding]:
+    """Yield a note for each argument of a launch file that it uses nowhere."""
+    for file, element in tags:
+        name, above = element.attributes.get("name", ""), [one.tag for one in element.parents]
+        if element.tag != "arg" or "include" in above or not name:
+            continue
+        text = package.text(file)
+        used = rf"arg\s+{re.escape(name)}\s*\)|\$\(eval[^\n]*\b{re.escape(name)}\b"
+        if not re.search(used, text) and "pass_all_args" not in text:
+            yield Finding(
+                "launch-file",
+                f"The argument {name} changes nothing: the launch file does not use it.",
+                file,
+                element.line,
+                NOTE,
+                expected=f"$(arg {name}) somewhere",
+                seen=package.line(file, element.line),
+                fix=f"Use $(arg {name}); or take it out.",
             )
 
 

@@ -7,14 +7,16 @@ from typing import Iterator
 
 from mrp_check.case import Case
 from mrp_check.confined.places import Kind
-from mrp_check.contract.finding import NOTE, Finding, Where
+from mrp_check.contract.finding import ERROR, NOTE, WARNING, Finding, Where
 from mrp_check.contract.requirements import ANY, Rule
 from mrp_check.running.observing import Launched
 from mrp_check.running.starting import id_of_error
 from mrp_check.running.traces import ends
 from mrp_check.running.words import code_text
+from mrp_check.sources import asked
 
 _GIVES_UP = "RLException: "
+_MILD = (NOTE, WARNING, ERROR)
 
 
 def _findings(case: Case) -> Iterator[Finding]:
@@ -22,13 +24,29 @@ def _findings(case: Case) -> Iterator[Finding]:
         lines = launched.seen.until_asked()
         yield from _gave_up(case, launched, lines)
         raised = [*_raised(case, launched, launched.seen.until_asked(0))]
+        # Nobody but this program runs two ways of writing one node at once.
+        is_odd = not launched.file and _has_alternatives(case)
+        for one in raised if is_odd else ():
+            one.severity = min(one.severity, WARNING, key=_MILD.index)
         yield from raised
         waiting = {one.node for one in raised if one.severity == NOTE}
         for path, code in ends(lines).items():
             name = launched.nodes.get(path)
             # What ends by itself, too, has been said.
             if code and name and name not in waiting and not case.nodes[name].not_up:
-                yield _died(case, launched, name, code)
+                finding = _died(case, launched, name, code)
+                finding.severity = NOTE if is_odd else finding.severity
+                yield finding
+
+
+def _has_alternatives(case: Case) -> bool:
+    """Return whether two nodes call themselves the same, or serve the same action or service."""
+    found: list[tuple[str, str]] = []
+    for node, files in case.facts.sources.items():
+        said = {(one.what, one.base) for one in asked.of(case.package, files)}
+        said |= {("is", place.text or node) for place in case.facts.of(node, Kind.INIT)[:1]}
+        found += [one for one in said if one[0] in ("is", "offers", "serves")]
+    return len(found) > len({*found})
 
 
 def _where(launched: Launched) -> str:

@@ -18,6 +18,7 @@ from mrp_check.sources.python_source import Source
 _WAITS = re.compile(r"(?i)sleep|wait|spin|input|recv|accept|select|poll|read|get_?key|join|call")
 _CAUGHT = re.compile(r"\bcatch\s*\([^)]*\)\s*\{([^{}]*)\bcontinue\s*;\s*\}")
 _AT_FAULT = "goes on at once, past the pause in line {0}: until it works, the loop never pauses"
+_IN_A_CASE = "pauses in a condition alone, in line {0}: where it does not hold, it never pauses"
 _AT_REST = "pauses in line {0} alone, where something has failed: otherwise it never pauses"
 
 
@@ -53,8 +54,38 @@ def _in_python(source: Source) -> Iterator[tuple[int, str]]:
                         yield last.lineno, _AT_FAULT.format(pause.lineno if pause else 0)
         handlers = [node for node in ast.walk(loop) if isinstance(node, ast.ExceptHandler)]
         late = [*_waits(handlers)]
+        sleeps = [call.lineno for call in _waits([loop]) if "sleep" in _name(call.func)]
+        if sleeps and not late and _is_endless(loop) and not _pauses(source, loop.body):
+            yield loop.lineno, _IN_A_CASE.format(min(sleeps))
         if late and _is_endless(loop) and len([*_waits([loop])]) == len(late):
             yield loop.lineno, _AT_REST.format(late[0].lineno)
+
+
+def _pauses(source: Source, parts: list[ast.stmt]) -> bool:
+    """Return whether some statements wait, whatever the conditions among them are."""
+    for one in parts:
+        # What the source's own functions do belongs to it; where it goes on is too much for this.
+        within = [one.test] if isinstance(one, ast.If) else [one]
+        called = {
+            _name(n.func) for part in within for n in ast.walk(part) if isinstance(n, ast.Call)
+        }
+        own = (n for n in source.nodes(ast.FunctionDef) if n.name in called)
+        if any(_waits([*within, *own])) and not _is_of_film(one):
+            return True
+        if isinstance(one, ast.If):
+            if any(isinstance(node, ast.Continue) for node in ast.walk(one)):
+                return True
+            if _pauses(source, one.body) and _pauses(source, one.orelse):
+                return True
+    return False
+
+
+def _is_of_film(one: ast.stmt) -> bool:
+    """Return whether a statement is `ok, picture = video.read()`, which waits for a camera, and
+    not at the end of a film."""
+    of_two = isinstance(one, ast.Assign) and isinstance(one.targets[0], ast.Tuple)
+    value = getattr(one, "value", None)
+    return of_two and isinstance(value, ast.Call) and _name(value.func) == "read"
 
 
 def _is_endless(loop: ast.While) -> bool:

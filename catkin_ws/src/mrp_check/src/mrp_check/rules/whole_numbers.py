@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Two whole numbers are divided in C++: the rest is dropped, so that 1/2 is 0 (C++17, 8.6)."""
+"""What becomes 0 though it should not: 1/2 in C++ (C++17, 8.6), and int() of less than 1 in Python."""
 
 from __future__ import annotations
 
+import ast
 import re
 from typing import Iterator
 
@@ -12,12 +13,24 @@ from mrp_check.contract.requirements import ANY, Rule
 from mrp_check.contract.words import line_of
 from mrp_check.sources import in_both
 
+_BELOW_1 = ("random.random", "numpy.random.rand", "numpy.random.random")
 _DIVIDED = re.compile(r"(?<![\w.)\]])(\d+)\s*/\s*(\d+)(?![\w.])")
 _TEXT = re.compile(r'"(?:\\.|[^"\\\n])*"|^\s*#.*$', re.MULTILINE)
 
 
 def _findings(case: Case) -> Iterator[Finding]:
     for one in in_both.each(case):
+        for call in one.python.nodes(ast.Call) if one.python else ():
+            inner = call.args[0] if getattr(call.func, "id", "") == "int" and call.args else None
+            if isinstance(inner, ast.Call) and one.python:
+                if one.python.dotted(inner.func) in _BELOW_1:
+                    yield one.finding(
+                        "starts",
+                        "int() of a random number below 1 is always 0.",
+                        call.lineno,
+                        expected="random.randint(0, 9)",
+                        fix="Take a whole number: random.randint(...).",
+                    )
         code = _TEXT.sub(lambda text: " " * len(text[0]), one.code)
         for match in _DIVIDED.finditer(code):
             above, below = int(match[1]), int(match[2])
