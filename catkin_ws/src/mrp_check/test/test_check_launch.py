@@ -135,7 +135,6 @@ BROKEN = {
         [("launch-file", 6)],
         r"\$\(arg group\)",
     ),
-    "unused_argument": ("  <arg", '  <arg name="b" default="1"/>\n  <arg', [], "changes nothing"),
     "unknown_attribute": (
         NODES[1],
         NODES[1].replace("<node ", '<node ouput="log" '),
@@ -195,6 +194,24 @@ def test_what_asks_for_an_argument_is_read_all_the_same(tmp_path):
     assert "requires the 'a' arg to be set" in case.launch.error
     assert (case.launch.params, len(case.launch.nodes)) == ({"/b": 1}, 4)
     case.close()
+
+
+@pytest.mark.parametrize(
+    ("used", "found"),
+    [
+        ('<param name="c" value="1"/>', [2]),
+        ('<param name="c" value="$(arg b)"/>', []),
+        ('<param name="c" value="$(eval b + 1)"/>', []),
+        ('<include file="c.launch" pass_all_args="true"/>', []),
+        ('<include file="c.launch"><arg name="b" value="2"/></include>', [2]),
+    ],
+    ids=range(5),
+)
+def test_an_argument_that_changes_nothing(used, found, tmp_path):
+    text = f'<launch>\n  <arg name="b" default="1"/>\n  {used}\n</launch>\n'
+    package = check_rules.make(tmp_path / "some_pkg", launch__a_DOT_launch=text)
+    tags = launching.Launch("", file="launch/a.launch").elements(package)
+    assert [one.line for one in launch_file.unused(package, tags)] == found
 
 
 def test_nodes_may_be_in_an_included_file(tmp_path):

@@ -19,7 +19,6 @@ from mrp_check.student.cmake import Call, Model
 from mrp_check.student.manifest import FILE, declared, first_dependency, named
 from mrp_check.student.package import Package
 
-
 # Of these, a node in C++ needs more than the headers: a library, or what shows a message.
 _RUNS = re.compile(r"^(?:roscpp|tf|tf2_ros|actionlib|rosbag)$|_msgs$|_srvs$")
 

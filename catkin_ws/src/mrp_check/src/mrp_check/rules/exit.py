@@ -102,7 +102,7 @@ def _cause(
     said = last_words(lines)
     place = _leaves(node, direct.code)
     if traceback and direct.code == -signal.SIGINT:  # Python ends so after a KeyboardInterrupt
-        place = _loop_around(node, traceback[0])
+        place = _loop_around(node, traceback[0]) or place
     return place, f" Its last words: {said}" if said else ""
 
 

@@ -67,7 +67,8 @@ def _in_cpp(text: str) -> tuple[int, bool, int]:
 
 def _in_python(source: Source) -> tuple[int, bool, int]:
     """Return the same of a source in Python."""
-    started, found = 0, None
+    started = 0
+    found: ast.stmt | ast.expr | None = None
     for call in source.nodes(ast.Call):
         if source.dotted(call.func) != "actionlib.SimpleActionServer":
             continue

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""No source, no launch file and no file of parameters names a path in the home folder of its author."""
+"""No source, launch file or file of parameters names a path in the home folder of its author."""
 
 from __future__ import annotations
 

@@ -33,7 +33,8 @@ def _findings(case: Case) -> Iterator[Finding]:
             yield _error(launch, tags)
         yield from _unknown(tags)
         yield from _no_attributes(launch, tags)
-        yield from _unused(case.package, tags)
+        if not case.spec.is_contract:
+            yield from unused(case.package, tags)
         yield from stray("launch-file", case.package, tags, ("rosparam",))
     for file in case.package.of_kind("launch"):
         for match in _BRACES.finditer(case.package.text(file)):
@@ -99,7 +100,7 @@ def _no_attributes(launch: Launch, tags: Sequence[tuple[str, Element]]) -> Itera
             )
 
 
-def _unused(package: Package, tags: Sequence[tuple[str, Element]]) -> Iterator[Finding]:
+def unused(package: Package, tags: Sequence[tuple[str, Element]]) -> Iterator[Finding]:
     """Yield a note for each argument of a launch file that it uses nowhere."""
     for file, element in tags:
         name, above = element.attributes.get("name", ""), [one.tag for one in element.parents]

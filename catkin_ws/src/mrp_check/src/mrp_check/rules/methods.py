@@ -38,7 +38,7 @@ class Methods(PythonRule):
                 )
                 continue
             function = inspect.getattr_static(class_, call.func.attr)
-            if inspect.isfunction(function):
+            if name and inspect.isfunction(function):
                 method = types.MethodType(function, class_)
                 problem = cannot_bind(method, call)
                 if problem:

@@ -31,7 +31,7 @@ def _findings(case: Case) -> Iterator[Finding]:
 
 
 def _reads(text: str) -> Iterator[tuple[str, str, re.Match[str]]]:
-    """Yield (parameter, variable, where it is read) of each that may leave the variable as it is."""
+    """Yield (parameter, variable, place) of each reading that may leave the variable as it is."""
     for match in _READ.finditer(text):
         yield match[1], match[2], match
     for match in _ASKED.finditer(text):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What becomes 0 though it should not: 1/2 in C++ (C++17, 8.6), and int() of less than 1 in Python."""
+"""What becomes 0 by surprise: 1/2 in C++ (C++17, 8.6), int() of less than 1 in Python."""
 
 from __future__ import annotations
 
