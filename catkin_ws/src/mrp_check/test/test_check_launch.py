@@ -201,11 +201,12 @@ def test_what_asks_for_an_argument_is_read_all_the_same(tmp_path):
     [
         ('<param name="c" value="1"/>', [2]),
         ('<param name="c" value="$(arg b)"/>', []),
+        ('<!-- <param name="c" value="$(arg b)"/> -->', [2]),
         ('<param name="c" value="$(eval b + 1)"/>', []),
         ('<include file="c.launch" pass_all_args="true"/>', []),
         ('<include file="c.launch"><arg name="b" value="2"/></include>', [2]),
     ],
-    ids=range(5),
+    ids=range(6),
 )
 def test_an_argument_that_changes_nothing(used, found, tmp_path):
     text = f'<launch>\n  <arg name="b" default="1"/>\n  {used}\n</launch>\n'

@@ -11,6 +11,7 @@ from mrp_check.case import Case
 from mrp_check.contract.finding import NOTE, WARNING, Finding, Line
 from mrp_check.contract.requirements import Requirement, Rule
 from mrp_check.contract.words import last_part, line_of, nearest
+from mrp_check.sources import uses
 from mrp_check.student.launch import Launch
 from mrp_check.student.package import Package
 from mrp_check.student.xml_file import Element, stray
@@ -106,7 +107,7 @@ def unused(package: Package, tags: Sequence[tuple[str, Element]]) -> Iterator[Fi
         name, above = element.attributes.get("name", ""), [one.tag for one in element.parents]
         if element.tag != "arg" or "include" in above or not name:
             continue
-        text = package.text(file)
+        text = uses.code(package, file)
         used = rf"arg\s+{re.escape(name)}\s*\)|\$\(eval[^\n]*\b{re.escape(name)}\b"
         if not re.search(used, text) and "pass_all_args" not in text:
             yield Finding(
