@@ -57,6 +57,9 @@ HEARS = "auto hear = [](const A::ConstPtr& m) {{ {} }};"
             "n = len(sys.argv)\ntry:\n    int(sys.argv[1])\nexcept ValueError: a()",
             [],
         ),
+        (arguments, "py", "a = int(input())", [4]),
+        (arguments, "py", "a = input()\nb = float(a)", [5]),
+        (arguments, "py", "try:\n    a = int(input())\nexcept ValueError: b()", []),
         (indexed, "py", f"{HEAR}a = m.ranges[180]", [5]),
         (indexed, "py", f"{HEAR}m.ranges[0] = 1", []),
         (indexed, "py", f"{HEAR}a = len(m.ranges) > 9 and m.ranges[9]", []),
@@ -111,7 +114,7 @@ HEARS = "auto hear = [](const A::ConstPtr& m) {{ {} }};"
         (lost_global, "py", f"states = 1\n{HEAR}global states\n    states = m", []),
         (lost_global, "py", f"states = 1\n{HEAR}global other", []),
     ],
-    ids=range(58),
+    ids=range(61),
 )
 def test_what_may_be_missing_is_looked_at(rule, ending, lines, found, tmp_path):
     assert lines_of(rule, case(tmp_path, ending, lines)) == found

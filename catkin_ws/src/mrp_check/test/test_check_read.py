@@ -181,6 +181,26 @@ def test_what_a_launch_file_gives_is_named_in_a_source(
     assert check_rules.told(check_rules.of(unread.RULE, known)) == found
 
 
+@pytest.mark.parametrize(
+    ("source", "package", "found"),
+    [
+        ('n.getParam("gain", a);', "some_pkg", [2]),
+        ('n.getParam("rate", a);', "some_pkg", []),
+        ('n.getParam("gain", a);', "tf", []),  # a node of another package may read it
+        ("n.getParam(name, a);", "some_pkg", []),
+    ],
+    ids=range(4),
+)
+def test_a_parameter_that_nothing_reads_is_a_note(source, package, found, tmp_path):
+    text = '<launch>\n  <param name="rate" value="2"/>\n</launch>\n'
+    files = {"src__a_DOT_cpp": MAIN.format(source), "launch__a_DOT_launch": text}
+    known = case(check_rules.make(tmp_path / "some_pkg", **files))
+    node = Started(package, "a", "a", "/", "", [], [], "", "", "launch/a.launch", 2)
+    known.launches = [Launch("", nodes=[node], params={"/rate": 2}, file="launch/a.launch")]
+    known.facts.sources = {}
+    assert [one.line for one in check_rules.of(unread.RULE, known)] == found
+
+
 OF_BOTH = 'ros::NodeHandle n;\n  ros::NodeHandle own("~");\n  '
 
 

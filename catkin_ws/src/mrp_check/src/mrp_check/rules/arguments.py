@@ -74,13 +74,12 @@ def _of_python(case: Case, node: str, source: Source) -> Iterator[Finding]:
 
 
 def _of_python_number(case: Case, node: str, source: Source) -> Iterator[Finding]:
-    """Yield a warning about the first argument that must be a number, if nobody catches what Python
-    raises of one that is none."""
+    """Yield a warning about the first argument, or what is typed first, that must be a number, if
+    nobody catches what Python raises of one that is none."""
     for call in source.nodes(ast.Call):
         name = call.func.id if isinstance(call.func, ast.Name) else ""
         of = call.args[0] if name in ("int", "float") and call.args else None
-        is_argument = isinstance(of, ast.Subscript) and source.dotted(of.value) == "sys.argv"
-        if is_argument and not source.is_guarded(call, "ValueError"):
+        if of and _is_given(source, of) and not source.is_guarded(call, "ValueError"):
             yield Finding(
                 "starts",
                 f"{name}() raises a ValueError if what is given is no number, and {node} does not"
@@ -94,6 +93,16 @@ def _of_python_number(case: Case, node: str, source: Source) -> Iterator[Finding
                 node=node,
             )
             return
+
+
+def _is_given(source: Source, node: ast.expr) -> bool:
+    """Return whether an expression is an argument of the command line, or what somebody types."""
+    stored = source.stored(source.key(node)) if isinstance(node, ast.Name) else []
+    if len(stored) == 1 and isinstance(stored[0], ast.expr):
+        node = stored[0]
+    if isinstance(node, ast.Call):
+        return getattr(node.func, "id", "") in ("input", "raw_input")
+    return isinstance(node, ast.Subscript) and source.dotted(node.value) == "sys.argv"
 
 
 def _of_number(case: Case, node: str, file: str, code: str) -> Iterator[Finding]:

@@ -8,7 +8,7 @@ from typing import Iterator
 
 from mrp_check.case import Case
 from mrp_check.confined.launch_dump import Started
-from mrp_check.contract.finding import WARNING, Finding
+from mrp_check.contract.finding import NOTE, WARNING, Finding
 from mrp_check.contract.requirements import ANY, Rule
 from mrp_check.contract.words import last_part
 from mrp_check.rules.launch_remap import remap_line
@@ -21,6 +21,7 @@ _UNSEEN = re.compile(
     r"|dynamic_reconfigure|nodelet|plugin|actionlib|image_transport|camera_info|controller|diagnos"
     r"|tf2?_ros|moveit|message_filters"
 )
+_OF_ROS = {"/use_sim_time", "/robot_description", "/rosversion", "/rosdistro", "/run_id"}
 # A node that has one of these may read its own parameters.
 _PRIVATE = re.compile(r"""["']~|get_name\s*\(|getName\s*\(|getNamespace|PrivateNodeHandle""")
 # What reads a parameter by the name that it is given, and a NodeHandle without a name of its own.
@@ -35,6 +36,7 @@ def _findings(case: Case) -> Iterator[Finding]:
     text = "\n".join(uses.code(case.package, file) for file in files)
     is_seen = not _UNSEEN.search(text)
     for launch in case.launches:
+        yield from _of_nobody(case, launch, text) if is_seen else ()
         for node in launch.nodes:
             if node.package == case.package.name and case.facts.sources.get(node.type):
                 yield from _of_own(case, launch, node, text)
@@ -67,6 +69,31 @@ def _of_params(case: Case, launch: Launch, node: Started, text: str) -> Iterator
             fix=f"Read {own} in the node; or take the <param> out.",
             node=node.type,
         )
+
+
+def _of_nobody(case: Case, launch: Launch, text: str) -> Iterator[Finding]:
+    """Yield a note for each parameter beside the nodes' own that nothing names, where a launch file
+    starts nodes of this package alone."""
+    if any(node.package != case.package.name for node in launch.nodes):
+        return
+    own = tuple(f"{node.path}/" for node in launch.nodes)
+    tags = launch.elements(case.package)
+    for name in (one for one in launch.params if not one.startswith(own) and one not in _OF_ROS):
+        if any(_is_named(part, text) for part in name.strip("/").split("/")):
+            continue
+        sets = [one for one in tags if one[1].attributes.get("name", "") == last_part(name)]
+        sets += [one for one in tags if one[1].tag == "rosparam"]
+        for file, element in sets[:1]:
+            yield Finding(
+                "starts",
+                f"{file} sets the parameter {name}, and no source of this package names it.",
+                file,
+                element.line,
+                NOTE,
+                expected="a parameter that a node reads",
+                seen=f"{name}, which nothing reads",
+                fix=f"Read {last_part(name)} in a node; or take it out.",
+            )
 
 
 def _own(launch: Launch, node: Started) -> dict[str, str]:
