@@ -30,6 +30,8 @@ def test_unbalanced_brace_is_found_by_the_indentation():
     assert cpp_words.unbalanced_brace(CPP.splitlines()) == (5, "}")
     assert cpp_words.unbalanced_brace(CPP.replace("f();", "f(); }").splitlines()) is None
     assert cpp_words.unbalanced_brace(["}", "// {"]) == (1, "{")
+    assert cpp_words.unbalanced_brace(["{", "}", "", "}"]) == (4, "{")
+    assert cpp_words.unbalanced_brace(["{", "}", "  return 0;", "}"]) == (2, "{")
 
 
 @pytest.mark.parametrize(

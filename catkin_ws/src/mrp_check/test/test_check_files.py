@@ -62,9 +62,10 @@ def test_windows_line_ends_of_cpp_are_a_note(tmp_path):
         ("<depend>rospy", "<dependd>rospy", 10, "dependd"),
         ("<depend>rospy</depend>", "<run_depend>rospy</run_depend>", 10, "run_depend"),
         ("  <buildtool_depend>catkin</buildtool_depend>\n", "", 8, "catkin"),
+        ("buildtool_depend>catkin<", "buildtool_depend>ament_cmake<", 8, "is of ROS 2"),
         ("</description>", "</description> -->", 5, "nothing reads it: -->"),
     ],
-    ids=range(9),
+    ids=range(10),
 )
 def test_broken_manifest(old, new, line, says, tmp_path):
     assert MANIFEST.count(old) == 1

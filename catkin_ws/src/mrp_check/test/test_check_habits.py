@@ -94,6 +94,8 @@ WORK = "def work(goal):\n    for i in range(9):\n        "
         (not_called, "py", f"def ask():\n    rospy.wait_for_service('a')\n{START}", [6]),
         (not_called, "py", f"def ask():\n    rospy.wait_for_service('a')\n{START}\nask()", []),
         (not_called, "py", f"def ask():\n    return 1\n{START}", []),
+        (not_called, "py", f"def f():\n    {START}\nif __name__ == '__main':\n    f()", [6]),
+        (not_called, "py", f"def f():\n    {START}\nif __name__ == '__main__':\n    f()", []),
         (not_called, "py", f"def ask():\n    rospy.spin()\n{START}\nrospy.spin()", []),
         (rospy_calls, "py", "rospy.loginfo('a', 1)", [4]),
         (rospy_calls, "py", "rospy.logwarn('%s %d%%', 'a')", [4]),
@@ -171,7 +173,7 @@ WORK = "def work(goal):\n    for i in range(9):\n        "
         (unfilled, "py", "print('%s, %d') % (a, b)", [4]),
         (unfilled, "py", "print('%s, %d' % (a, b)) or b", []),
     ],
-    ids=range(104),
+    ids=range(106),
 )
 def test_what_beginners_are_used_to(rule, ending, lines, found, tmp_path):
     assert lines_of(rule, case(tmp_path, ending, lines)) == found
@@ -200,8 +202,9 @@ DIVIDES = "bool f(some_pkg::Half::Request& q, some_pkg::Half::Response& s)\n{\n"
         ("int64", "s.c = q.a / q.b;", [5]),
         ("float64", "s.c = q.a / q.b;", []),
         ("int64", "if (q.b == 0) { return false; }\ns.c = q.a / q.b;", []),
+        ("int64", "s.c = q.a / q.b;\nif (q.b == 0) { s.c = 0; }", [5]),
     ],
-    ids=range(3),
+    ids=range(4),
 )
 def test_a_service_in_cpp_divides(kind, lines, found, tmp_path):
     package = check_rules.make(
@@ -219,10 +222,11 @@ def test_a_service_in_cpp_divides(kind, lines, found, tmp_path):
         ("return q.a / q.b", [5]),
         ("b = q.b\n    return q.a % b", [6]),
         ("if q.b == 0:\n        return 0\n    return q.a / q.b", []),
+        ("c = q.a / q.b\n    if q.b == 0:\n        c = 0\n    return c", [5]),
         ("return q.a / 2", []),
         ("try:\n        return q.a / q.b\n    except ZeroDivisionError:\n        return 0", []),
     ],
-    ids=range(5),
+    ids=range(6),
 )
 def test_a_service_in_python_divides(lines, found, tmp_path):
     service = f"def f(q):\n    {lines}\nrospy.Service('a', A, f)"

@@ -344,9 +344,10 @@ def unbalanced_brace(lines: Sequence[str]) -> tuple[int, str] | None:
     """Return (line, what is missing or "{" if there is one } too many), or None if all are closed.
 
     The brace that lacks its partner is found by the indentation: the first block whose end is not
-    indented as its beginning.
+    indented as its beginning. A } too many is the one before, if indented code follows that.
     """
     text, stack, suspects = "\n".join(lines), [], []
+    closed = 0  # the line of the last } that closed all
     for match in _CODE.finditer(text):
         if not match.group("brace"):
             continue
@@ -355,11 +356,13 @@ def unbalanced_brace(lines: Sequence[str]) -> tuple[int, str] | None:
         if match.group() == "{":
             stack.append((number + 1, indent))
         elif not stack:
-            return number + 1, "{"
+            goes_on = any(one.strip() and one[0] in " \t" for one in lines[closed:number])
+            return (closed if closed and goes_on else number + 1), "{"
         else:
             opened, opened_indent = stack.pop()
             if opened_indent != indent and opened != number + 1:
                 suspects.append(opened)
+            closed = closed if stack else number + 1
     if not stack:
         return None
     # Of blocks whose ends do not fit, the innermost was closed by the brace of the one around it.

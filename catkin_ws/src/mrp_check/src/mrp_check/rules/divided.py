@@ -46,7 +46,8 @@ def _in_cpp(package: Package, text: str) -> Iterator[tuple[str, int]]:
         for division in shape.finditer(text, offered.end(), offered.end() + len(body)):
             field = division[1]
             asked = rf"{request}\.{field}\s*[!=<>]|[!<>=]\s*{request}\.{field}\b"
-            if _is_whole(package, kind, field) and not re.search(asked, body):
+            before = text[offered.end() : division.start()]
+            if _is_whole(package, kind, field) and not re.search(asked, before):
                 yield field, line_of(division)
 
 
@@ -66,11 +67,15 @@ def _in_python(source: Source) -> Iterator[tuple[str, int]]:
             continue
         request = answer.args.args[-1].arg
         tests = [one.test for one in ast.walk(answer) if isinstance(one, (ast.If, ast.IfExp))]
-        asked = {_field(source, node, request) for test in tests for node in ast.walk(test)}
+        asked = [
+            (_field(source, node, request), test.lineno)
+            for test in tests
+            for node in ast.walk(test)
+        ]
         for node in ast.walk(answer):
             if isinstance(node, ast.BinOp) and isinstance(node.op, _DIVISIONS):
                 field = _field(source, node.right, request)
-                if field and field not in asked:
+                if field and not any(one == field and line <= node.lineno for one, line in asked):
                     if not source.is_guarded(node, "ZeroDivisionError", "ArithmeticError"):
                         yield field, node.lineno
 

@@ -12,15 +12,20 @@ from mrp_check.contract.requirements import Requirement, Rule
 from mrp_check.student.manifest import FILE
 from mrp_check.student.xml_file import elements, stray
 
+_ROS_2 = ("ament_", "rclcpp", "rclpy", "rosidl_")
+
 
 def _findings(case: Case) -> Iterator[Finding]:
     package, (manifest, problem) = case.package, case.manifest
     if problem:
         yield problem
     if manifest and "catkin" not in {d.name for d in manifest.buildtool_depends}:
+        needs = manifest.buildtool_depends + manifest.build_depends + manifest.exec_depends
+        of_ros_2 = sorted({d.name for d in needs if d.name.startswith(_ROS_2)})
         yield Finding(
             "manifest",
-            "package.xml does not say that the package is built with catkin.",
+            "package.xml does not say that the package is built with catkin."
+            + (f" It names {of_ros_2[0]}, which is of ROS 2." if of_ros_2 else ""),
             FILE,
             # Where it belongs: at the first of the dependencies.
             package.find_line(FILE, "depend>", package.find_line(FILE, "<package", 1)),

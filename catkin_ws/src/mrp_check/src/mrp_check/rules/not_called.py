@@ -36,6 +36,7 @@ class NotCalled(PythonRule):
                 )
         yield from self._statements()
         yield from self._tests_of_main()
+        yield from self._never_main()
         yield from self._own_callbacks()
         yield from self._nothing()
 
@@ -97,6 +98,23 @@ class NotCalled(PythonRule):
                     test,
                     expected="if __name__ == '__main__': outside of all functions",
                     fix="Indent it as far as the line with def.",
+                )
+
+    def _never_main(self) -> Iterator[Finding]:
+        """Yield a finding if a program asks whether it is called by a name that is misspelt."""
+        for test in self.source.nodes(ast.Compare):
+            name = getattr(test.comparators[0], "value", None)
+            is_asked = getattr(test.left, "id", "") == "__name__" and isinstance(
+                test.ops[0], ast.Eq
+            )
+            if is_asked and isinstance(name, str) and name != "__main__" and "main" in name:
+                yield self.finding(
+                    "node-start",
+                    f"__name__ is never {name!r}: Python reads the functions, and ends.",
+                    test,
+                    expected="if __name__ == '__main__':",
+                    fix=f"Write __main__ for {name}.",
+                    change=(name, "__main__"),
                 )
 
     def _is_shutdown(self, node: ast.Attribute) -> bool:
