@@ -197,7 +197,6 @@ def test_a_parameter_that_nothing_reads_is_a_note(source, package, found, tmp_pa
     known = case(check_rules.make(tmp_path / "some_pkg", **files))
     node = Started(package, "a", "a", "/", "", [], [], "", "", "launch/a.launch", 2)
     known.launches = [Launch("", nodes=[node], params={"/rate": 2}, file="launch/a.launch")]
-    known.facts.sources = {}
     assert [one.line for one in check_rules.of(unread.RULE, known)] == found
 
 
