@@ -9,6 +9,7 @@ from mrp_check.contract.finding import ERROR, NOTE, WARNING
 from mrp_check.rules import agreed, cmake, messages, package_name, targets
 from mrp_check.sources import uses
 from mrp_check.student import manifest
+from mrp_check.student.package import Package
 from mrp_testing.proves import proves
 from one_source import case, lines_of
 
@@ -156,4 +157,15 @@ def test_a_package_is_not_called_like_one_of_ros(name, url, found, tmp_path):
     known.manifest = manifest.parse(known.package)
     known.model.project = None
     assert uses.is_of_ros(name) == (name == "turtlesim")
+    assert lines_of(package_name, known) == found
+
+
+@pytest.mark.parametrize(("path", "found"), [("src/a", [1]), (".hidden", [])])
+def test_a_package_within_another_one_is_not_found(path, found, tmp_path):
+    known = case(tmp_path, "py", "")
+    (known.package.root / path).mkdir(parents=True)
+    (known.package.root / path / "package.xml").write_text(check_rules.MANIFEST)
+    known.package = Package(known.package.root)
+    known.manifest = manifest.parse(known.package)
+    known.model.project = None
     assert lines_of(package_name, known) == found

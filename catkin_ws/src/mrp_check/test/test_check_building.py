@@ -263,6 +263,8 @@ def test_a_second_catkin_package_moves_no_executable(tmp_path):
     (tmp_path / "CMakeLists.txt").write_text(text)
     (found,) = check_rules.file_findings(cmake_rule, Package(tmp_path))
     assert found.message.startswith("catkin_package() comes after the target some")
+    (tmp_path / "CMakeLists.txt").write_text(text.replace("add_executable", "add_library"))
+    assert not check_rules.file_findings(cmake_rule, Package(tmp_path))
 
 
 @pytest.mark.parametrize(

@@ -215,6 +215,23 @@ def test_an_argument_that_changes_nothing(used, found, tmp_path):
     assert [one.line for one in launch_file.unused(package, tags)] == found
 
 
+@pytest.mark.parametrize(
+    ("command", "found"),
+    [
+        ("'$(find some_pkg)/package.xml'", [2]),
+        ("$(find some_pkg)/package.xml", [2]),
+        ("cat $(find some_pkg)/package.xml", []),
+        ("$(find other_pkg)/package.xml", []),
+    ],
+    ids=range(4),
+)
+def test_what_is_run_for_a_parameter_is_executable(command, found, tmp_path):
+    text = f'<launch>\n<param name="a" command="{command}"/>\n</launch>\n'
+    package = check_rules.make(tmp_path / "some_pkg", launch__a_DOT_launch=text)
+    tags = launching.Launch("", file="launch/a.launch").elements(package)
+    assert [one.line for one in launch_file.commands(package, tags)] == found
+
+
 def test_nodes_may_be_in_an_included_file(tmp_path):
     inner = "<launch>\n" + "".join(NODES) + "</launch>\n"
     include = '    <include file="$(find some_pkg)/launch/nodes.launch"/>\n'

@@ -1,17 +1,26 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What may fail or be missing is looked at first: a call, an argument, a value of a message."""
 
+import check_rules
 import pytest
 from mrp_check.contract.finding import NOTE
 from mrp_check.rules import (
     arguments,
+    before_init,
     busy_loop,
     guards,
+    idle,
     ignored,
     indexed,
     lost_global,
     no_pause,
+    not_kept,
     same_condition,
+    starred,
+    targets,
+    typed,
+    uncaught,
+    unpacked,
     unslept,
     whole_numbers,
 )
@@ -25,6 +34,15 @@ WAITS = "c.wait_for_server(rospy.Duration(5))"
 RESULT = "c.wait_for_result(rospy.Duration(5))"
 LOOKS = "while a:\n    try:\n        t = l.look(a, rospy.Time(0))\n    except E:\n        "
 HEAR = "def hear(m):\n    "
+HEARD = "rospy.Subscriber('a', String, hear)"
+NAP = "r = rospy.Rate(9)\ndef nap():\n    r.sleep()"
+OF_A = "rospy.Subscriber('a', String, a.hear)"
+SLEEPS = 'void hear(A a) { ros::Duration(1).sleep(); } n.subscribe("a", 1, hear);'
+PROXY = "c = rospy.ServiceProxy('a', A)\ntry:\n    c()\n"
+STAR = "from absent.srv import *\n"
+CV = "import cv2\n"
+TWIST = "from geometry_msgs.msg import Twist\nt = Twist()\n"
+BEGIN = "def begin():\n    rospy.init_node('a')\n"
 HEARS = "auto hear = [](const A::ConstPtr& m) {{ {} }};"
 
 
@@ -113,8 +131,53 @@ HEARS = "auto hear = [](const A::ConstPtr& m) {{ {} }};"
         (lost_global, "py", f"states = 1\n{HEAR}global state\n    states = m", [6]),
         (lost_global, "py", f"states = 1\n{HEAR}global states\n    states = m", []),
         (lost_global, "py", f"states = 1\n{HEAR}global other", []),
+        (indexed, "py", f"{HEAR}def turn():\n        return m.ranges[9]", [6]),
+        (no_pause, "py", "r = rospy.Rate(1000000)", [4]),
+        (no_pause, "py", "r = rospy.Rate(1000)", []),
+        (no_pause, "cpp", "ros::Rate r(1e6); ros::Rate s(50000);", [4]),
+        (idle, "py", f"{HEAR}pass\n{HEARD}", [5]),
+        (idle, "py", f"{HEAR}rospy.sleep(1)\n{HEARD}", [5]),
+        (idle, "py", f"{HEAR}rospy.sleep(0.01)\n{HEARD}", []),
+        (idle, "py", f"{HEAR}rospy.sleep(1)", []),
+        (idle, "py", f"{HEAR}rospy.Rate(9)\n    nap()\n{NAP}\n{HEARD}", [9]),
+        (idle, "py", f"class A:\n    def hear(self, m): time.sleep(1)\na = A()\n{OF_A}", []),
+        (idle, "py", f"class A:\n    def hear(self, m): rospy.sleep(1)\na = A()\n{OF_A}", [5]),
+        (idle, "cpp", f"{SLEEPS}", [4]),
+        (idle, "cpp", f"{SLEEPS} ros::AsyncSpinner s(2);", []),
+        (idle, "cpp", f"{SLEEPS}".replace("hear);", "see);"), []),
+        (uncaught, "py", f"{PROXY}except rospy.ROSInterruptException:\n    pass", [7]),
+        (uncaught, "py", f"{PROXY}except rospy.ServiceException:\n    pass", []),
+        (
+            uncaught,
+            "py",
+            f"{PROXY}except rospy.ROSInterruptException:\n    pass".replace("c(", "d("),
+            [],
+        ),
+        (uncaught, "py", f"{PROXY}except:\n    pass", []),
+        (starred, "py", f"{STAR}responce = f()\nprint(response)", [6]),
+        (starred, "py", f"{STAR}response = f()\nprint(response)", []),
+        (starred, "py", f"{STAR}responce = f()\nprint(Response)", []),
+        (
+            starred,
+            "py",
+            f"{STAR}responce = f()\nprint(response)".replace("absent.srv", "absent"),
+            [],
+        ),
+        (unpacked, "py", f"{CV}_, a, _ = cv2.findContours(b, 1, 2)", [5]),
+        (unpacked, "py", f"{CV}a, _ = cv2.findContours(b, 1, 2)", []),
+        (typed, "py", f"{TWIST}t.linear.x += input()", [6]),
+        (typed, "py", f"{TWIST}t.linear.x = input()", [6]),
+        (typed, "py", f"{TWIST}t.linear.x = float(input())", []),
+        (typed, "py", f"{TWIST}t.frame += input()", []),
+        (typed, "py", "n = 0\nn += input()", [5]),
+        (typed, "py", "n = ''\nn += input()", []),
+        (typed, "py", "a = input()\nn = a * 2\nwhile n < 3:\n    pass", [4]),
+        (not_kept, "py", "rospy.Publisher('a', String, queue_size=1)", [4]),
+        (not_kept, "py", "p = rospy.Publisher('a', String, queue_size=1)", []),
+        (before_init, "py", f"{BEGIN}rospy.loginfo('a')\nbegin()", [6]),
+        (before_init, "py", f"{BEGIN}begin()\nrospy.loginfo('a')", []),
     ],
-    ids=range(61),
+    ids=range(96),
 )
 def test_what_may_be_missing_is_looked_at(rule, ending, lines, found, tmp_path):
     assert lines_of(rule, case(tmp_path, ending, lines)) == found
@@ -174,3 +237,23 @@ def test_a_loop_is_seen_where_a_header_is_missing(line, found, tmp_path):
     known.facts.sources["b"] = ["src/b.cpp"]
     known.facts.unread = {"src/b.cpp"}
     assert lines_of(busy_loop, known) == found
+
+
+MADE = "add_executable(b src/b.cpp)\n"
+
+
+@pytest.mark.parametrize(
+    ("more", "name", "found"),
+    [
+        ("", "b", [1]),
+        (MADE, "b", []),
+        ("file(GLOB all src/*.cpp)\n", "b", []),
+        ("foreach(one b c)\n", "b", []),
+    ],
+    ids=range(4),
+)
+def test_a_program_that_no_target_is_made_of(more, name, found, tmp_path):
+    text = "int main(int argc, char** argv)\n{\n  ros::init(argc, argv, a);\n}\n"
+    files = {"CMakeLists_DOT_txt": check_rules.CMAKE + more, f"src__{name}_DOT_cpp": text}
+    known = case(tmp_path, "py", "", **files)
+    assert lines_of(targets, known) == found

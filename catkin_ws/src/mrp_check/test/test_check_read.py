@@ -237,7 +237,7 @@ def test_a_parameter_of_a_nodes_own_is_read_as_one(source, params, lines, tmp_pa
         (("out", "group/out"), "/group/group/out", 0),
         (("out", "/b"), "/b", 0),
         (("ou", "b"), "/group/out", 1),
-        (("~ou", "b"), "/group/a/out", 1),
+        (("~ain", "b"), "/group/a/out", 1),
     ],
     ids=range(5),
 )

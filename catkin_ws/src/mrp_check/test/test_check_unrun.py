@@ -58,6 +58,9 @@ def test_what_the_text_of_a_node_shows_that_was_not_built(body, is_up, found, tm
 
 HEARD = "rospy.Subscriber('b', A, hear)\n"
 END = "ended = False\ndef end():\n    global ended\n    ended = True\n"
+STOP = "def stop():\n    while not ended:\n        rate.sleep()\n"
+HOOK = f"ended = False\n{STOP}def end():\n    global ended\n"
+HOOKED = "rospy.on_shutdown(end)"
 HEAR = f"def hear(m):\n    global far\n    far = m.data\n{HEARD}"
 
 
@@ -101,8 +104,11 @@ HEAR = f"def hear(m):\n    global far\n    far = m.data\n{HEARD}"
         ("tty.setraw(0)\nkey = ask()", False, [4]),
         ("tty.setraw(0)\nif ask() == '\\x03':\n    exit()", False, []),
         ("tty.setcbreak(0)\nkey = ask()", False, []),
+        (f"{HOOK}    stop()\n    ended = True\n{HOOKED}", True, [10]),
+        (f"{HOOK}    ended = True\n    stop()\n{HOOKED}", True, []),
+        (f"{HOOK}    stop()\n    ended = True\nend()", True, [6]),
     ],
-    ids=range(33),
+    ids=range(36),
 )
 def test_a_loop_in_python_asks_whether_the_node_is_to_go_on(loop, is_up, found, tmp_path):
     text = f"import rospy\nimport time, tty\nrospy.init_node('a')\n{loop}\n"
@@ -136,16 +142,19 @@ def test_what_is_logged_is_no_format(logs, found, tmp_path):
         (["a.py", "b.cpp"], None, ["b.cpp"]),
         (["a.py", "b.py"], True, []),
         (["a.py", "a.py"], None, []),
+        (["c.cpp", "d.cpp"], None, ["d.cpp"]),
     ],
-    ids=range(5),
+    ids=range(6),
 )
 def test_two_programs_of_one_name(files, anonymous, found, tmp_path):
-    names = {f"{file.replace('.', '_DOT_')}": "name\n" for file in files}
+    text = 'int main() { ros::init(argc, argv, "talker"); }\n'
+    names = {f"{file.replace('.', '_DOT_')}": text for file in files}
     known = case(check_rules.make(tmp_path / "some_pkg", **names))
     known.facts.sources = {f"node_{number}": [file] for number, file in enumerate(files)}
     known.facts.places = [
-        Place(file, 1, Kind.INIT, "talker", anonymous=anonymous) for file in files
+        Place(file, 1, Kind.INIT, "talker", anonymous=anonymous) for file in files if file < "c"
     ]
+    known.facts.unread = {"c.cpp", "d.cpp"}
     assert [one.file for one in check_rules.of(same_name.RULE, known)] == found
 
 

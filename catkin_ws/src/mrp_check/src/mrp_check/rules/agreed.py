@@ -43,7 +43,7 @@ def _findings(case: Case) -> Iterator[Finding]:
         if model.catkin:
             yield from _asked_for(package, manifest, model, used)
             yield from _at_another_time(package, manifest, model, used)
-            yield from _not_found(package, model)
+            yield from _not_found(package, model, manifest)
             yield from _makes_nothing(package, model)
             yield from _for_nothing(package, model, used)
 
@@ -176,18 +176,30 @@ def _has_messages(package: Package, model: Model) -> bool:
     return bool(model.generate or model.message_files or package.of_kind(*uses.DEFINITIONS))
 
 
-def _not_found(package: Package, model: Model) -> Iterator[Finding]:
-    """Yield a warning for each package that generate_messages() names, and nothing finds."""
+def _not_found(package: Package, model: Model, manifest: Manifest) -> Iterator[Finding]:
+    """Yield a warning for each package that generate_messages() names, and nothing finds, or that
+    package.xml does not name."""
     for name in _of_messages(model):
-        if model.generate and name not in model.components:
+        if not model.generate or not model.catkin:
+            continue
+        if name not in model.components:
             yield _in_cmake(
                 package,
-                model.generate,
-                "generate_messages",
-                f"generate_messages() names {name}, and find_package(catkin ...) does not: CMake"
-                " knows it only if another package brings it along.",
+                model.catkin,
+                "find_package",
+                f"find_package(catkin ...) does not name {name}, which generate_messages() in line"
+                f" {model.generate.line} names: CMake knows it only if another package brings it"
+                " along.",
                 f"{name} in find_package(catkin REQUIRED COMPONENTS ...)",
                 f"Add {name} to the COMPONENTS of find_package().",
+            )
+        if name not in named(manifest) | {*model.components}:
+            yield _in_manifest(
+                package,
+                "<build_depend>" if package.find_line(FILE, "<build_depend>") else "<buildtool",
+                f"package.xml does not name {name}, which generate_messages() needs.",
+                f"<depend>{name}</depend>",
+                f"Add the line <depend>{name}</depend>.",
             )
 
 

@@ -123,10 +123,19 @@ def _in_python(source: Source) -> tuple[int, int]:
     logged = [
         call.lineno
         for name, call in calls
-        if name in _LOGGED and len(starts) == 1
-        if source.function(call) is source.function(starts[0]) and call.lineno < starts[0].lineno
+        if name in _LOGGED and len(starts) == 1 and _is_before(source, call, starts[0])
     ]
     return 0 if is_own else min(counted, default=0), min(logged, default=0)
+
+
+def _is_before(source: Source, call: ast.Call, start: ast.Call) -> bool:
+    """Return whether a call comes before the node's start in its function, or before the program
+    calls that function."""
+    function, main = source.function(start), source.function(call)
+    if main is function:
+        return call.lineno < start.lineno
+    calls = [one for one in source.nodes(ast.Call) if source.definition(one.func) is function]
+    return [source.function(one) for one in calls] == [main] and call.lineno < calls[0].lineno
 
 
 RULE = Rule("static", 96, ("facts", "launch"), _findings, also=("starts", "node-start"), only=ANY)

@@ -68,7 +68,32 @@ def _deaf(source: Source, is_up: bool) -> Iterator[tuple[int, str, str, str]]:
                 "rospy.is_shutdown() in the loop",
                 "Let the loop end when rospy.is_shutdown(), too.",
             )
+    yield from _waits_in_hook(source)
     yield from _keyboard(source)
+
+
+def _waits_in_hook(source: Source) -> Iterator[tuple[int, str, str, str]]:
+    """Yield the same of what a function calls at the shutdown, before it sets what that waits for.
+
+    A loop that waits until somebody is connected, or until a member is set, is not left then.
+    """
+    for hook in _hooks(source):
+        for number, statement in enumerate(hook.body):
+            later = {key for one in hook.body[number:] for key in _keys(source, one, ast.Store)}
+            called = source.called([statement])
+            loops = [one for part in called for one in ast.walk(part) if isinstance(one, ast.While)]
+            for loop in loops:
+                asked = _keys(source, loop.test, ast.Load) & later
+                if asked and not _named(source, loop) & {*_ENDS}:
+                    name = next(iter(asked))[1]
+                    yield (
+                        statement.lineno,
+                        f"At the shutdown, this comes to the loop of line {loop.lineno}, which only"
+                        f" {name} ends for certain, and that is set below: the node may never end.",
+                        f"{name} set first",
+                        f"Set {name} at the beginning of {hook.name}().",
+                    )
+                    return
 
 
 def _keyboard(source: Source) -> Iterator[tuple[int, str, str, str]]:
@@ -167,9 +192,14 @@ def _catches_ctrl_c(node: ast.AST) -> bool:
 
 def _set_at_shutdown(source: Source) -> set[Variable]:
     """Return what a function changes that rospy.on_shutdown() is given: Ctrl-C changes it."""
+    return {key for hook in _hooks(source) for key in _keys(source, hook, ast.Store)}
+
+
+def _hooks(source: Source) -> list[ast.FunctionDef]:
+    """Return the functions that rospy calls at the shutdown."""
     calls = (c for c in source.nodes(ast.Call) if source.dotted(c.func) == "rospy.on_shutdown")
     hooks = (source.definition(argument(call, 0, "h")) for call in calls)
-    return {key for hook in hooks if hook for key in _keys(source, hook, ast.Store)}
+    return [hook for hook in hooks if isinstance(hook, ast.FunctionDef)]
 
 
 def _depends_on(source: Source, within: list[ast.AST], ask: ast.expr) -> set[Variable]:

@@ -18,7 +18,7 @@ _BLOCKS = ("body", "orelse", "finalbody")
 class EarlyCallback(PythonRule):
     def findings(self) -> Iterator[Finding]:
         for call in self.source.nodes(ast.Call):
-            what = _CALLING.get(self.source.dotted(call.func) or "")
+            what = self._calls_back(call)
             later = self._made_after(call) if what else {}
             for argument in arguments_of(call) if later else ():
                 function = self.source.definition(argument)
@@ -35,6 +35,19 @@ class EarlyCallback(PythonRule):
                         expected=f"{said} before what calls {function.name}()",
                         fix=f"Move line {place.lineno} up to before this line.",
                     )
+
+    def _calls_back(self, call: ast.Call) -> str:
+        """Return what comes to a callback that a call is given; nothing if none comes.
+
+        A class of the package's own may hand it on to a subscriber of its own.
+        """
+        name = self.source.dotted(call.func) or ""
+        module, _, class_ = name.rpartition(".")
+        own = [one for one in self.package.of_kind("python") if one.endswith(f"/{module}.py")]
+        is_own = class_[:1].isupper() and any(
+            "rospy.Subscriber(" in self.package.text(one) for one in own
+        )
+        return _CALLING.get(name, "message" if module and is_own else "")
 
     def _made_after(self, call: ast.Call) -> dict[Variable, ast.stmt]:
         """Return the variables that are given a value only after a call, in the same block; and the

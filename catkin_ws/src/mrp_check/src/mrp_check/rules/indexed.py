@@ -55,9 +55,13 @@ def _of_python(one: OfNode) -> Iterator[Finding]:
         of, number = node.value, source.value(node.slice)
         if not isinstance(of, ast.Attribute) or not isinstance(of.value, ast.Name):
             continue
-        function = source.function(node)
-        arguments = getattr(function, "args", None)
-        given = {one.arg for one in arguments.args} - {"self"} if arguments else set()
+        around = [getattr(one, "args", None) for one in source.above(node)]
+        given = {
+            one.arg
+            for arguments in around
+            if isinstance(arguments, ast.arguments)
+            for one in arguments.args
+        } - {"self"}
         is_read = isinstance(node.ctx, ast.Load) and isinstance(number, int)
         is_caught = source.is_guarded(node, "IndexError") or of.attr in counted
         if is_read and of.attr in _FIELDS and of.value.id in given and not is_caught:

@@ -30,8 +30,13 @@ def _findings(case: Case) -> Iterator[Finding]:
     yield from case.launch_file[1]
     for launch in case.launches:
         tags = launch.elements(case.package)
+        said = [*commands(case.package, tags)]
+        yield from said
         if launch.error:
-            yield _error(launch, tags)
+            error = _error(launch, tags)
+            if any((one.file, one.line) == (error.file, error.line) for one in said):
+                error.consequence_of = "launch-file"
+            yield error
         yield from _unknown(tags)
         yield from _no_attributes(launch, tags)
         if not case.spec.is_contract:
@@ -76,6 +81,28 @@ def _unknown(tags: Sequence[tuple[str, Element]]) -> Iterator[Finding]:
                 seen=f"<{element.tag}>",
                 fix=f"Write <{near}>." if near else "Take it out.",
                 why="launch-unknown-tag",
+            )
+
+
+def commands(package: Package, tags: Sequence[tuple[str, Element]]) -> Iterator[Finding]:
+    """Yield an error for each parameter that is to be what a file says that cannot be run.
+
+    https://wiki.ros.org/roslaunch/XML/param
+    """
+    begin = re.compile(rf"['\"]?\$\(find {re.escape(package.name)}\)/([^\s'\"$]+)")
+    for file, element in tags:
+        match = begin.match(element.attributes.get("command", "").strip())
+        path = match[1] if match and element.tag == "param" else None
+        if path in package.files and not package.is_executable(str(path)):
+            yield Finding(
+                "launch-file",
+                f"roslaunch is to run {path}, which is not executable: it stops here.",
+                file,
+                element.line,
+                expected=f'textfile="$(find {package.name})/{path}", or a command that reads it',
+                seen=f'command="{element.attributes["command"]}"',
+                fix='Write textfile="..." for a file that is to be read as it is; for xacro, write'
+                ' command="xacro ...".',
             )
 
 

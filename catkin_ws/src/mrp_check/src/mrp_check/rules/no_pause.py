@@ -17,6 +17,8 @@ from mrp_check.sources.python_source import Source
 # What waits, or may: a name that looks like it is believed.
 _WAITS = re.compile(r"(?i)sleep|wait|spin|input|recv|accept|select|poll|read|get_?key|join|call")
 _CAUGHT = re.compile(r"\bcatch\s*\([^)]*\)\s*\{([^{}]*)\bcontinue\s*;\s*\}")
+_RATE = re.compile(r"\bros::(?:Wall)?Rate\s+\w+\s*[({]\s*(\d+(?:\.\d*)?)\s*[)}]")
+_TOO_FAST = 10_000  # turns in a second
 _AT_FAULT = "goes on at once, past the pause in line {0}: until it works, the loop never pauses"
 _IN_A_CASE = "pauses in a condition alone, in line {0}: where it does not hold, it never pauses"
 _AT_REST = "pauses in line {0} alone, where something has failed: otherwise it never pauses"
@@ -33,6 +35,25 @@ def _findings(case: Case) -> Iterator[Finding]:
                 expected="a sleep() in each turn",
                 fix="Let the loop sleep here, too.",
             )
+        for line, rate in _hurried(one):
+            yield one.finding(
+                "spin",
+                f"No loop comes to {rate:.0f} turns in a second: its sleep() returns at once, and"
+                " it keeps a processor busy.",
+                line,
+                expected="a rate such as rospy.Rate(10) or ros::Rate(10)",
+                fix="Write the rate that the robot needs.",
+            )
+
+
+def _hurried(one: in_both.OfNode) -> Iterator[tuple[int, float]]:
+    """Yield the line and the number of each rate that no loop comes to."""
+    rates = [(line_of(made), float(made[1])) for made in _RATE.finditer(one.code)]
+    for call in one.python.nodes(ast.Call) if one.python else ():
+        rate = one.python.value(call.args[0]) if one.python and call.args else None
+        if isinstance(rate, (int, float)) and _name(call.func) == "Rate":
+            rates.append((call.lineno, rate))
+    yield from ((line, rate) for line, rate in rates if rate >= _TOO_FAST)
 
 
 def _in_cpp(text: str) -> Iterator[tuple[int, str]]:

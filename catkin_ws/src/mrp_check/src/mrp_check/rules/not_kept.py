@@ -31,6 +31,15 @@ class NotKept(PythonRule):
                     expected="a member, such as self.timer or self.subscriber",
                     fix="Keep it as a member.",
                 )
+            elif name == "rospy.Publisher":
+                yield self.finding(
+                    "lifetime",
+                    "What rospy.Publisher() returns is not kept: nothing can publish with it.",
+                    node,
+                    severity=WARNING,
+                    expected="a publisher that is kept: publisher = rospy.Publisher(...)",
+                    fix="Keep it, and call its publish(); or take it out.",
+                )
         yield from self._publishers()
         yield from self._in_loops()
 

@@ -23,6 +23,7 @@ def _findings(case: Case) -> Iterator[Finding]:
     package, launch = case.package, case.launch
     if not case.spec.is_contract:
         yield from _unusual(package)
+        yield from _within(package)
         yield from _of_ros(package)
     if case.manifest[0] is None or case.model.project is None:
         return
@@ -49,6 +50,26 @@ def _findings(case: Case) -> Iterator[Finding]:
         fix=f"Write {expected}.",
         change=(wrong, right),
     )
+
+
+def _within(package: Package) -> Iterator[Finding]:
+    """Yield a warning for each package in a folder of this one: catkin does not look there.
+
+    https://docs.ros.org/en/independent/api/catkin_pkg/html/catkin_pkg.html#module-catkin_pkg.packages
+    """
+    for path in package.files:
+        if path.endswith("/package.xml") and not any(p[:1] == "." for p in path.split("/")):
+            yield Finding(
+                "package-name",
+                f"{path} makes a package of a folder of this one: catkin does not look for one"
+                " there, and builds nothing of it.",
+                path,
+                1,
+                WARNING,
+                expected="packages beside each other, in src of the workspace",
+                seen=path,
+                fix="Move that folder to beside this package; or delete it.",
+            )
 
 
 def _unusual(package: Package) -> Iterator[Finding]:

@@ -11,6 +11,7 @@ from mrp_check.contract.finding import WARNING, Finding
 from mrp_check.contract.requirements import ANY, Rule
 from mrp_check.contract.words import last_part, nearest
 from mrp_check.rules.launch_remap import remap_line
+from mrp_check.rules.unread import is_named
 from mrp_check.running.observing import Launched
 from mrp_check.sources import asked
 
@@ -39,7 +40,7 @@ def _of(case: Case, launched: Launched, name: str, node: Started) -> Iterator[Fi
             continue
         # It may be made only later on; a name that the sources have nowhere is not.
         used = [topic for topic in topics if last_part(topic) == base]
-        if not used and any(base in case.package.text(file) for file in files):
+        if not used and any(is_named(base, case.package.text(file)) for file in files):
             continue
         near = used[0] if used else nearest(old, topics, _ALIKE)
         yield Finding(

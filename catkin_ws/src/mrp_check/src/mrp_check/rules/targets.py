@@ -32,6 +32,7 @@ def _findings(case: Case) -> Iterator[Finding]:
     yield from _no_launch_files(case.package)
     if not case.spec.is_contract:
         yield from _commented_out(case)
+        yield from _never_built(case)
         yield from _empty_dependencies(case.package, case.model)
 
 
@@ -170,6 +171,29 @@ def _commented_out(case: Case) -> Iterator[Finding]:
                 expected=f"add_executable(... {source})",
                 seen=case.package.line(file, place[1]),
                 fix="Take the # out, there and before the lines that belong to it.",
+            )
+
+
+def _never_built(case: Case) -> Iterator[Finding]:
+    """Yield a warning for each program that CMakeLists.txt does not name."""
+    files = [one for one in case.package.files if one.endswith(("CMakeLists.txt", ".cmake"))]
+    text = "\n".join(map(case.package.text, files))
+    others = [one.rpartition("/")[0] + "/" for one in files if "/" in one]
+    for source in case.package.of_kind("cpp") if "file(" not in text.lower() else ():
+        code, name = uses.code(case.package, source), last_part(source)
+        is_named = re.search(rf"\b{re.escape(name.rpartition('.')[0])}\b", text)
+        if "aux_source" in text or is_named or source.startswith(tuple(others)):
+            continue
+        if _MAIN.search(code) and "ros::init" in code:
+            yield Finding(
+                "targets",
+                f"No line of CMakeLists.txt names {source}: nothing is made of it.",
+                source,
+                1,
+                WARNING,
+                expected=f"add_executable(... {source})",
+                seen="no target that is made of it",
+                fix="Write add_executable() and target_link_libraries() for it; or delete it.",
             )
 
 

@@ -7,6 +7,7 @@ In Python 2, input() made a number of it. https://docs.python.org/3/whatsnew/3.0
 from __future__ import annotations
 
 import ast
+import re
 from typing import Iterator
 
 from mrp_check.contract.finding import ERROR, WARNING, Finding
@@ -19,6 +20,7 @@ _EQUALITIES = (ast.Eq, ast.NotEq)
 _NUMERIC = (ast.Sub, ast.Div, ast.FloorDiv, ast.Pow)
 _OF_NUMBERS = {"abs", "range", "round", "rospy.Duration", "rospy.Rate", "rospy.sleep"}
 _NUMBER = (int, float)
+_FIELD_OF_NUMBERS = re.compile(r"u?int\d+|float\d+")
 
 
 class Typed(PythonRule):
@@ -41,8 +43,15 @@ class Typed(PythonRule):
                 fix=f"Write float(...) around {self.written(call)}; or int(...) for whole numbers.",
             )
 
-    def _uses(self) -> Iterator[tuple[ast.expr, ast.expr, str]]:
+    def _uses(self) -> Iterator[tuple[ast.expr | ast.stmt, ast.expr, str]]:
         """Yield what needs a number: all of it, the part that is one, and what it does with it."""
+        for more in self.source.nodes(ast.AugAssign):
+            is_plus = isinstance(more.op, ast.Add) and self._is_counted(more.target)
+            if is_plus or isinstance(more.op, _NUMERIC):
+                yield more, more.value, "computes with it"
+        for given in self.source.nodes(ast.Assign):
+            if self._of_message(given.targets[0]):
+                yield given, given.value, "gives it to a field of a message, which is a number"
         for node in self.source.nodes(ast.expr):
             if isinstance(node, ast.Compare) and isinstance(node.ops[0], _ORDERS + _EQUALITIES):
                 for one, other in (pair := (node.left, node.comparators[0])), pair[::-1]:
@@ -71,6 +80,10 @@ class Typed(PythonRule):
             is_own = "input" in self.source.imports or self.source.definition(node.func)
             is_input = isinstance(node.func, ast.Name) and node.func.id == "input"
             return node if is_input and not is_own else None
+        if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Mult):
+            # A text times a whole number is the text, several times.
+            times = isinstance(self.source.value(node.right), int)
+            return self.typed(node.left, depth + 1) if times and depth < 5 else None
         key = self.source.key(node) if isinstance(node, (ast.Name, ast.Attribute)) else None
         stored = self.source.stored(key)
         if key and stored == [None] and depth < 2:
@@ -92,6 +105,27 @@ class Typed(PythonRule):
     def _calls(self, call: ast.Call, function: ast.FunctionDef) -> bool:
         named = getattr(call.func, "id", None) or getattr(call.func, "attr", None)
         return named == function.name
+
+    def _is_counted(self, target: ast.expr) -> bool:
+        """Return whether what is added to is a number."""
+        stored = [one for one in self.source.stored(self.source.key(target)) if one is not None]
+        values = [self.source.value(one) for one in stored]
+        is_number = all(isinstance(value, _NUMBER) for value in values) and bool(values)
+        return is_number or self._of_message(target)
+
+    def _of_message(self, target: ast.expr) -> bool:
+        """Return whether something is a number of one of ROS's own messages."""
+        names = []
+        while isinstance(target, ast.Attribute) and getattr(target.value, "id", "") != "self":
+            names.append(target.attr)
+            target = target.value
+        made = [one for one in self.source.stored(self.source.key(target)) if one is not None]
+        call = made[0] if len(made) == 1 else None
+        class_ = self.message_class(call.func) if isinstance(call, ast.Call) else None
+        for name in reversed(names[1:]):
+            class_ = type(getattr(class_(), name, None)) if class_ else None
+        types = dict(zip(getattr(class_, "__slots__", []), getattr(class_, "_slot_types", [])))
+        return bool(names) and bool(_FIELD_OF_NUMBERS.fullmatch(types.get(names[0], "")))
 
     def _is_number(self, node: ast.expr) -> bool:
         """Return whether an expression is a number, as far as the source says it plainly."""

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""No number is unpacked into several names."""
+"""What is unpacked into several names has as many values: a number has none, and OpenCV 4's
+findContours() has two. https://docs.opencv.org/4.x/d3/dc0/group__imgproc__shape.html"""
 
 from __future__ import annotations
 
@@ -24,6 +25,17 @@ class Unpacked(PythonRule):
                     node,
                     expected="as many values as names: a, b = 0, 0",
                     fix="Give each name its value.",
+                )
+            names = several[0].elts if several else []
+            called = self.source.dotted(getattr(node.value, "func", None))
+            if called == "cv2.findContours" and len(names) == 3:
+                yield self.finding(
+                    "python-names",
+                    "cv2.findContours() returns two values since OpenCV 4, not three: Python ends"
+                    " with a ValueError when it comes here.",
+                    node,
+                    expected="contours, hierarchy = cv2.findContours(...)",
+                    fix="Take the first of the three names out.",
                 )
 
 

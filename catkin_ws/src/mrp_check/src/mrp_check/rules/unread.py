@@ -49,7 +49,7 @@ def _findings(case: Case) -> Iterator[Finding]:
 
 def _of_params(case: Case, launch: Launch, node: Started, text: str) -> Iterator[Finding]:
     for own in _own(launch, node).values():
-        if any(_is_named(part, text) for part in own.split("/")):
+        if any(is_named(part, text) for part in own.split("/")):
             continue
         lines = [
             (file, element.line)
@@ -79,7 +79,7 @@ def _of_nobody(case: Case, launch: Launch, text: str) -> Iterator[Finding]:
     own = tuple(f"{node.path}/" for node in launch.nodes)
     tags = launch.elements(case.package)
     for name in (one for one in launch.params if not one.startswith(own) and one not in _OF_ROS):
-        if any(_is_named(part, text) for part in name.strip("/").split("/")):
+        if any(is_named(part, text) for part in name.strip("/").split("/")):
             continue
         sets = [one for one in tags if one[1].attributes.get("name", "") == last_part(name)]
         sets += [one for one in tags if one[1].tag == "rosparam"]
@@ -142,7 +142,7 @@ def _is_public(case: Case, said: asked.Said) -> bool:
 def _of_remaps(case: Case, node: Started, text: str) -> Iterator[Finding]:
     """Yield those of a node that was not seen: of one that was, it is known what it uses."""
     for old, new in node.remaps:
-        if not _is_named(last_part(old).lstrip("~"), text):
+        if not is_named(last_part(old).lstrip("~"), text):
             yield Finding(
                 "topic",
                 f"The launch file renames {old} of {node.name}, and no source of this package has"
@@ -156,7 +156,8 @@ def _of_remaps(case: Case, node: Started, text: str) -> Iterator[Finding]:
             )
 
 
-def _is_named(name: str, text: str) -> bool:
+def is_named(name: str, text: str) -> bool:
+    """Return whether a text has a name, and not only as a part of another one."""
     return re.search(rf"(?<!\w){re.escape(name)}(?!\w)", text) is not None
 
 

@@ -192,13 +192,13 @@ class Source:
         """Return the scope in which a name is bound, as seen from the node."""
         function = self.function(node)
         while not isinstance(function, ast.Module):
-            if (function, name) in self._bindings:
+            if (function, name) in self.bindings:
                 return function
             function = self.function(function)
         return self.tree
 
     @functools.cached_property
-    def _bindings(self) -> set[Variable]:
+    def bindings(self) -> set[Variable]:
         bound: set[Variable] = set()
         declared: set[Variable] = set()
         for node in ast.walk(self.tree):
@@ -245,13 +245,22 @@ class Source:
             found = self.stored((self._owner(node, node.id), node.id))
         elif isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name):
             class_ = self.class_(node)
-            if node.value.id not in ("self", "cls") or class_ is None:
+            if node.value.id not in ("self", "cls"):
+                class_ = self._class_of(node.value)
+            if class_ is None:
                 return None
             found = self.stored((class_, node.attr))
         else:
             return None
         kinds = (ast.FunctionDef, ast.ClassDef, ast.Lambda)
         return found[0] if len(found) == 1 and isinstance(found[0], kinds) else None
+
+    def _class_of(self, node: ast.Name) -> ast.ClassDef | None:
+        """Return the class of the source's own of which a variable is an object, or None."""
+        stored = self.stored(self.key(node))
+        made = stored[0] if len(stored) == 1 else None
+        class_ = self.definition(made.func) if isinstance(made, ast.Call) else None
+        return class_ if isinstance(class_, ast.ClassDef) else None
 
     def called(self, parts: Iterable[ast.AST]) -> list[ast.FunctionDef]:
         """Return the source's own functions that some parts of it call, and what those call."""

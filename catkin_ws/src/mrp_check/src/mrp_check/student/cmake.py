@@ -170,7 +170,7 @@ class Model:
     project: (name, Call) or None
     components: ROS package -> Call, of find_package
     catkin: the Call of find_package(catkin ...), or None
-    catkin_package: its Call, or None; late: the first target before it, or None
+    catkin_package: its Call, or None; late: the first executable before it, or None
     depends: the packages in CATKIN_DEPENDS; include_dirs: the folders in INCLUDE_DIRS; libraries:
         those in LIBRARIES
     targets: name -> Target; scripts: list of Script; message_files: name -> Call, of services and
@@ -277,8 +277,9 @@ class Model:
             self.components.setdefault(name, call)
 
     def _catkin_package(self, call: Call) -> None:
-        if self.targets and not self.catkin_package:  # a later call moves no executable
-            self.late = next(iter(self.targets.values()))
+        if not self.catkin_package:  # a later call moves no executable
+            made = (one for one in self.targets.values() if not one.is_library)
+            self.late = next(made, None)
         self.catkin_package = self.catkin_package or call
         names = {
             *("INCLUDE_DIRS", "LIBRARIES", "CATKIN_DEPENDS", "DEPENDS", "CFG_EXTRAS"),
