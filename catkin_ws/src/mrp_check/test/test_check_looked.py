@@ -1,13 +1,17 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What may fail or be missing is looked at first: a call, an argument, a value of a message."""
 
+import types
+
 import check_rules
 import pytest
+from mrp_check.confined.places import Kind, Place
 from mrp_check.contract.finding import NOTE
 from mrp_check.rules import (
     arguments,
     before_init,
     busy_loop,
+    exit,
     guards,
     idle,
     ignored,
@@ -257,3 +261,15 @@ def test_a_program_that_no_target_is_made_of(more, name, found, tmp_path):
     files = {"CMakeLists_DOT_txt": check_rules.CMAKE + more, f"src__{name}_DOT_cpp": text}
     known = case(tmp_path, "py", "", **files)
     assert lines_of(targets, known) == found
+
+
+@pytest.mark.parametrize(("test", "says"), [("not rospy.is_shutdown()", True), ("True", False)])
+def test_whether_ctrl_c_ends_a_loop_that_never_pauses_is_chance(test, says, tmp_path):
+    known = case(tmp_path, "py", f"while {test}:\n    p.publish(a)")
+    known.facts.places = [Place("src/a.py", 4, Kind.LOOP)]
+    (found,) = check_rules.of(busy_loop.RULE, known)
+    assert ("Ctrl-C may not end it" in found.message) == says
+    direct = types.SimpleNamespace(asked=1.0, stopped_in=None)
+    known.nodes = {"a": types.SimpleNamespace(name="a", direct=direct)}
+    if says:
+        assert not [*exit.findings(known)]  # what was seen is not even looked at

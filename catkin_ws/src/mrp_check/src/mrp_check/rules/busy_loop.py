@@ -8,7 +8,7 @@ from typing import Iterator
 
 from mrp_check.case import Case
 from mrp_check.confined.places import Kind
-from mrp_check.contract.finding import WARNING, Finding
+from mrp_check.contract.finding import WARNING, Finding, Line
 from mrp_check.contract.requirements import ANY, Rule
 from mrp_check.sources import uses
 
@@ -24,15 +24,29 @@ _TEXT = re.compile(r"\"[^\"\n]*\"|'[^'\n]*'")
 
 
 def _findings(case: Case) -> Iterator[Finding]:
-    for node, files in case.facts.sources.items():
-        codes = {file: uses.code(case.package, file) for file in files}
-        loops = [(p.file, p.line) for p in case.facts.of(node, Kind.LOOP) if p.file in codes]
-        # A source of C++ that nothing could read further has its loops all the same.
-        loops += [(file, n) for file in case.facts.unread & {*files} for n in _lines(codes[file])]
-        endless = [one for one in loops if _ENDLESS.search(_line(codes[one[0]], one[1]))]
-        sleeps = case.facts.of(node, Kind.SLEEP)
-        if endless and not sleeps and not _WAITS.search(_TEXT.sub('""', "\n".join(codes.values()))):
-            yield _finding(case, node, *endless[0])
+    for node in case.facts.sources:
+        loop = loop_of(case, node)
+        if loop:
+            yield _finding(case, node, *loop)
+
+
+def loop_of(case: Case, node: str) -> Line | None:
+    """Return the place of the loop of a node that never pauses, or None."""
+    files = case.facts.sources.get(node, [])
+    codes = {file: uses.code(case.package, file) for file in files}
+    loops = [(p.file, p.line) for p in case.facts.of(node, Kind.LOOP) if p.file in codes]
+    # A source of C++ that nothing could read further has its loops all the same.
+    loops += [(file, n) for file in case.facts.unread & {*files} for n in _lines(codes[file])]
+    endless = [one for one in loops if _ENDLESS.search(_line(codes[one[0]], one[1]))]
+    waits = _WAITS.search(_TEXT.sub('""', "\n".join(codes.values())))
+    return None if case.facts.of(node, Kind.SLEEP) or waits else next(iter(endless), None)
+
+
+def may_wait_for_itself(case: Case, node: str) -> bool:
+    """Return whether it is chance that Ctrl-C ends a node: rospy's handler of it waits for a lock
+    that the loop, which logs or publishes without a pause, holds most of the time."""
+    loop = loop_of(case, node)
+    return loop is not None and "is_shutdown" in case.package.line(*loop)
 
 
 def _lines(code: str) -> range:
@@ -48,9 +62,10 @@ def _finding(case: Case, node: str, file: str, line: int) -> Finding:
     rate = "rospy.Rate" if package.kind(file) == "python" else "ros::Rate"
     below = "\n".join(uses.code(package, file).split("\n")[line:])
     fast = ", and publishes as fast as it can" if "publish" in below else ""
+    late = "; Ctrl-C may not end it" if fast and may_wait_for_itself(case, node) else ""
     return Finding(
         "spin",
-        f"The loop never pauses: it keeps a processor busy{fast}.",
+        f"The loop never pauses: it keeps a processor busy{fast}{late}.",
         file,
         line,
         WARNING,

@@ -16,6 +16,7 @@ from mrp_check.contract.finding import Finding, Where
 from mrp_check.contract.requirements import Requirement, Rule
 from mrp_check.contract.spec import Shutdown
 from mrp_check.contract.words import last_part
+from mrp_check.rules.busy_loop import may_wait_for_itself
 from mrp_check.running.node import Node
 from mrp_check.running.places import Traceback
 from mrp_check.running.words import code_text, last_words
@@ -29,7 +30,9 @@ def findings(case: Case) -> Iterator[Finding]:
     """Yield a Finding for each node that does not end as the spec says."""
     for node in case.nodes.values():
         if node.direct and node.direct.asked is not None:
-            yield from _of(node, node.direct, node.direct.asked, case.spec.shutdown)
+            is_chance = node.direct.stopped_in is None and not case.spec.is_contract
+            if not is_chance or not may_wait_for_itself(case, node.name):
+                yield from _of(node, node.direct, node.direct.asked, case.spec.shutdown)
 
 
 def _of(node: Node, direct: Alone, asked: float, shutdown: Shutdown) -> Iterator[Finding]:
