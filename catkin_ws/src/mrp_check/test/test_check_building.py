@@ -239,9 +239,14 @@ def test_headers_are_looked_for_where_nothing_is_compiled(tmp_path):
     package = check_rules.make(tmp_path, src__a_DOT_cpp=source, srv__Go_DOT_srv="---\n")
     target = types.SimpleNamespace(sources=["src/a.cpp"])
     model = types.SimpleNamespace(targets={"a": target})
-    case = types.SimpleNamespace(package=package, model=model, built=None)
+    spec = types.SimpleNamespace(is_contract=False)
+    case = types.SimpleNamespace(package=package, model=model, built=None, spec=spec)
     found = check_rules.told(check_rules.of(compile_rule.RULE, case))
     assert found == [("compile", 1), ("compile", 2)]
+    text = 'set(CMAKE_CXX_FLAGS "-std=c++14 -O3")\n' + package.text("CMakeLists.txt")
+    (package.root / "CMakeLists.txt").write_text(text)
+    case.package = Package(package.root)
+    assert ("compile", 1) in check_rules.told(check_rules.of(compile_rule.RULE, case))[1:]
 
 
 def test_catkin_simple_finds_catkin_and_describes_the_package(tmp_path):

@@ -50,7 +50,7 @@ START = "rospy.init_node('a')"
 MAKE = 'ros::Publisher p = n.advertise<std_msgs::String>("a", 1);'
 CLIENT = "c = actionlib.SimpleActionClient('a', A)"
 MADE = "p = rospy.Publisher('a', String, queue_size=1)"
-SERVER = "s = actionlib.SimpleActionServer('a', A, work, auto_start=False)"
+SERVER = "s = actionlib.SimpleActionServer('a', A, work, auto_start=False)\ns.start()"
 WORK = "def work(goal):\n    for i in range(9):\n        "
 
 
@@ -117,8 +117,8 @@ WORK = "def work(goal):\n    for i in range(9):\n        "
         (goals, "py", f"def work(goal):\n    rospy.sleep(goal.time)\n{SERVER}", [5]),
         (goals, "py", f"def work(goal):\n    rospy.sleep(0.1)\n{SERVER}", []),
         (goals, "py", "s = actionlib.SimpleActionServer('a', A, work)", [4]),
-        (goals, "py", "s = actionlib.SimpleActionServer('a', A, work, False)", []),
-        (goals, "py", "s = actionlib.SimpleActionServer(name='a', auto_start=False)", []),
+        (goals, "py", "s = actionlib.SimpleActionServer('a', A, work, False)\ns.start()", []),
+        (goals, "py", "s = actionlib.SimpleActionServer(name='a', auto_start=False)\ns.start()", []),
         (goals, "cpp", 'actionlib::SimpleActionServer<A> s(n, "a", f, true);', [4]),
         (goals, "cpp", 'actionlib::SimpleActionServer<A> s(n, "a", f, false);', []),
         (overwritten, "cpp", 'n.setParam("a", 1);\nn.getParam("a", b);', [4]),

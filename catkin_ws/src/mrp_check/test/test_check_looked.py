@@ -12,16 +12,22 @@ from mrp_check.rules import (
     before_init,
     busy_loop,
     exit,
+    goals,
     guards,
+    hidden,
     idle,
     ignored,
     indexed,
     lost_global,
     no_pause,
     not_kept,
+    python_names,
+    responses,
     same_condition,
+    sometimes,
     starred,
     targets,
+    turtle,
     typed,
     uncaught,
     unpacked,
@@ -46,6 +52,10 @@ PROXY = "c = rospy.ServiceProxy('a', A)\ntry:\n    c()\n"
 STAR = "from absent.srv import *\n"
 CV = "import cv2\n"
 TWIST = "from geometry_msgs.msg import Twist\nt = Twist()\n"
+SERVES = "import time\ns = actionlib.SimpleActionServer('a', A, f, False)"
+MAYBE = "def far():\n    if b:\n        return\n    return 1\n"
+EMPTY = "from std_srvs.srv import Empty, EmptyResponse\n"
+OFFER = "rospy.Service('a', Empty, f)"
 BEGIN = "def begin():\n    rospy.init_node('a')\n"
 HEARS = "auto hear = [](const A::ConstPtr& m) {{ {} }};"
 
@@ -180,8 +190,30 @@ HEARS = "auto hear = [](const A::ConstPtr& m) {{ {} }};"
         (not_kept, "py", "p = rospy.Publisher('a', String, queue_size=1)", []),
         (before_init, "py", f"{BEGIN}rospy.loginfo('a')\nbegin()", [6]),
         (before_init, "py", f"{BEGIN}begin()\nrospy.loginfo('a')", []),
+        (arguments, "py", "a = sys.argv[-1]", [4]),
+        (arguments, "py", "a = rospy.myargv()[-1]", []),
+        (goals, "py", f"{SERVES}", [5]),
+        (goals, "py", f"{SERVES}\ns.start()", []),
+        (goals, "py", f"def nap(n): time.sleep(n)\ndef f(g): nap(9)\n{SERVES}\ns.start()", [4]),
+        (hidden, "py", "class String:\n    pass", [4]),
+        (hidden, "py", "class Text:\n    pass", []),
+        (turtle, "py", "rospy.set_param('background_r', 9)", [4]),
+        (turtle, "py", "rospy.set_param('/turtlesim/background_r', 9)", []),
+        (turtle, "cpp", 'n.setParam("/background_b", 9);', [4]),
+        (turtle, "cpp", 'n.setParam("background_b", 9);', []),
+        (sometimes, "py", f"{MAYBE}a = far() - 1", [8]),
+        (sometimes, "py", f"{MAYBE}a = far()\nif a is not None:\n    b = a - 1", []),
+        (sometimes, "py", f"{MAYBE}a = far()\nb = a - 1", [9]),
+        (sometimes, "py", f"{MAYBE}a = far()\nb = a - 1".replace("return\n", "return 0\n"), []),
+        (whole_numbers, "cpp", 'int r = n.param("r", 0.5);', [4]),
+        (whole_numbers, "cpp", 'int r = n.param("r", 5.0); double s = n.param("s", 0.5);', []),
+        (responses, "py", f"{EMPTY}def f(r):\n    return EmptyResponse\n{OFFER}", [6]),
+        (responses, "py", f"{EMPTY}def f(r):\n    return EmptyResponse()\n{OFFER}", []),
+        (python_names, "py", "import numpy as np\na = np.int(3)", [5]),
+        (python_names, "py", "import numpy as np\na = np.int64(3), np.linalg.norm", []),
+        (python_names, "py", "import time\na = time.clock()", [5]),
     ],
-    ids=range(96),
+    ids=range(118),
 )
 def test_what_may_be_missing_is_looked_at(rule, ending, lines, found, tmp_path):
     assert lines_of(rule, case(tmp_path, ending, lines)) == found

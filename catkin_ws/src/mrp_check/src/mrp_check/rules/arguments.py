@@ -34,6 +34,7 @@ def _findings(case: Case) -> Iterator[Finding]:
             if source:
                 yield from _of_python(case, node, source)
                 yield from _of_python_number(case, node, source)
+                yield from _from_the_end(case, node, source)
             elif case.package.kind(file) == "cpp":
                 code = _TAKEN.sub(uses.blank, uses.code(case.package, file))
                 yield from _of(node, file, code)
@@ -71,6 +72,26 @@ def _of_python(case: Case, node: str, source: Source) -> Iterator[Finding]:
             fix="Count the arguments first, and say how the program is used if some are missing.",
             node=node,
         )
+
+
+def _from_the_end(case: Case, node: str, source: Source) -> Iterator[Finding]:
+    """Yield a warning about the first argument that is counted from the end."""
+    for one in source.nodes(ast.Subscript):
+        number = source.value(one.slice) if source.dotted(one.value) == "sys.argv" else None
+        if isinstance(number, int) and number < 0:
+            yield Finding(
+                "starts",
+                f"{node} counts its arguments from the end, where roslaunch and remaps add some:"
+                f" sys.argv[{number}] is then one of those, and without any it is the program.",
+                source.file,
+                one.lineno,
+                WARNING,
+                expected="rospy.myargv()[1]",
+                seen=case.package.line(source.file, one.lineno),
+                fix="Count from the beginning, in what rospy.myargv() returns.",
+                node=node,
+            )
+            return
 
 
 def _of_python_number(case: Case, node: str, source: Source) -> Iterator[Finding]:

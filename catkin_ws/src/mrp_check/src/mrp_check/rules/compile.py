@@ -19,6 +19,7 @@ from mrp_check.sources import uses
 def findings(case: Case) -> Iterator[Finding]:
     if not case.built:
         yield from _of_other_machines(case)
+        yield from () if case.spec.is_contract else compiler.older_standard(case.package, "")
         yield from placeholders.findings(case.package, case.package.of_kind("cpp"))
         return
     output, package = case.built.output, case.package

@@ -41,6 +41,15 @@ def _findings(case: Case) -> Iterator[Finding]:
             said = f"This {what} does not ask whether its goal has been cancelled{more}"
             fix = f"Ask {asked} in each turn, and end the goal as preempted."
             yield one.finding("callbacks", said, loop, f"{asked} in the loop", fix)
+        if one.python and _never_started(one.python):
+            yield one.finding(
+                "callbacks",
+                "The action server is made with auto_start=False, and nothing calls its start():"
+                " no goal ever reaches it.",
+                _never_started(one.python),
+                "start(), when all else is made",
+                "Call start() on it.",
+            )
         if started:
             said = "The action server starts when it is made: a goal may come too early."
             wanted = "auto_start=False" if one.python else "false as the last argument"
@@ -84,13 +93,25 @@ def _in_python(source: Source) -> tuple[int, bool, int]:
     return found.lineno if found else 0, deaf, started
 
 
+def _never_started(source: Source) -> int:
+    """Return the line of a server that waits for its start(), where none is called; or 0."""
+    if "start" in _attributes(source.tree):
+        return 0
+    for call in source.nodes(ast.Call):
+        if source.dotted(call.func) == "actionlib.SimpleActionServer":
+            if source.value(argument(call, 3, "auto_start")) is False:
+                return call.lineno
+    return 0
+
+
 def _asks(source: Source) -> bool:
     return bool({"is_preempt_requested", "set_preempted"} & _attributes(source.tree))
 
 
 def _long_sleep(source: Source, work: ast.FunctionDef) -> ast.Call | None:
     """Return a sleep in a function that is long, or as long as the goal says."""
-    for call in (one for one in ast.walk(work) if isinstance(one, ast.Call)):
+    within = [work, *source.called([work])]
+    for call in (one for part in within for one in ast.walk(part) if isinstance(one, ast.Call)):
         if source.dotted(call.func) in ("time.sleep", "rospy.sleep") and call.args:
             seconds = source.value(call.args[0])
             if not isinstance(seconds, (int, float)) or seconds >= _LONG:

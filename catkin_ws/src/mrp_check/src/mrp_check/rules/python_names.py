@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import ast
+import builtins
 import re
 import sys
 from typing import Collection, Iterator, Sequence
@@ -18,6 +19,7 @@ from mrp_check.sources import uses
 from mrp_check.sources.python_facts import last_line
 from mrp_check.sources.python_modules import (
     OF_PYTHON_2,
+    is_known,
     is_module,
     is_ros,
     load,
@@ -284,12 +286,12 @@ class Names(PythonRule):
         )
 
     def attributes(self) -> Iterator[Finding]:
-        """Names of ROS's own modules that do not exist, such as rospy.spln."""
+        """Names of modules that do not exist, such as rospy.spln and numpy.int."""
         for node in self.source.nodes(ast.Attribute):
             if isinstance(self.source.parents.get(node), ast.Attribute):
                 continue
             name = self.source.dotted(node)
-            if not name or not is_ros(name) or self.is_own(name):
+            if not name or not is_known(name) or self.is_own(name):
                 continue
             if self.source.is_guarded(node, "AttributeError") or isinstance(node.ctx, ast.Store):
                 continue
@@ -298,13 +300,14 @@ class Names(PythonRule):
                 continue
             near = nearest(missing, [n for n in dir(owner) if not n.startswith("_")])
             called = getattr(owner, "__name__", name.rsplit(".", 1)[0])
+            near = missing if called == "numpy" and hasattr(builtins, missing) else near
             yield self.finding(
                 "python-names",
                 f"{called} has no {missing}: Python ends with an AttributeError when it comes"
                 " here." + perhaps(near),
                 node,
                 expected=f"a name that {called} has",
-                fix=f"Write {near} for {missing}." if near else "Correct the name.",
+                fix=f"Write {near} for {called}.{missing}." if near else "Correct the name.",
                 why="py-spln",
             )
 

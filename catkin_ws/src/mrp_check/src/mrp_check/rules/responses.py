@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import ast
+import re
 from typing import Iterator
 
 from mrp_check.contract.finding import WARNING, Finding
@@ -24,6 +25,19 @@ class Responses(PythonRule):
                     yield from self._of(handler)
 
     def _of(self, handler: ast.FunctionDef) -> Iterator[Finding]:
+        for node in ast.walk(handler):
+            name = self.source.dotted(node.value) if isinstance(node, ast.Return) else None
+            if isinstance(node, ast.Return) and re.search(r"\.srv\.\w+Response$", name or ""):
+                text = self.written(node.value) if node.value else ""
+                yield self.finding(
+                    "callbacks",
+                    f"{handler.name}() returns {text}, the class, and not an object of it:"
+                    " each call of the service fails.",
+                    node,
+                    expected=f"return {text}(...)",
+                    fix=f"Write {text}() with brackets.",
+                )
+                return
         if not falls_through(handler.body):
             return
         name, last = handler.name, handler.body[-1]

@@ -15,6 +15,11 @@ from mrp_check.sources import in_both
 
 _BELOW_1 = ("random.random", "numpy.random.rand", "numpy.random.random")
 _DIVIDED = re.compile(r"(?<![\w.)\]])(\d+)\s*/\s*(\d+)(?![\w.])")
+# A parameter that has a point by default, in a variable that has none.
+_CUT = re.compile(
+    r"\b(?:int|long|unsigned)\s+\w+\s*=\s*\w+(?:\.|->|::)param(?:::param)?\s*(?:<\s*(?:double|float)\s*>)?"
+    r'\s*\(\s*"([^"]*)"\s*,\s*(\d*\.\d*[1-9]\d*)f?\s*\)'
+)
 _TEXT = re.compile(r'"(?:\\.|[^"\\\n])*"|^\s*#.*$', re.MULTILINE)
 
 
@@ -31,6 +36,15 @@ def _findings(case: Case) -> Iterator[Finding]:
                         expected="random.randint(0, 9)",
                         fix="Take a whole number: random.randint(...).",
                     )
+        for match in _CUT.finditer(one.code):
+            yield one.finding(
+                "starts",
+                f"The parameter {match[1]} is a number with a point, and the rest behind it is"
+                f" dropped: {match[2]} becomes {int(float(match[2]))}.",
+                line_of(match),
+                expected=f"double, as {match[2]} is one",
+                fix="Write double for int.",
+            )
         code = _TEXT.sub(lambda text: " " * len(text[0]), one.code)
         for match in _DIVIDED.finditer(code):
             above, below = int(match[1]), int(match[2])

@@ -22,6 +22,16 @@ def is_ros(name: str) -> bool:
     return uses.is_ros_package(name.split(".")[0])
 
 
+# Modules of Python, and one that robots need, that are the same on each system; what versions of
+# them have had, and this machine's have not, ends a program.
+_SAME = "collections inspect itertools math numpy random string threading time".split()
+
+
+def is_known(name: str) -> bool:
+    """Return whether this machine knows all names that a module has."""
+    return is_ros(name) or name.split(".")[0] in _SAME
+
+
 def ros_modules() -> set[str]:
     return {
         path.parent.name for share in SHARES for path in pathlib.Path(share).glob("*/package.xml")
@@ -66,7 +76,7 @@ def load(name: str) -> types.ModuleType | None:
 
 
 def resolve(name: str) -> tuple[Any, str | None]:
-    """Return (object, None) of a dotted name in ROS's own modules, or (owner, what it lacks)."""
+    """Return (object, None) of a dotted name in a module that is known, or (owner, what it lacks)."""
     parts = name.split(".")
     found = load(parts[0])
     if found is None:
