@@ -118,7 +118,7 @@ WORK = "def work(goal):\n    for i in range(9):\n        "
         (goals, "py", f"def work(goal):\n    rospy.sleep(0.1)\n{SERVER}", []),
         (goals, "py", "s = actionlib.SimpleActionServer('a', A, work)", [4]),
         (goals, "py", "s = actionlib.SimpleActionServer('a', A, work, False)\ns.start()", []),
-        (goals, "py", "s = actionlib.SimpleActionServer(name='a', auto_start=False)\ns.start()", []),
+        (goals, "py", f"{SERVER.replace(', work', '')}", []),
         (goals, "cpp", 'actionlib::SimpleActionServer<A> s(n, "a", f, true);', [4]),
         (goals, "cpp", 'actionlib::SimpleActionServer<A> s(n, "a", f, false);', []),
         (overwritten, "cpp", 'n.setParam("a", 1);\nn.getParam("a", b);', [4]),

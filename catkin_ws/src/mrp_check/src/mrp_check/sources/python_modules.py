@@ -76,7 +76,7 @@ def load(name: str) -> types.ModuleType | None:
 
 
 def resolve(name: str) -> tuple[Any, str | None]:
-    """Return (object, None) of a dotted name in a module that is known, or (owner, what it lacks)."""
+    """Return (object, None) of a dotted name in a known module, or (owner, what it lacks)."""
     parts = name.split(".")
     found = load(parts[0])
     if found is None:
