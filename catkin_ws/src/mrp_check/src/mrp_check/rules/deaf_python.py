@@ -31,6 +31,7 @@ _COMPUTES = {"math", "abs", "float", "int", "len", "max", "min", "numpy", "pow",
 
 
 def _findings(case: Case) -> Iterator[Finding]:
+    told = set()  # a module may be of several nodes
     for name, files in case.facts.sources.items():
         node = case.nodes.get(name)
         for source in filter(None, map(case.facts.python.get, files)):
@@ -38,7 +39,9 @@ def _findings(case: Case) -> Iterator[Finding]:
             for line, said, expected, fix in _deaf(source, is_up) if _is_rospys(source) else ():
                 seen = case.package.line(source.file, line)
                 place = source.file, line, NOTE if said is GOES_ON else WARNING
-                yield Finding("exit", said, *place, expected, seen, fix, node=name)
+                if (source.file, line, said) not in told:
+                    told.add((source.file, line, said))
+                    yield Finding("exit", said, *place, expected, seen, fix, node=name)
 
 
 def _deaf(source: Source, is_up: bool) -> Iterator[tuple[int, str, str, str]]:
