@@ -59,7 +59,7 @@ def test_a_goal_that_succeeds_has_a_result(result, end, found, tmp_path):
     ] == found
 
 
-SERVER = "a = actionlib.SimpleActionServer('a', A, work, False)"
+SERVER = "a = actionlib.SimpleActionServer('a', A, work, False)\na.start()"
 WORK = f"def work(goal):\n    {{}}\n        rospy.sleep(1)\n{SERVER}"
 
 

@@ -20,6 +20,7 @@ from mrp_check.rules import (
     indexed,
     lost_global,
     no_pause,
+    none_yet,
     not_kept,
     python_names,
     responses,
@@ -54,6 +55,7 @@ CV = "import cv2\n"
 TWIST = "from geometry_msgs.msg import Twist\nt = Twist()\n"
 SERVES = "import time\ns = actionlib.SimpleActionServer('a', A, f, False)"
 MAYBE = "def far():\n    if b:\n        return\n    return 1\n"
+LATE = f"far = None\n{HEAR}global far; far = m\n{HEARD}\nprint(1)\n"
 EMPTY = "from std_srvs.srv import Empty, EmptyResponse\n"
 OFFER = "rospy.Service('a', Empty, f)"
 BEGIN = "def begin():\n    rospy.init_node('a')\n"
@@ -192,6 +194,7 @@ HEARS = "auto hear = [](const A::ConstPtr& m) {{ {} }};"
         (before_init, "py", f"{BEGIN}begin()\nrospy.loginfo('a')", []),
         (arguments, "py", "a = sys.argv[-1]", [4]),
         (arguments, "py", "a = rospy.myargv()[-1]", []),
+        (arguments, "py", "import other as sys\na = sys.argv[1]", []),
         (goals, "py", f"{SERVES}", [5]),
         (goals, "py", f"{SERVES}\ns.start()", []),
         (goals, "py", f"def nap(n): time.sleep(n)\ndef f(g): nap(9)\n{SERVES}\ns.start()", [4]),
@@ -212,11 +215,30 @@ HEARS = "auto hear = [](const A::ConstPtr& m) {{ {} }};"
         (python_names, "py", "import numpy as np\na = np.int(3)", [5]),
         (python_names, "py", "import numpy as np\na = np.int64(3), np.linalg.norm", []),
         (python_names, "py", "import time\na = time.clock()", [5]),
+        (none_yet, "py", f"{LATE}a = far.x", [9]),
+        (none_yet, "py", f"{LATE}a = far[0] + far", [9]),
+        (none_yet, "py", f"{LATE}if far:\n    a = far.x", []),
+        (none_yet, "py", f"{LATE}a = far.x".replace("None", "1"), []),
+        (none_yet, "py", f"{LATE}rospy.wait_for_message(b)\na = far.x", []),
+        (none_yet, "py", f"{LATE}def f(r):\n    return AResponse(far)", [10]),
     ],
-    ids=range(118),
+    ids=range(125),
 )
 def test_what_may_be_missing_is_looked_at(rule, ending, lines, found, tmp_path):
     assert lines_of(rule, case(tmp_path, ending, lines)) == found
+
+
+@pytest.mark.parametrize(("given", "found"), [("", True), ("1", False)])
+def test_what_roslaunch_gives_a_program_without_arguments(given, found, tmp_path):
+    known = case(tmp_path, "py", "n = sys.argv[1]")
+    started = types.SimpleNamespace(type="a", arguments=given, file="launch/a.launch")
+    known.launches = [types.SimpleNamespace(nodes=[started])]
+    (finding,) = check_rules.of(arguments.RULE, known)
+    assert ("what roslaunch adds" in finding.message) == found
+
+
+def test_where_what_was_typed_is_computed_with_is_a_note(tmp_path):
+    assert lines_of(typed, case(tmp_path, "py", "a = input()\nb()\nc = a - 1"), NOTE) == [6]
 
 
 def test_a_wait_without_end_is_a_note(tmp_path):

@@ -198,7 +198,7 @@ MOVE = "def move(far):\n    gone = 0\n    while gone < far:\n        gone += 0.1
 )
 def test_what_is_typed_is_a_text(code, found, tmp_path):
     said = check_rules.python_findings(tmp_path, f"import rospy\n{code}\n")
-    assert [(one.severity, one.line - 1) for one in said] == found
+    assert [(one.severity, one.line - 1) for one in said if one.severity != "note"] == found
 
 
 @pytest.mark.parametrize(

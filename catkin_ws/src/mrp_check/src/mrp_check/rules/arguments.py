@@ -8,6 +8,7 @@ import re
 from typing import Iterator
 
 from mrp_check.case import Case
+from mrp_check.confined.launch_dump import Started
 from mrp_check.contract.finding import WARNING, Finding
 from mrp_check.contract.requirements import ANY, Rule
 from mrp_check.contract.words import line_of
@@ -60,10 +61,14 @@ def _of_python(case: Case, node: str, source: Source) -> Iterator[Finding]:
     ]
     if reads and not counts and "rospy.myargv" not in asks:
         number, read = min(reads, key=lambda one: one[1].lineno)
+        bare = [one for launch in case.launches for one in launch.nodes if _is_bare(one, node)]
+        launched = (
+            f" {bare[0].file} gives it none: it then gets what roslaunch adds." if bare else ""
+        )
         yield Finding(
             "starts",
             f"{node} reads sys.argv[{number}], and does not look whether it was given: without it,"
-            " Python ends with an IndexError here.",
+            f" Python ends with an IndexError here.{launched}",
             source.file,
             read.lineno,
             WARNING,
@@ -72,6 +77,11 @@ def _of_python(case: Case, node: str, source: Source) -> Iterator[Finding]:
             fix="Count the arguments first, and say how the program is used if some are missing.",
             node=node,
         )
+
+
+def _is_bare(started: Started, node: str) -> bool:
+    """Return whether a launch file starts a node without arguments of its own."""
+    return started.type == node and not started.arguments
 
 
 def _from_the_end(case: Case, node: str, source: Source) -> Iterator[Finding]:

@@ -15,12 +15,12 @@ from mrp_check.sources.python_rule import PythonRule, ast_text, of_sources
 from mrp_check.sources.python_source import Source, Variable
 
 # A source that names one of these knows that there may be no message yet.
-_KNOWS = {"hasattr", "getattr", "globals", "wait_for_message", "setattr"}
+KNOWS = {"hasattr", "getattr", "globals", "wait_for_message", "setattr"}
 
 
 class Unheard(PythonRule):
     def findings(self) -> Iterator[Finding]:
-        if _KNOWS & self.source.names():
+        if KNOWS & self.source.names():
             return
         heard = callbacks(self.source)
         given: dict[Variable, set[ast.AST]] = {}

@@ -229,6 +229,8 @@ class Source:
         if base is None:
             # As in: Publisher = rospy.Publisher
             values = self.stored((owner, node.id))
+            if node.id == "sys" and not values:  # from another module, of which it takes all names
+                return ".".join(["sys", *reversed(parts)])
             if len(values) != 1 or not isinstance(values[0], (ast.Name, ast.Attribute)):
                 return None
             base = self.dotted(values[0], depth + 1)
