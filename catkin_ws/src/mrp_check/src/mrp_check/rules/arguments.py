@@ -13,6 +13,7 @@ from mrp_check.contract.finding import WARNING, Finding
 from mrp_check.contract.requirements import ANY, Rule
 from mrp_check.contract.words import line_of
 from mrp_check.sources import uses
+from mrp_check.sources.in_both import OfNode
 from mrp_check.sources.python_source import Source
 
 _READ = re.compile(r"\bargv\s*\[\s*([1-9])\s*\]")
@@ -33,16 +34,17 @@ def _findings(case: Case) -> Iterator[Finding]:
         for file in files:
             source = case.facts.python.get(file)
             if source:
-                yield from _of_python(case, node, source)
-                yield from _of_python_number(case, node, source)
-                yield from _from_the_end(case, node, source)
+                one = OfNode(case.package, node, file, source, "")
+                yield from _of_python(case, one, source)
+                yield from _of_python_number(one, source)
+                yield from _from_the_end(one, source)
             elif case.package.kind(file) == "cpp":
                 code = _TAKEN.sub(uses.blank, uses.code(case.package, file))
                 yield from _of(node, file, code)
                 yield from _of_number(case, node, file, code)
 
 
-def _of_python(case: Case, node: str, source: Source) -> Iterator[Finding]:
+def _of_python(case: Case, one: OfNode, source: Source) -> Iterator[Finding]:
     """Yield a warning about the first argument that a program reads, if it never counts them."""
     asks = {source.dotted(call.func) for call in source.nodes(ast.Call)}
     counts = [
@@ -61,21 +63,18 @@ def _of_python(case: Case, node: str, source: Source) -> Iterator[Finding]:
     ]
     if reads and not counts and "rospy.myargv" not in asks:
         number, read = min(reads, key=lambda one: one[1].lineno)
-        bare = [one for launch in case.launches for one in launch.nodes if _is_bare(one, node)]
+        nodes = [started for launch in case.launches for started in launch.nodes]
+        bare = [started for started in nodes if _is_bare(started, one.node)]
         launched = (
             f" {bare[0].file} gives it none: it then gets what roslaunch adds." if bare else ""
         )
-        yield Finding(
+        yield one.finding(
             "starts",
-            f"{node} reads sys.argv[{number}], and does not look whether it was given: without it,"
-            f" Python ends with an IndexError here.{launched}",
-            source.file,
+            f"{one.node} reads sys.argv[{number}], and does not look whether it was given: without"
+            f" it, Python ends with an IndexError here.{launched}",
             read.lineno,
-            WARNING,
             expected="len(rospy.myargv()), before an argument is read",
-            seen=case.package.line(source.file, read.lineno),
             fix="Count the arguments first, and say how the program is used if some are missing.",
-            node=node,
         )
 
 
@@ -84,44 +83,37 @@ def _is_bare(started: Started, node: str) -> bool:
     return started.type == node and not started.arguments
 
 
-def _from_the_end(case: Case, node: str, source: Source) -> Iterator[Finding]:
+def _from_the_end(one: OfNode, source: Source) -> Iterator[Finding]:
     """Yield a warning about the first argument that is counted from the end."""
-    for one in source.nodes(ast.Subscript):
-        number = source.value(one.slice) if source.dotted(one.value) == "sys.argv" else None
+    for item in source.nodes(ast.Subscript):
+        number = source.value(item.slice) if source.dotted(item.value) == "sys.argv" else None
         if isinstance(number, int) and number < 0:
-            yield Finding(
+            yield one.finding(
                 "starts",
-                f"{node} counts its arguments from the end, where roslaunch and remaps add some:"
-                f" sys.argv[{number}] is then one of those, and without any it is the program.",
-                source.file,
-                one.lineno,
-                WARNING,
+                f"{one.node} counts its arguments from the end, where roslaunch and remaps add"
+                f" some: sys.argv[{number}] is then one of those, and without any it is the"
+                " program.",
+                item.lineno,
                 expected="rospy.myargv()[1]",
-                seen=case.package.line(source.file, one.lineno),
                 fix="Count from the beginning, in what rospy.myargv() returns.",
-                node=node,
             )
             return
 
 
-def _of_python_number(case: Case, node: str, source: Source) -> Iterator[Finding]:
+def _of_python_number(one: OfNode, source: Source) -> Iterator[Finding]:
     """Yield a warning about the first argument, or what is typed first, that must be a number, if
     nobody catches what Python raises of one that is none."""
     for call in source.nodes(ast.Call):
         name = call.func.id if isinstance(call.func, ast.Name) else ""
         of = call.args[0] if name in ("int", "float") and call.args else None
         if of and _is_given(source, of) and not source.is_guarded(call, "ValueError"):
-            yield Finding(
+            yield one.finding(
                 "starts",
-                f"{name}() raises a ValueError if what is given is no number, and {node} does not"
-                " catch it: it ends with a traceback.",
-                source.file,
+                f"{name}() raises a ValueError if what is given is no number, and {one.node} does"
+                " not catch it: it ends with a traceback.",
                 call.lineno,
-                WARNING,
                 expected="try and except ValueError, or argparse",
-                seen=case.package.line(source.file, call.lineno),
                 fix="Catch the ValueError, and say what was expected.",
-                node=node,
             )
             return
 

@@ -20,6 +20,7 @@ _WAITS = re.compile(
     r"|recv|accept|select|poll|imshow|callOne|callAvailable|call\s*\(|>>|queue\."
 )
 
+_ASKS = "is_shutdown"  # of rospy
 _TEXT = re.compile(r"\"[^\"\n]*\"|'[^'\n]*'")
 
 
@@ -46,7 +47,7 @@ def may_wait_for_itself(case: Case, node: str) -> bool:
     """Return whether it is chance that Ctrl-C ends a node: rospy's handler of it waits for a lock
     that the loop, which logs or publishes without a pause, holds most of the time."""
     loop = loop_of(case, node)
-    return loop is not None and "is_shutdown" in case.package.line(*loop)
+    return loop is not None and _ASKS in case.package.line(*loop)
 
 
 def _lines(code: str) -> range:
@@ -62,7 +63,7 @@ def _finding(case: Case, node: str, file: str, line: int) -> Finding:
     rate = "rospy.Rate" if package.kind(file) == "python" else "ros::Rate"
     below = "\n".join(uses.code(package, file).split("\n")[line:])
     fast = ", and publishes as fast as it can" if "publish" in below else ""
-    late = "; Ctrl-C may not end it" if fast and may_wait_for_itself(case, node) else ""
+    late = "; Ctrl-C may not end it" if fast and _ASKS in package.line(file, line) else ""
     return Finding(
         "spin",
         f"The loop never pauses: it keeps a processor busy{fast}{late}.",

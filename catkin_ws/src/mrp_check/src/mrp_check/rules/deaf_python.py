@@ -31,7 +31,7 @@ _COMPUTES = {"math", "abs", "float", "int", "len", "max", "min", "numpy", "pow",
 
 
 def _findings(case: Case) -> Iterator[Finding]:
-    told = set()  # a module may be of several nodes
+    reported = set()  # several nodes may import the same module
     for name, files in case.facts.sources.items():
         node = case.nodes.get(name)
         for source in filter(None, map(case.facts.python.get, files)):
@@ -39,8 +39,8 @@ def _findings(case: Case) -> Iterator[Finding]:
             for line, said, expected, fix in _deaf(source, is_up) if _is_rospys(source) else ():
                 seen = case.package.line(source.file, line)
                 place = source.file, line, NOTE if said is GOES_ON else WARNING
-                if (source.file, line, said) not in told:
-                    told.add((source.file, line, said))
+                if (source.file, line, said) not in reported:
+                    reported.add((source.file, line, said))
                     yield Finding("exit", said, *place, expected, seen, fix, node=name)
 
 

@@ -109,9 +109,8 @@ class FieldsGiven(Typed):
 
     def _called(self, call: ast.Call) -> _Half | None:
         """Return the request of a service that is called through a ServiceProxy."""
-        stored = self.source.stored(self.source.key(call.func))
-        proxy = stored[0] if len(stored) == 1 else None
-        if isinstance(proxy, ast.Call) and self.source.dotted(proxy.func) == "rospy.ServiceProxy":
+        proxy = self.source.made(call.func)
+        if proxy and self.source.dotted(proxy.func) == "rospy.ServiceProxy":
             return self._half(argument(proxy, 1, "service_class"), 0)
         return None
 

@@ -71,8 +71,8 @@ def _sleeps(source: Source, call: ast.Call) -> bool:
     if source.dotted(call.func) in _SLEEP:
         seconds = source.value(call.args[0]) if call.args else None
         return not isinstance(seconds, (int, float)) or seconds >= 0.1
-    made = source.stored(source.key(getattr(call.func, "value", call)))
-    is_rate = [source.dotted(getattr(one, "func", None)) for one in made] == ["rospy.Rate"]
+    made = source.made(getattr(call.func, "value", call))
+    is_rate = made is not None and source.dotted(made.func) == "rospy.Rate"
     return getattr(call.func, "attr", "") == "sleep" and is_rate
 
 

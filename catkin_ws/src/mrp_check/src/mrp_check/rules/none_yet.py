@@ -9,12 +9,12 @@ from typing import Iterator
 from mrp_check.contract.finding import WARNING, Finding
 from mrp_check.contract.requirements import ANY, Rule
 from mrp_check.contract.words import with_article
+from mrp_check.rules.sometimes import COMPUTES
 from mrp_check.rules.unheard import KNOWS, Unheard, callbacks
 from mrp_check.sources.python_rule import ast_text, of_sources
 from mrp_check.sources.python_source import Variable
 
 _OF_CALL = "ServiceException"
-_COMPUTES = (ast.Add, ast.Sub, ast.Mult, ast.Div, ast.Mod, ast.Pow)
 
 
 class NoneYet(Unheard):
@@ -71,7 +71,7 @@ class NoneYet(Unheard):
         if isinstance(above, ast.Attribute):
             return "AttributeError"
         is_item = isinstance(above, ast.Subscript) and above.value is node
-        is_part = isinstance(above, ast.BinOp) and isinstance(above.op, _COMPUTES)
+        is_part = isinstance(above, ast.BinOp) and isinstance(above.op, COMPUTES)
         made = getattr(above, "func", None) if isinstance(above, ast.Call) else None
         is_sent = getattr(made, "id", getattr(made, "attr", "")).endswith("Response")
         return "TypeError" if is_item or is_part else _OF_CALL if is_sent else ""

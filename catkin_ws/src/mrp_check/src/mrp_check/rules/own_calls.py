@@ -25,13 +25,8 @@ class OwnCalls(PythonRule):
 
     def _class(self, node: ast.expr) -> ast.ClassDef | None:
         """Return the source's own class, if it has no others above it, of which a variable is."""
-        stored = self.source.stored(self.source.key(node))
-        made = stored[0] if len(stored) == 1 else None
-        class_ = self.source.definition(made.func) if isinstance(made, ast.Call) else None
-        is_plain = isinstance(class_, ast.ClassDef) and not class_.decorator_list
-        return (
-            class_ if is_plain and isinstance(class_, ast.ClassDef) and not class_.bases else None
-        )
+        class_ = self.source.class_of(node)
+        return class_ if class_ and not class_.decorator_list and not class_.bases else None
 
     def _method(self, call: ast.Call, name: str, class_: ast.ClassDef) -> Iterator[Finding]:
         found = self.source.stored((class_, name))

@@ -13,7 +13,7 @@ from mrp_check.contract.finding import WARNING, Finding
 from mrp_check.contract.requirements import ANY, Rule
 from mrp_check.sources.python_rule import PythonRule, ast_text, of_sources
 
-_COMPUTES = (ast.Add, ast.Sub, ast.Mult, ast.Div, ast.Mod, ast.Pow)
+COMPUTES = (ast.Add, ast.Sub, ast.Mult, ast.Div, ast.Mod, ast.Pow)
 
 
 class Sometimes(PythonRule):
@@ -27,7 +27,7 @@ class Sometimes(PythonRule):
         }
         said: set[ast.FunctionDef] = set()
         for one in self.source.nodes(ast.BinOp):
-            for part in (one.left, one.right) if isinstance(one.op, _COMPUTES) else ():
+            for part in (one.left, one.right) if isinstance(one.op, COMPUTES) else ():
                 function = self._gave(part)
                 key = self.source.key(part) if isinstance(part, ast.Name) else None
                 if function is None or function in said or key and key in asked:

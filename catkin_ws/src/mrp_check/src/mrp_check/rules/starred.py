@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A name that nothing has, in a source that takes all names of a package that is not here: those
-are names of messages, so a misspelt variable is none of them."""
+"""Python: `from absent.srv import *` gives the names of services alone. A misspelt variable is not
+one of them, even if nobody can look into that package."""
 
 from __future__ import annotations
 

@@ -15,7 +15,7 @@ from mrp_check.contract.requirements import ANY, Rule
 from mrp_check.contract.words import line_of
 from mrp_check.sources import uses
 
-# Of a relative name, a NodeHandle decides.
+# A name without a slash is looked for in the namespace of its NodeHandle: it may be right.
 _COLOUR = re.compile(
     r"""(?:\bros::param::\w+\s*(?:<\w+>)?|\brospy\.\w+_param)\s*\(\s*["'](/?background_[rgb])["']"""
     r"""|["'](/background_[rgb])["']"""

@@ -39,9 +39,8 @@ class Uncaught(PythonRule):
 
     def _asks(self, node: ast.AST) -> bool:
         """Return whether a node calls what rospy.ServiceProxy() returned."""
-        stored = self.source.stored(self.source.key(getattr(node, "func", node)))
-        made = stored[0] if len(stored) == 1 and isinstance(node, ast.Call) else None
-        return isinstance(made, ast.Call) and self.source.dotted(made.func) == "rospy.ServiceProxy"
+        made = self.source.made(node.func) if isinstance(node, ast.Call) else None
+        return made is not None and self.source.dotted(made.func) == "rospy.ServiceProxy"
 
 
 RULE = Rule("static", 124, ("facts",), of_sources(Uncaught), also=("starts",), only=ANY)

@@ -248,7 +248,7 @@ class Source:
         elif isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name):
             class_ = self.class_(node)
             if node.value.id not in ("self", "cls"):
-                class_ = self._class_of(node.value)
+                class_ = self.class_of(node.value)
             if class_ is None:
                 return None
             found = self.stored((class_, node.attr))
@@ -257,11 +257,16 @@ class Source:
         kinds = (ast.FunctionDef, ast.ClassDef, ast.Lambda)
         return found[0] if len(found) == 1 and isinstance(found[0], kinds) else None
 
-    def _class_of(self, node: ast.Name) -> ast.ClassDef | None:
-        """Return the class of the source's own of which a variable is an object, or None."""
+    def made(self, node: ast.AST) -> ast.Call | None:
+        """Return the call whose result is all that a variable is ever given, or None."""
         stored = self.stored(self.key(node))
-        made = stored[0] if len(stored) == 1 else None
-        class_ = self.definition(made.func) if isinstance(made, ast.Call) else None
+        call = stored[0] if len(stored) == 1 else None
+        return call if isinstance(call, ast.Call) else None
+
+    def class_of(self, node: ast.AST) -> ast.ClassDef | None:
+        """Return the class of the source's own of which a variable is an object, or None."""
+        made = self.made(node)
+        class_ = self.definition(made.func) if made else None
         return class_ if isinstance(class_, ast.ClassDef) else None
 
     def called(self, parts: Iterable[ast.AST]) -> list[ast.FunctionDef]:
