@@ -353,6 +353,7 @@ def test_a_node_runs_though_its_message_was_made_too_late(tmp_path):
     report = checked(check_rules.make(tmp_path / "some_pkg", **files).root)
     found = {(one.severity, one.id) for one in report.findings if one.file != "package.xml"}
     assert {(ERROR, "messages"), (ERROR, "exit")} <= found, shown(report.findings)
+    assert not {"compile", "starts"} & {one for _, one in found}, shown(report.findings)
 
 
 @pytest.mark.parametrize(("language", "is_taken"), [("cpp", False), ("python", True)])

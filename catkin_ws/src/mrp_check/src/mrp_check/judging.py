@@ -14,6 +14,7 @@ from mrp_check.contract.words import last_part
 from mrp_check.rules.deaf_loop import ASKS_KEYBOARD
 from mrp_check.rules.definitions import UNREADABLE
 from mrp_check.rules.long_loop import GOES_ON
+from mrp_check.rules.messages import CHANCE
 from mrp_check.rules.python_names import OLD_NAME
 from mrp_check.rules.responses import NO_RESPONSE
 from mrp_check.rules.unbuilt import COUNTS
@@ -30,7 +31,7 @@ _RULES = set(
     ).split()
 )
 # The same, by what a finding says.
-_SURE = (NO_RESPONSE, "CMake stops", ASKS_KEYBOARD, UNREADABLE, OLD_NAME)
+_SURE = (NO_RESPONSE, "CMake stops", ASKS_KEYBOARD, UNREADABLE, OLD_NAME, CHANCE)
 _OF_CMAKE = {"manifest", "package-name", "cmake", "configure"}
 _SEEN = {"build", "run", "stop"}
 # What a node says that stands before an empty keyboard, screen or command line, what it waits for,

@@ -24,6 +24,7 @@ _GENERATION = "message_generation"
 # What of package.xml asks for it where nothing is built, too.
 _AFTER_BUILD = rf"^\s*<(?:exec_|run_|build_export_)?depend>\s*{_GENERATION}\s*<"
 _OF_MESSAGES = ("_msgs", "_srvs", "_msg", "_srv")  # how packages of messages are called
+CHANCE = "It then depends on chance whether it can be built"
 # The commands that only message_generation brings.
 _BROUGHT = r"^\s*(add_(message|service|action)_files|generate_messages)\s*\("
 
@@ -252,7 +253,7 @@ def _order(package: Package, model: Model) -> Iterator[Finding]:
             yield Finding(
                 "messages",
                 f"The target {target.name} does not wait until {header}, which {file} includes in"
-                f" line {line}, has been made. It then depends on chance whether it can be built.",
+                f" line {line}, has been made. {CHANCE}.",
                 target.file,
                 target.line,
                 expected=f"add_dependencies({target.name} ${{${{PROJECT_NAME}}_EXPORTED_TARGETS}})",
