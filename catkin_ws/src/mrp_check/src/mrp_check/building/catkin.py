@@ -187,10 +187,12 @@ class Catkin:
         make = ["make", f"--directory={self.folder / 'build'}", *_KEEP_GOING]
         if workspace.compiles_again:
             make = ["bash", "-c", _ANEW, str(self.folder), *make]
-        # Whether a target can be built that does not wait for its headers depends on chance; what the
-        # nodes then do must not. A rule tells of such targets.
+        # Whether a target can be built that does not wait for its headers depends on chance; what
+        # its node then does must not. A rule tells of such targets.
         name = re.escape(workspace.package.name)
-        first = re.findall(rf"^\.\.\. ({name}_(?:generate_messages|gencfg))$", self.configured.output, re.M)
+        first = re.findall(
+            rf"^\.\.\. ({name}_(?:generate_messages|gencfg))$", self.configured.output, re.M
+        )
         if first:
             self._run(*make, *first)
         result = self._run(*make)

@@ -120,9 +120,7 @@ def _of_python_number(one: OfNode, source: Source) -> Iterator[Finding]:
 
 def _is_given(source: Source, node: ast.expr) -> bool:
     """Return whether an expression is an argument of the command line, or what somebody types."""
-    stored = source.stored(source.key(node)) if isinstance(node, ast.Name) else []
-    if len(stored) == 1 and isinstance(stored[0], ast.expr):
-        node = stored[0]
+    node = source.only(node) or node
     if isinstance(node, ast.Call):
         return getattr(node.func, "id", "") in ("input", "raw_input")
     return isinstance(node, ast.Subscript) and source.dotted(node.value) == "sys.argv"

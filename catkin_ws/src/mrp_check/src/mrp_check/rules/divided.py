@@ -83,8 +83,7 @@ def _in_python(source: Source) -> Iterator[tuple[str, int]]:
 def _field(source: Source, node: ast.AST, request: str) -> str | None:
     """Return the field of the request that an expression is, or None."""
     if isinstance(node, ast.Name):
-        stored = source.stored(source.key(node))
-        node = stored[0] if len(stored) == 1 and stored[0] else node
+        node = source.only(node) or node
     is_field = isinstance(node, ast.Attribute) and getattr(node.value, "id", "") == request
     return node.attr if is_field and isinstance(node, ast.Attribute) else None
 

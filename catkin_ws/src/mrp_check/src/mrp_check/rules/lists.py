@@ -56,9 +56,7 @@ class Lists(PythonRule):
 
     def _made_by(self, node: ast.expr) -> str | None:
         """Return the function, or the method, that an expression is the value of."""
-        key = self.source.key(node) if isinstance(node, (ast.Name, ast.Attribute)) else None
-        stored = self.source.stored(key)
-        call = stored[0] if len(stored) == 1 else node
+        call = self.source.only(node) or node
         if not isinstance(call, ast.Call):
             return None
         if isinstance(call.func, ast.Attribute):

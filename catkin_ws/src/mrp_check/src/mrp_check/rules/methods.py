@@ -53,9 +53,8 @@ class Methods(PythonRule):
 
     def _maker(self, node: ast.expr) -> str | None:
         """Return the class of rospy's or actionlib's of which a variable is, if it is sure."""
-        stored = self.source.stored(self.source.key(node))
-        made = stored[0] if len(stored) == 1 else None
-        name = self.source.dotted(made.func) if isinstance(made, ast.Call) else None
+        made = self.source.made(node)
+        name = self.source.dotted(made.func) if made else None
         is_own = any(self.is_own(of.rstrip(".")) for of in _OF)
         return name if name and name.startswith(_OF) and not is_own else None
 

@@ -67,8 +67,7 @@ class NoValue(PythonRule):
     def _gave(self, node: ast.expr) -> ast.FunctionDef | None:
         """Return the function that an expression is the value of, if it returns nothing, or may."""
         key = self.source.key(node) if isinstance(node, ast.Name) else None
-        stored = self.source.stored(key)
-        call = stored[0] if len(stored) == 1 else node
+        call = (self.source.only(node) if key else None) or node
         if not isinstance(call, ast.Call) or not isinstance(call.func, ast.Name):
             return None
         function = self.source.definition(call.func)

@@ -96,8 +96,8 @@ class Typed(PythonRule):
         if key and stored == [None] and depth < 2:
             given = self._given(key[0], key[1])
             return self.typed(given, depth + 1) if given else None
-        value = stored[0] if len(stored) == 1 else None
-        return self.typed(value, depth + 1) if isinstance(value, ast.expr) and depth < 5 else None
+        value = self.source.only(node)
+        return self.typed(value, depth + 1) if value and depth < 5 else None
 
     def _given(self, function: ast.AST | None, name: str) -> ast.expr | None:
         """Return what a parameter of a function is in its only call, by its place."""

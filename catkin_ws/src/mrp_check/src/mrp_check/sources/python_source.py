@@ -257,10 +257,14 @@ class Source:
         kinds = (ast.FunctionDef, ast.ClassDef, ast.Lambda)
         return found[0] if len(found) == 1 and isinstance(found[0], kinds) else None
 
+    def only(self, node: ast.AST) -> ast.expr | None:
+        """Return the one expression that a variable is ever given, or None."""
+        stored = self.stored(self.key(node))
+        return stored[0] if len(stored) == 1 and isinstance(stored[0], ast.expr) else None
+
     def made(self, node: ast.AST) -> ast.Call | None:
         """Return the call whose result is all that a variable is ever given, or None."""
-        stored = self.stored(self.key(node))
-        call = stored[0] if len(stored) == 1 else None
+        call = self.only(node)
         return call if isinstance(call, ast.Call) else None
 
     def class_of(self, node: ast.AST) -> ast.ClassDef | None:
@@ -293,10 +297,8 @@ class Source:
         if isinstance(node, ast.Constant):
             return node.value if not isinstance(node.value, bytes) else UNKNOWN
         if isinstance(node, (ast.Name, ast.Attribute)):
-            stored = self.stored(self.key(node))
-            if len(stored) == 1 and isinstance(stored[0], ast.expr):
-                return self.value(stored[0], below)
-            return UNKNOWN
+            only = self.only(node)
+            return self.value(only, below) if only else UNKNOWN
         if isinstance(node, ast.JoinedStr):
             parts = [self._part(part, below) for part in node.values]
             return "".join(parts)
