@@ -43,6 +43,10 @@ def test_unbalanced_brace_is_found_by_the_indentation():
         ("‘countr’ was not declared in this scope; did you mean ‘counter’?", "counter is meant"),
         ("std_msgs/UInt23.h: No such file or directory", "std_msgs/UInt32.h is meant"),
         (
+            "class_loader/class_loader.h: No such file or directory",
+            "called class_loader/class_loader.hpp",
+        ),
+        (
             "no matching function for call to ‘ros::NodeHandle::subscribe(const char [2])’",
             "arguments of subscribe() do not fit",
         ),
@@ -54,7 +58,7 @@ def test_unbalanced_brace_is_found_by_the_indentation():
         ),
         ("something that nobody has seen before", "something that nobody has seen before"),
     ],
-    ids=range(8),
+    ids=range(9),
 )
 def test_compilers_errors_in_plain_words(error, says, tmp_path):
     package = check_rules.make(tmp_path / "src" / "some_pkg", src__a_DOT_cpp=CPP)

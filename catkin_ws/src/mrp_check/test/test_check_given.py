@@ -332,6 +332,14 @@ def test_what_makes_messages_is_needed_to_build_alone(tag, passed_on, found, tmp
     assert [(one.file, one.line) for one in said] == found
 
 
+@pytest.mark.parametrize(("text", "found"), [("int32 int", [1]), ("int32 integer", [])])
+def test_a_field_has_no_word_of_cpp_for_its_name(text, found, tmp_path):
+    known = case(tmp_path, "cpp", INIT, msg__Own_DOT_msg=text)
+    known.model.message_files = {"msg/Own.msg": 1}
+    said = check_rules.of(definitions.RULE, known)
+    assert [one.line for one in said if "a word of C++" in one.message] == found
+
+
 @pytest.mark.parametrize(
     ("source", "severity"), [("b.cpp", ERROR), ("left.cpp", WARNING), ("b.msg", ERROR)]
 )

@@ -11,6 +11,7 @@ from mrp_check.rules import (
     arguments,
     before_init,
     busy_loop,
+    early_callback,
     exit,
     goals,
     guards,
@@ -24,12 +25,14 @@ from mrp_check.rules import (
     not_kept,
     python_names,
     responses,
+    rospy_calls,
     same_condition,
     sometimes,
     starred,
     targets,
     turtle,
     typed,
+    unbound,
     uncaught,
     unpacked,
     unslept,
@@ -58,6 +61,19 @@ MAYBE = "def far():\n    if b:\n        return\n    return 1\n"
 LATE = f"far = None\n{HEAR}global far; far = m\n{HEARD}\nprint(1)\n"
 EMPTY = "from std_srvs.srv import Empty, EmptyResponse\n"
 OFFER = "rospy.Service('a', Empty, f)"
+TF = "import tf\nl = tf.TransformListener()\n"
+ORDERS = "if a > b:\n    c = 1\nelif a {} b:\n    c = 2\nprint(c)"
+OF_TWO = """class A:
+    def __init__(self):
+        self.s = rospy.Subscriber('a', String, self.hear)
+        self.b = 0
+    def hear(self, m):
+        {}print(self.b)
+    def {}(self, m):
+        self.b = 1
+a = A()
+rospy.Subscriber('b', String, a.see)
+"""
 BEGIN = "def begin():\n    rospy.init_node('a')\n"
 HEARS = "auto hear = [](const A::ConstPtr& m) {{ {} }};"
 
@@ -170,6 +186,26 @@ HEARS = "auto hear = [](const A::ConstPtr& m) {{ {} }};"
             [],
         ),
         (uncaught, "py", f"{PROXY}except:\n    pass", []),
+        (uncaught, "py", f"{TF}l.waitForTransform(a, b, c, d)", [6]),
+        (uncaught, "py", f"{TF}try:\n    l.lookupTransform(a)\nexcept tf.Exception: b()", []),
+        (uncaught, "py", "l.waitForTransform(a, b, c, d)", []),
+        (
+            *(uncaught, "py"),
+            f"{TF}def f(): l.lookupTransform(a)\ntry:\n    f()\nexcept tf.LookupException: b()",
+            [],
+        ),
+        (unbound, "py", ORDERS.format("<"), [8]),
+        (unbound, "py", ORDERS.format("<="), []),
+        (unbound, "py", ORDERS.replace("b:", "9:", 1).format("<"), []),
+        (early_callback, "py", OF_TWO.format("", "see"), [6]),
+        (early_callback, "py", OF_TWO.format("self.b = 2; ", "see"), []),
+        (early_callback, "py", OF_TWO.format("", "look"), []),
+        (not_kept, "py", "while a:\n    m = rospy.wait_for_message('a', String)", [5]),
+        (not_kept, "py", "m = rospy.wait_for_message('a', String)", []),
+        (rospy_calls, "py", f"{HEAR}rospy.loginfo('%.2f', m)\n{HEARD}", [5]),
+        (rospy_calls, "py", f"{HEAR}rospy.loginfo('%s', m)\n{HEARD}", []),
+        (rospy_calls, "py", f"{HEAR}m = m.data; rospy.loginfo('%d', m)\n{HEARD}", []),
+        (rospy_calls, "py", f"{HEAR}rospy.loginfo('%d', m)", []),
         (starred, "py", f"{STAR}responce = f()\nprint(response)", [6]),
         (starred, "py", f"{STAR}response = f()\nprint(response)", []),
         (starred, "py", f"{STAR}responce = f()\nprint(Response)", []),
@@ -222,7 +258,7 @@ HEARS = "auto hear = [](const A::ConstPtr& m) {{ {} }};"
         (none_yet, "py", f"{LATE}rospy.wait_for_message(b)\na = far.x", []),
         (none_yet, "py", f"{LATE}def f(r):\n    return AResponse(far)", [10]),
     ],
-    ids=range(125),
+    ids=range(141),
 )
 def test_what_may_be_missing_is_looked_at(rule, ending, lines, found, tmp_path):
     assert lines_of(rule, case(tmp_path, ending, lines)) == found

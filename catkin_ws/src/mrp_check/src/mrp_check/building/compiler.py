@@ -56,8 +56,7 @@ _NAMED = re.compile(
 
 def problems(output: str, copy: pathlib.Path) -> list[Problem]:
     """Return, for each source of the package, the first error that the compiler found in it, the
-    next one behind each that no other follows from, and those about other names; and the first one
-    behind a header of its own messages, where it was built a second time."""
+    next one behind each that no other follows from, and those about other names."""
     lines = output.splitlines()
     found: list[Problem] = []
     chain: list[Line | None] = []  # of "required from"; None for a place in a header of others
@@ -94,11 +93,9 @@ def problems(output: str, copy: pathlib.Path) -> list[Problem]:
 
 
 def _first(found: list[Problem], copy: pathlib.Path) -> list[Problem]:
-    first: dict[tuple[str, bool], list[Problem]] = {}
+    first: dict[str, list[Problem]] = {}
     for problem in found:
-        header = is_no_header(problem)
-        is_own = bool(header and header[1].startswith(f"{copy.name}/"))
-        of_file = first.setdefault((problem.file, is_own), [])
+        of_file = first.setdefault(problem.file, [])
         lines = {one.line for one in of_file}
         is_alone = all(map(_ALONE.search, (one.text for one in of_file)))
         if problem.line not in lines and (is_alone or _is_other(problem, of_file, copy)):

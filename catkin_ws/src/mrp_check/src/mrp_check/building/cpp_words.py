@@ -229,6 +229,10 @@ def _missing_header(error: Error) -> Words:
     is_other = folder != package.name and uses.is_called_so(folder)
     if is_other and not uses.is_ros_package(folder):
         return Words(f"there is no header {header}. {uses.absent(folder, 'cpp')}", "Install it.")
+    newer = f"{header}pp"
+    if uses.is_header(newer):
+        said = f"there is no header {header}: here it is called {newer}."
+        return Words(said, f"Write {newer}.", None, (header, newer))
     if header.split("/")[0] != package.name:
         near = nearest(header, [f"std_msgs/{name}.h" for name in _MESSAGES] + ["ros/ros.h"], 0.7)
         fix = f"Write {near}." if near else "Correct the name, or install and declare its package."

@@ -17,7 +17,7 @@ from genmsg.msgs import BUILTIN_TYPES, bare_msg_type
 
 from mrp_check.case import Case
 from mrp_check.contract import resources
-from mrp_check.contract.finding import NOTE, Finding
+from mrp_check.contract.finding import NOTE, WARNING, Finding
 from mrp_check.contract.requirements import ANY, Rule
 from mrp_check.contract.words import last_part, nearest, perhaps
 from mrp_check.sources import uses
@@ -29,6 +29,16 @@ _BETWEEN = "---"  # a request and its response
 _OF_LANGUAGES = {"int": "int32", "float": "float32", "double": "float64", "str": "string"}
 # https://wiki.ros.org/ROS/Patterns/Conventions
 _USUAL_TYPE = re.compile(r"[A-Z][A-Za-z0-9]*")
+_FIELD = re.compile(r"^\s*[\w/]+(?:\[\d*\])?\s+(\w+)\s*(?:#|$)")
+_WORDS_OF_CPP = set(
+    (
+        "auto bool break case catch char class const continue default delete do double else enum"
+        " explicit export extern false float for friend goto if inline int long namespace new"
+        " operator private protected public register return short signed sizeof static struct"
+        " switch template this throw true try typedef typename union unsigned using virtual void"
+        " volatile while"
+    ).split()
+)
 _UNUSUAL_FIELD = re.compile(r"^\s*[\w/]+(?:\[\d*\])?\s+(\w*[A-Z]\w*)\s*(?:#|$)")
 
 
@@ -78,6 +88,7 @@ def _of_line(
     except genmsg.InvalidMsgSpec as error:
         said, expected = f"{error}", "a type and a name, such as int32 count"
     else:
+        yield from _word_of_cpp(path, line, text)
         unknown = next(filter(None, (_unknown(package, one) for one in types)), None)
         if unknown is None:
             return
@@ -92,6 +103,23 @@ def _of_line(
         seen=text.strip(),
         fix="Write it as https://wiki.ros.org/msg says.",
     )
+
+
+def _word_of_cpp(path: str, line: int, text: str) -> Iterator[Finding]:
+    """Yield a warning if a field has for its name what is a word of C++ itself (C++17, 5.11)."""
+    field = _FIELD.match(text)
+    if field and field[1] in _WORDS_OF_CPP:
+        yield Finding(
+            "messages",
+            f"The field {field[1]} has the name of a word of C++: no C++ program that includes the"
+            " header of this message can be compiled.",
+            path,
+            line,
+            WARNING,
+            expected="a name that is no word of C++ or Python",
+            seen=text.strip(),
+            fix="Give the field another name.",
+        )
 
 
 def _unknown(package: Package, type_: str) -> tuple[str, str | None] | None:

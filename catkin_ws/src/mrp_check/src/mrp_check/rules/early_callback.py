@@ -25,6 +25,8 @@ class EarlyCallback(PythonRule):
                 used = self._used(function, [])
                 name = next((one for one in later if one in used), None)
                 if isinstance(function, ast.FunctionDef) and name:
+                    if any(self.source.function(one) is function for one in self._given(name)):
+                        continue  # perhaps it has given it a value before
                     place, said = later[name], ast_text(used[name])
                     yield self.finding(
                         "callbacks",
@@ -49,19 +51,34 @@ class EarlyCallback(PythonRule):
         )
         return _CALLING.get(name, "message" if module and is_own else "")
 
-    def _made_after(self, call: ast.Call) -> dict[Variable, ast.stmt]:
-        """Return the variables that are given a value only after a call, in the same block; and the
-        statement that does so."""
-        made: dict[Variable, list[ast.stmt]] = {}
+    def _made_after(self, call: ast.Call) -> dict[Variable, ast.Assign]:
+        """Return the variables that are given a value only after a call, in the same block, or by a
+        callback; and the statement that does so."""
+        made: dict[Variable, list[ast.Assign]] = {}
         for statement in self._after(call):
-            targets = statement.targets if isinstance(statement, ast.Assign) else []
-            for key in filter(None, map(self.source.key, targets)):
-                made.setdefault(key, []).append(statement)
+            if isinstance(statement, ast.Assign):
+                for key in filter(None, map(self.source.key, statement.targets)):
+                    made.setdefault(key, []).append(statement)
+        called = {
+            self.source.definition(argument)
+            for one in self.source.nodes(ast.Call)
+            if self._calls_back(one)
+            for argument in arguments_of(one)
+        }
         return {
             key: statements[0]
             for key, statements in made.items()
-            if len(self.source.stored(key)) == len(statements) and not may_be_inherited(key)
+            if not may_be_inherited(key)
+            and len(self._given(key)) == len(self.source.stored(key))
+            and all(
+                self.source.function(one) in called
+                for one in self._given(key)
+                if not any(one is statement.value for statement in statements)
+            )
         }
+
+    def _given(self, key: Variable) -> list[ast.expr]:
+        return [one for one in self.source.stored(key) if isinstance(one, ast.expr)]
 
     def _after(self, call: ast.Call) -> list[ast.stmt]:
         """Return the statements that follow a call's own one."""

@@ -44,14 +44,25 @@ class NotKept(PythonRule):
         yield from self._in_loops()
 
     def _in_loops(self) -> Iterator[Finding]:
-        """Yield a warning for each subscriber that is made anew in each turn of a loop."""
+        """Yield a warning for each subscriber that a loop makes anew in each turn."""
         for call in self.source.nodes(ast.Call):
-            if self.source.dotted(call.func) != "rospy.Subscriber":
+            name = self.source.dotted(call.func)
+            if name not in ("rospy.Subscriber", "rospy.wait_for_message"):
                 continue
             around = (one for one in self.source.above(call) if isinstance(one, _AROUND))
             loop = next(around, self.source.tree)
             leaves = any(isinstance(one, ast.Break) for one in ast.walk(loop))
-            if isinstance(loop, ast.While) and not leaves:
+            if isinstance(loop, ast.While) and not leaves and name != "rospy.Subscriber":
+                yield self.finding(
+                    "lifetime",
+                    "Each turn of the loop makes a subscriber, waits for one message, and drops it:"
+                    " what comes in between is missed, and each turn waits for a connection.",
+                    call,
+                    severity=WARNING,
+                    expected="a subscriber that is made once, and whose callback keeps the message",
+                    fix="Subscribe before the loop, and read what the callback has kept.",
+                )
+            elif isinstance(loop, ast.While) and not leaves:
                 yield self.finding(
                     "lifetime",
                     "Each turn of the loop makes one more subscriber, and rospy keeps all: each"

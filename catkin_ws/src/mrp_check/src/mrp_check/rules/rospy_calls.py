@@ -72,6 +72,31 @@ class Calls(PythonRule):
                 expected=f"{name}(... %s, ...), with a place for each value",
                 fix="Write a place such as %s into the text for each value.",
             )
+            return
+        for place, value in zip(places, given[1:]):
+            if place["type"] in "diouxXeEfFgG" and self._is_message(value):
+                yield self.finding(
+                    "python-names",
+                    f"{ast_text(value)} is the whole message, and {place.group()} shows a number:"
+                    " nothing is logged but a TypeError.",
+                    node,
+                    expected=f"a field of it, such as {ast_text(value)}.data",
+                    fix="Name the field.",
+                )
+
+    def _is_message(self, node: ast.expr) -> bool:
+        """Return whether an expression is what a subscriber's callback is given."""
+        function = self.source.function(node)
+        if not isinstance(node, ast.Name) or not isinstance(function, ast.FunctionDef):
+            return False
+        given = {one.arg for one in function.args.args} - {"self"}
+        taken = {
+            self.source.definition(argument(one, 2, "callback"))
+            for one in self.source.nodes(ast.Call)
+            if self.source.dotted(one.func) == "rospy.Subscriber"
+        }
+        is_given_anew = self.source.stored(self.source.key(node)) != [None]
+        return {node.id} == given and function in taken and not is_given_anew
 
     def _init_node(self, node: ast.Call) -> Iterator[Finding]:
         given = argument(node, 0, "name")

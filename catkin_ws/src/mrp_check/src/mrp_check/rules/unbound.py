@@ -77,7 +77,8 @@ class Unbound(PythonRule):
             ways = [[one]]
             if isinstance(one, ast.If):
                 ways = [one.body, one.orelse]
-                if not one.orelse and _is_order(one.test) and self._is_elif(one):
+                above = self._if_above(one)
+                if not one.orelse and _is_order(one.test) and above and not _part(above, one):
                     ways.pop()
             elif isinstance(one, ast.Try):
                 early = [] if self._gives_plainly(one.body[0], key) else one.handlers
@@ -93,9 +94,10 @@ class Unbound(PythonRule):
                 return True
         return False
 
-    def _is_elif(self, statement: ast.If) -> bool:
+    def _if_above(self, statement: ast.If) -> ast.If | None:
+        """Return the condition whose elif a statement is, or None."""
         above = self.source.parents.get(statement)
-        return isinstance(above, ast.If) and above.orelse == [statement]
+        return above if isinstance(above, ast.If) and above.orelse == [statement] else None
 
     def _gives_plainly(self, statement: ast.stmt, key: Variable) -> bool:
         """Return whether a statement gives a value to a variable, and nothing in it can fail."""
@@ -133,6 +135,17 @@ def _names(within: ast.AST, context: type[ast.expr_context]) -> Iterator[ast.Nam
 
 def _is_order(test: ast.expr) -> bool:
     return isinstance(test, ast.Compare) and isinstance(test.ops[0], _ORDERS)
+
+
+def _part(one: ast.If, other: ast.If) -> bool:
+    """Return whether two conditions compare the same values, and both leave out that they are
+    equal, as a > b and a < b do."""
+    sides = []
+    for test in (one.test, other.test):
+        if not isinstance(test, ast.Compare) or not isinstance(test.ops[0], (ast.Lt, ast.Gt)):
+            return False
+        sides.append({ast.dump(test.left), *map(ast.dump, test.comparators)})
+    return sides[0] == sides[1]
 
 
 def _is_of_end(handler: ast.ExceptHandler) -> bool:

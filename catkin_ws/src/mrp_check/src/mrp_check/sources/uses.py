@@ -156,6 +156,13 @@ def _has_headers(folder: str) -> bool:
     return any(next(place.glob("*.h*"), None) for place in places)
 
 
+def is_header(header: str) -> bool:
+    """Return whether a package of this machine has a header, as written after #include."""
+    within = [pathlib.Path(share).parent / "include" for share in SHARES]
+    places = [place / folder for place in within for folder in ("", header.split("/")[0])]
+    return any((place / header).is_file() for place in places)
+
+
 def without_comments(text: str) -> str:
     """Return a C++ source in which spaces stand for comments."""
     return _COMMENT.sub(blank, text)
