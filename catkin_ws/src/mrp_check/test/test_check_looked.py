@@ -363,3 +363,9 @@ def test_whether_ctrl_c_ends_a_loop_that_never_pauses_is_chance(test, says, tmp_
     known.nodes = {"a": types.SimpleNamespace(name="a", direct=direct)}
     if says:
         assert not [*exit.findings(known)]  # what was seen is not even looked at
+
+
+@pytest.mark.parametrize(("call", "found"), [("PLUGINLIB_EXPORT_CLASS(a, b)", [1]), ("C(a)", [])])
+def test_a_plugin_that_no_target_is_made_of(call, found, tmp_path):
+    files = {"CMakeLists_DOT_txt": check_rules.CMAKE, "src__b_DOT_cpp": call}
+    assert lines_of(targets, case(tmp_path, "py", "", **files)) == found

@@ -75,3 +75,18 @@ def test_a_name_that_ros_warns_of(name, found, tmp_path):
     node = Started("some_pkg", "odd.py", name, "/", "", [], [], "", "", "launch/a.launch", 2)
     launch = Launch("", nodes=[node], files=[], file="launch/a.launch")
     assert told(findings(launch_nodes, package, launch=launch), "warning") == found
+
+
+@pytest.mark.parametrize(
+    ("package_name", "program", "found"),
+    [
+        ("some", "od", [("package-name", 2)]),
+        ("some", "other", []),
+        ("other", "od", []),
+    ],
+)
+def test_a_launch_file_of_before_the_package_was_renamed(package_name, program, found, tmp_path):
+    package = check_rules.make(tmp_path / "some_pkg", src__odd_DOT_py=NODE.format("python"))
+    node = Started(package_name, program, "a", "/", "", [], [], "", "", "launch/a.launch", 2)
+    launch = Launch("", nodes=[node], files=[], file="launch/a.launch")
+    assert told(findings(launch_nodes, package, launch=launch), "warning") == found

@@ -75,7 +75,11 @@ def _elsewhere(case: Case, launch: Launch) -> Iterator[Finding]:
             yield Finding("launch-nodes", said, node.file, node.line, NOTE)
     for node in launch.nodes:
         is_ros = node.package == case.package.name or uses.is_called_so(node.package)
-        if node.type in own and not is_ros:
+        # Both names are those of before the package was renamed.
+        is_old = case.package.name.startswith(node.package) and any(
+            one.startswith(node.type) for one in own
+        )
+        if (node.type in own or is_old) and not is_ros:
             found = _other_package(case.package, case.model, node, None)
             yield dataclasses.replace(found, severity=WARNING)
     for node in launch.nodes:

@@ -175,7 +175,7 @@ def _commented_out(case: Case) -> Iterator[Finding]:
 
 
 def _never_built(case: Case) -> Iterator[Finding]:
-    """Yield a warning for each program that CMakeLists.txt does not name."""
+    """Yield a warning for each program, or plugin, that CMakeLists.txt does not name."""
     files = [one for one in case.package.files if one.endswith(("CMakeLists.txt", ".cmake"))]
     text = "\n".join(map(case.package.text, files))
     others = [one.rpartition("/")[0] + "/" for one in files if "/" in one]
@@ -184,7 +184,7 @@ def _never_built(case: Case) -> Iterator[Finding]:
         is_named = re.search(rf"\b{re.escape(name.rpartition('.')[0])}\b", text)
         if "aux_source" in text or is_named or source.startswith(tuple(others)):
             continue
-        if _MAIN.search(code) and "ros::init" in code:
+        if _MAIN.search(code) and "ros::init" in code or "PLUGINLIB_EXPORT_CLASS(" in code:
             yield Finding(
                 "targets",
                 f"No line of CMakeLists.txt names {source}: nothing is made of it.",
