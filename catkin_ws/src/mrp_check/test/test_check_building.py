@@ -305,3 +305,21 @@ def test_a_package_of_which_debian_keeps_the_headers_apart_is_not_here(tmp_path,
     (tmp_path / "include" / "far_srvs" / "Trigger.h").touch()
     assert compiler.absent(package, [problem]) == {}
     compiler.uses.is_ros_package.cache_clear()
+
+
+@pytest.mark.parametrize(
+    ("head", "body", "found"),
+    [
+        ("bool A::f(R& r)", "if (a) { b(); }", [5]),
+        ("bool f(R& r)", "if (a) { return b; }", []),
+        ("bool f(R& r)", "while (true) { b(); }", []),
+        ("void f(R& r)", "b();", []),
+        ("int main()", "b();", []),
+    ],
+)
+def test_a_function_without_a_return_is_seen_though_nothing_is_compiled(
+    head, body, found, tmp_path
+):
+    text = f"#include <nowhere/a.h>\n{head}\n{{\n  {body}\n}}\n"
+    package = check_rules.make(tmp_path / "some_pkg", src__a_DOT_cpp=text)
+    assert [one.line for one in compiler.unreturned(package, ["src/a.cpp"])] == found

@@ -6,11 +6,12 @@ from __future__ import annotations
 import os
 import pathlib
 import re
-from typing import Iterator
+from typing import Iterable, Iterator
 
 from mrp_check.building import cpp_words
 from mrp_check.building.cpp_words import Problem
 from mrp_check.contract.finding import WARNING, Finding, Line
+from mrp_check.contract.words import braced
 from mrp_check.sources import uses
 from mrp_check.student.cmake import relative
 from mrp_check.student.package import Package
@@ -42,6 +43,14 @@ _DOUBTS = {
     "unused-value": "This line computes something, and does nothing with it.",
 }
 DOUBTING = "-Wall -Wempty-body -Wtype-limits"  # what g++ is called with to say so
+# A function that says it returns a value; and all that may end one, or keep it from its end.
+_FUNCTION = re.compile(
+    r"(?m)^[ \t]*(?:(?:static|inline|virtual)\s+)*(?:bool|char|double|float|int|(?:std::)?string)"
+    r"\s+(?:\w+::)*(?P<name>\w+)\s*\([^;{}()]*\)\s*(?:const\s*)?(?=\{)"
+)
+_LEAVES = re.compile(
+    r"return|RETURN|\b(throw|exit|abort|asm)\b|while\s*\(\s*(true|1)\b|for\s*\(\s*;"
+)
 _FROM = re.compile(r"^(?P<file>[^\s:][^:]*):(?P<line>\d+):\d+:\s+required from")
 _INCLUDED = re.compile(r"^(?:In file included from| +from) (?P<file>[^:]+):(?P<line>\d+)")
 
@@ -138,6 +147,17 @@ def without_return(package: Package, output: str, copy: pathlib.Path) -> list[Fi
     return [_no_return(package, *place) for place in places if place]
 
 
+def unreturned(package: Package, files: Iterable[str]) -> Iterator[Finding]:
+    """Yield the same of sources that nobody could compile, for want of a package."""
+    for file in sorted({*files} & {*package.of_kind("cpp")}):
+        code = uses.code(package, file)
+        for match in _FUNCTION.finditer(code):
+            block = braced(code, match.end())
+            if match["name"] != "main" and not _LEAVES.search(block):
+                end = match.end() + len(block)
+                yield _no_return(package, file, code.count("\n", 0, end) + 1)
+
+
 def doubts(package: Package, output: str, copy: pathlib.Path) -> Iterator[Finding]:
     """Yield a warning for each line of the package's own that g++ takes, and warns of."""
     found = set()
@@ -159,7 +179,7 @@ def _no_return(package: Package, file: str, line: int) -> Finding:
         file,
         line,
         expected="return, with a value",
-        seen=f"{package.line(file, line)}  (g++: no return statement in function)",
+        seen=package.line(file, line),
         fix="Return a value there: true, in the callback of a service that did its work.",
     )
 

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import os
-from typing import Iterator
+from typing import Iterable, Iterator
 
 from mrp_check import evidence
 from mrp_check.building import compiler, configuring, linker, placeholders
@@ -20,7 +20,7 @@ def findings(case: Case) -> Iterator[Finding]:
     if not case.built:
         yield from _of_other_machines(case)
         yield from () if case.spec.is_contract else compiler.older_standard(case.package, "")
-        yield from placeholders.findings(case.package, case.package.of_kind("cpp"))
+        yield from _of_text(case, case.package.of_kind("cpp"))
         return
     output, package = case.built.output, case.package
     yield from compiler.without_return(package, output, case.package_folder)
@@ -37,9 +37,15 @@ def findings(case: Case) -> Iterator[Finding]:
         found = [configuring.unknown(package, case.built, "compile")]
     yield from found
     stopped = [p.file for p in problems if compiler.is_no_header(p)]
-    yield from placeholders.findings(package, () if case.spec.is_contract else stopped)
+    yield from _of_text(case, () if case.spec.is_contract else stopped)
     if absent:
         raise CannotCheck(" ".join(uses.absent(name, "cpp") for name in sorted({*absent.values()})))
+
+
+def _of_text(case: Case, files: Iterable[str]) -> Iterator[Finding]:
+    """Yield what the compiler would have found in sources that it did not come to."""
+    yield from placeholders.findings(case.package, files)
+    yield from compiler.unreturned(case.package, files)
 
 
 def _of_other_machines(case: Case) -> Iterator[Finding]:
