@@ -332,6 +332,22 @@ def test_what_makes_messages_is_needed_to_build_alone(tag, passed_on, found, tmp
     assert [(one.file, one.line) for one in said] == found
 
 
+@pytest.mark.parametrize(
+    ("rule", "found"),
+    [
+        ("DIRECTORY maps/", ["maps/"]),
+        ("FILES src/a.cpp no.yaml", ["no.yaml"]),
+        ("TARGETS b RUNTIME", []),
+    ],
+)
+def test_what_is_installed_is_there(rule, found, tmp_path):
+    text = f"{MADE_BY_CMAKE}install({rule} DESTINATION share)\n"
+    known = case(tmp_path, "cpp", INIT, CMakeLists_DOT_txt=text)
+    assert [
+        one.seen for one in check_rules.of(install.RULE, known) if one.severity == WARNING
+    ] == found
+
+
 @pytest.mark.parametrize(("text", "found"), [("int32 int", [1]), ("int32 integer", [])])
 def test_a_field_has_no_word_of_cpp_for_its_name(text, found, tmp_path):
     known = case(tmp_path, "cpp", INIT, msg__Own_DOT_msg=text)

@@ -4,20 +4,24 @@ as `catkin_make` runs it from where it is."""
 
 from __future__ import annotations
 
+import re
 from typing import Iterator
 
 from mrp_check import evidence
 from mrp_check.case import Case
-from mrp_check.contract.finding import ERROR, NOTE, Finding
+from mrp_check.contract.finding import ERROR, NOTE, WARNING, Finding
 from mrp_check.contract.requirements import Requirement, Rule
 from mrp_check.running.words import few
 from mrp_check.sources.uses import is_test
+
+_OF_FILES = {"DIRECTORY", "FILES", "PROGRAMS"}
 
 
 def _findings(case: Case) -> Iterator[Finding]:
     """Yield a finding for each thing that is needed to run and is not installed."""
     if not case.spec.is_contract:
         yield from _notes(case)
+        yield from _gone(case)
     if not case.spec.install:
         return
     model, (launch_file, _) = case.model, case.launch_file
@@ -55,6 +59,33 @@ def _notes(case: Case) -> Iterator[Finding]:
         yield _finding(few(left), f"catkin_install_python(PROGRAMS {left[0]} ...)", line, NOTE)
     if launch:
         yield _finding(few(launch), "install(DIRECTORY launch ...)", line, NOTE)
+
+
+def _gone(case: Case) -> Iterator[Finding]:
+    """Yield a warning for each file or folder that install() names and that is not there.
+
+    https://cmake.org/cmake/help/latest/command/install.html
+    """
+    calls = (call for call in case.model.installs if call.command == "install")
+    for call in (one for one in calls if "OPTIONAL" not in one.arguments):
+        kind = ""
+        for word in call.arguments:
+            if word.isupper():
+                kind = word
+            elif kind in _OF_FILES and not re.search("[$*<]", word):
+                path = case.model.path(word, call)
+                if path and not (case.package.root / path).exists():
+                    yield Finding(
+                        "install",
+                        f"install() names {word}, and there is no such file or folder:"
+                        " catkin_make install stops.",
+                        call.file,
+                        call.line,
+                        WARNING,
+                        expected="files and folders that are there",
+                        seen=word,
+                        fix=f"Take {word} out; or make it.",
+                    )
 
 
 def _finding(what: str, expected: str, line: int, severity: str = ERROR) -> Finding:
