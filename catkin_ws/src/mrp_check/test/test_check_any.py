@@ -76,8 +76,7 @@ DOUBTED = [
 @proves(
     "In twenty trials, somebody listed the defects of public packages before the checker saw them.",
     "Each trial was on other packages, as the checker was improved after each.",
-    "Three more labels of the third trial, two of the fourth, two of the eighth, four of the "
-    "ninth, one of the sixteenth and one of the twentieth were wrong, and are not counted.",
+    "Thirteen labels of errors, in six of the trials, were wrong, and are not counted.",
     "The last two columns say what the checker finds since it was improved.",
 )
 def test_trials_on_packages_by_strangers():
@@ -114,7 +113,7 @@ def test_trials_on_packages_by_strangers():
         assert not packages & {one for others in tried for one in others}
         tried.append(packages)
         wrong.append(found.count("none"))
-    assert wrong == [0, 0, 3, 2, 0, 0, 0, 2, 4, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 1]
+    assert (sum(wrong), len([one for one in wrong if one])) == (13, 6)
 
 
 def checked(folder):
