@@ -182,7 +182,7 @@ def _in_manifest(package: Package, manifest: Manifest, is_brought: bool) -> Iter
                 f"package.xml does not name {name} as a <{tag}>: the package has a message of"
                 " its own, and needs it.",
                 "package.xml",
-                package.find_line("package.xml", f"<{tag}>", first_dependency(package)),
+                first_dependency(package, tag),
                 severity=WARNING if builds else ERROR,
                 expected=f"<{tag}>{name}</{tag}>",
                 seen=f"no <{tag}> with {name}",

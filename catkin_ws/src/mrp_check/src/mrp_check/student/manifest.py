@@ -94,9 +94,10 @@ def doubled(package: Package) -> Iterator[tuple[str, int]]:
         seen.add((match[1], match[2]))
 
 
-def first_dependency(package: Package) -> int:
-    """Return the line in package.xml at which its dependencies begin, other than catkin: where a
-    reader looks for one that is missing."""
+def first_dependency(package: Package, tag: str = "") -> int:
+    """Return the line in package.xml at which its dependencies begin, other than catkin, or those
+    with a tag, if there are any: where a reader looks for one that is missing."""
     named = [one for one in elements(package.bytes(FILE)) if one.tag.endswith("depend")]
     named = [one for one in named if one.tag != "buildtool_depend"] or named
+    named = [one for one in named if one.tag == tag] or named
     return named[0].line if named else package.find_line(FILE, "<package", 1)
