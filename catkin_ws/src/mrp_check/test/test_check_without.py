@@ -45,15 +45,15 @@ def test_what_message_generation_brings_is_where_it_is_called(tmp_path):
 
 
 def test_what_runs_messages_is_missed_at_its_own_tag(tmp_path):
-    named = "<depend>rospy</depend>\n<!-- <exec_depend>a</exec_depend> -->\n<exec_depend>b</exec_depend>"
-    manifest = MANIFEST.replace("<depend>rospy</depend>", named)
+    own = "<exec_depend>b</exec_depend>"
+    manifest = MANIFEST.replace("<depend>rospy</depend>", f"<!-- {own} -->\n{own}")
     files = {
         "CMakeLists_DOT_txt": f"{CMAKE}\nadd_message_files(FILES A.msg)\n",
         "msg__A_DOT_msg": "",
     }
     package = check_rules.make(tmp_path / "some_pkg", package_DOT_xml=manifest, **files)
     (found,) = [one for one in findings(messages, package) if "<exec_depend>" in one.message]
-    assert package.line("package.xml", found.line).strip() == "<exec_depend>b</exec_depend>"
+    assert package.line("package.xml", found.line).strip() == own
 
 
 @pytest.mark.parametrize(("ends", "ids"), [(True, ["cmake"]), (False, [])])

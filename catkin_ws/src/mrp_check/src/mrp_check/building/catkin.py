@@ -8,7 +8,6 @@ import concurrent.futures
 import functools
 import json
 import os
-import re
 import shlex
 import shutil
 import typing
@@ -189,10 +188,8 @@ class Catkin:
             make = ["bash", "-c", _ANEW, str(self.folder), *make]
         # Whether a target can be built that does not wait for its headers depends on chance; what
         # its node then does must not. A rule tells of such targets.
-        name = re.escape(workspace.package.name)
-        first = re.findall(
-            rf"^\.\.\. ({name}_(?:generate_messages|gencfg))$", self.configured.output, re.M
-        )
+        made = (f"{workspace.package.name}_{what}" for what in ("generate_messages", "gencfg"))
+        first = [target for target in made if target in self.model.made]
         if first:
             self._run(*make, *first)
         result = self._run(*make)

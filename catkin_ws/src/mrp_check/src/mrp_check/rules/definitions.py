@@ -29,7 +29,6 @@ _BETWEEN = "---"  # a request and its response
 _OF_LANGUAGES = {"int": "int32", "float": "float32", "double": "float64", "str": "string"}
 # https://wiki.ros.org/ROS/Patterns/Conventions
 _USUAL_TYPE = re.compile(r"[A-Z][A-Za-z0-9]*")
-_FIELD = re.compile(r"^\s*[\w/]+(?:\[\d*\])?\s+(\w+)\s*(?:#|$)")
 _WORDS_OF_CPP = set(
     (
         "auto bool break case catch char class const continue default delete do double else enum"
@@ -84,12 +83,13 @@ def _of_line(
 ) -> Iterator[Finding]:
     """Yield a Finding if a line is no field, no constant and no comment, or its type is nowhere."""
     try:
-        types = load_msg_from_string(context, text, f"{package.name}/A").types
+        spec = load_msg_from_string(context, text, f"{package.name}/A")
     except genmsg.InvalidMsgSpec as error:
         said, expected = f"{error}", "a type and a name, such as int32 count"
     else:
-        yield from _word_of_cpp(path, line, text)
-        unknown = next(filter(None, (_unknown(package, one) for one in types)), None)
+        for field in _WORDS_OF_CPP.intersection(spec.names):
+            yield _word_of_cpp(path, line, text, field)
+        unknown = next(filter(None, (_unknown(package, one) for one in spec.types)), None)
         if unknown is None:
             return
         said, near = unknown
@@ -105,21 +105,19 @@ def _of_line(
     )
 
 
-def _word_of_cpp(path: str, line: int, text: str) -> Iterator[Finding]:
-    """Yield a warning if a field has for its name what is a word of C++ itself (C++17, 5.11)."""
-    field = _FIELD.match(text)
-    if field and field[1] in _WORDS_OF_CPP:
-        yield Finding(
-            "messages",
-            f"The field {field[1]} has the name of a word of C++: no C++ program that includes the"
-            " header of this message can be compiled.",
-            path,
-            line,
-            WARNING,
-            expected="a name that is no word of C++ or Python",
-            seen=text.strip(),
-            fix="Give the field another name.",
-        )
+def _word_of_cpp(path: str, line: int, text: str, field: str) -> Finding:
+    """Return a warning about a field whose name is a word of C++ itself (C++17, 5.11)."""
+    return Finding(
+        "messages",
+        f"The field {field} has the name of a word of C++: no C++ program that includes the header"
+        " of this message can be compiled.",
+        path,
+        line,
+        WARNING,
+        expected="a name that is no word of C++ or Python",
+        seen=text.strip(),
+        fix="Give the field another name.",
+    )
 
 
 def _unknown(package: Package, type_: str) -> tuple[str, str | None] | None:

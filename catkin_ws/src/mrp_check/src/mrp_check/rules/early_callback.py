@@ -9,7 +9,7 @@ from typing import Iterator
 from mrp_check.contract.finding import WARNING, Finding
 from mrp_check.contract.requirements import Rule
 from mrp_check.sources.python_rule import PythonRule, arguments_of, ast_text, of_sources
-from mrp_check.sources.python_source import Variable
+from mrp_check.sources.python_source import Defined, Variable
 
 _CALLING = {"rospy.Subscriber": "message", "rospy.Service": "request", "rospy.Timer": "call"}
 _BLOCKS = ("body", "orelse", "finalbody")
@@ -17,15 +17,17 @@ _BLOCKS = ("body", "orelse", "finalbody")
 
 class EarlyCallback(PythonRule):
     def findings(self) -> Iterator[Finding]:
+        called = self.handed_over(self._calls_back)
         for call in self.source.nodes(ast.Call):
             what = self._calls_back(call)
-            later = self._made_after(call) if what else {}
+            later = self._made_after(call, called) if what else {}
             for argument in arguments_of(call) if later else ():
                 function = self.source.definition(argument)
                 used = self._used(function, [])
                 name = next((one for one in later if one in used), None)
+                given = self.source.stored(name) if name else []
                 if isinstance(function, ast.FunctionDef) and name:
-                    if any(self.source.function(one) is function for one in self._given(name)):
+                    if any(one and self.source.function(one) is function for one in given):
                         continue  # perhaps it has given it a value before
                     place, said = later[name], ast_text(used[name])
                     yield self.finding(
@@ -51,34 +53,27 @@ class EarlyCallback(PythonRule):
         )
         return _CALLING.get(name, "message" if module and is_own else "")
 
-    def _made_after(self, call: ast.Call) -> dict[Variable, ast.Assign]:
-        """Return the variables that are given a value only after a call, in the same block, or by a
-        callback; and the statement that does so."""
+    def _made_after(
+        self, call: ast.Call, called: set[Defined | None]
+    ) -> dict[Variable, ast.Assign]:
+        """Return the variables that are given a value only after a call, in the same block, or by
+        one of the callbacks; and the statement that does so."""
         made: dict[Variable, list[ast.Assign]] = {}
         for statement in self._after(call):
             if isinstance(statement, ast.Assign):
                 for key in filter(None, map(self.source.key, statement.targets)):
                     made.setdefault(key, []).append(statement)
-        called = {
-            self.source.definition(argument)
-            for one in self.source.nodes(ast.Call)
-            if self._calls_back(one)
-            for argument in arguments_of(one)
-        }
         return {
             key: statements[0]
             for key, statements in made.items()
             if not may_be_inherited(key)
-            and len(self._given(key)) == len(self.source.stored(key))
             and all(
-                self.source.function(one) in called
-                for one in self._given(key)
-                if not any(one is statement.value for statement in statements)
+                one in [statement.value for statement in statements]
+                or isinstance(one, ast.expr)
+                and self.source.function(one) in called
+                for one in self.source.stored(key)
             )
         }
-
-    def _given(self, key: Variable) -> list[ast.expr]:
-        return [one for one in self.source.stored(key) if isinstance(one, ast.expr)]
 
     def _after(self, call: ast.Call) -> list[ast.stmt]:
         """Return the statements that follow a call's own one."""

@@ -13,8 +13,9 @@ from mrp_check.contract.finding import ERROR, NOTE, WARNING, Finding
 from mrp_check.contract.requirements import Requirement, Rule
 from mrp_check.running.words import few
 from mrp_check.sources.uses import is_test
+from mrp_check.student.cmake import sections
 
-_OF_FILES = {"DIRECTORY", "FILES", "PROGRAMS"}
+_OF_FILES = ("DIRECTORY", "FILES", "PROGRAMS")
 
 
 def _findings(case: Case) -> Iterator[Finding]:
@@ -68,24 +69,22 @@ def _gone(case: Case) -> Iterator[Finding]:
     """
     calls = (call for call in case.model.installs if call.command == "install")
     for call in (one for one in calls if "OPTIONAL" not in one.arguments):
-        kind = ""
-        for word in call.arguments:
-            if word.isupper():
-                kind = word
-            elif kind in _OF_FILES and not re.search("[$*<]", word):
-                path = case.model.path(word, call)
-                if path and not (case.package.root / path).exists():
-                    yield Finding(
-                        "install",
-                        f"install() names {word}, and there is no such file or folder:"
-                        " catkin_make install stops.",
-                        call.file,
-                        call.line,
-                        WARNING,
-                        expected="files and folders that are there",
-                        seen=word,
-                        fix=f"Take {word} out; or make it.",
-                    )
+        parts = sections(call.arguments, list(filter(str.isupper, call.arguments)))
+        words = [word for kind in _OF_FILES for word in parts.get(kind, [])]
+        for word in (one for one in words if not re.search("[$*<]", one)):
+            path = case.model.path(word, call)
+            if path and not (case.package.root / path).exists():
+                yield Finding(
+                    "install",
+                    f"install() names {word}, and there is no such file or folder: catkin_make"
+                    " install stops.",
+                    call.file,
+                    call.line,
+                    WARNING,
+                    expected="files and folders that are there",
+                    seen=word,
+                    fix=f"Take {word} out; or make it.",
+                )
 
 
 def _finding(what: str, expected: str, line: int, severity: str = ERROR) -> Finding:

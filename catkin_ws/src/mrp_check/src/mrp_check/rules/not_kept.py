@@ -9,10 +9,25 @@ from typing import Iterator
 
 from mrp_check.contract.finding import NOTE, WARNING, Finding
 from mrp_check.contract.requirements import Rule
-from mrp_check.sources.python_rule import PythonRule, arguments_of, of_sources
+from mrp_check.sources.python_rule import PythonRule, of_sources
 
 _CALLING = ("rospy.Timer", "rospy.Subscriber")  # each calls a function, again and again
 _ANSWERING = ("rospy.Service", "actionlib.SimpleActionServer")  # so does each of these
+# What a loop is not to do anew in each turn -> what is said of it, what is expected, and the fix.
+_IN_LOOPS = {
+    "rospy.Subscriber": (
+        "Each turn of the loop makes one more subscriber, and rospy keeps all: each message is"
+        " handled once more than before.",
+        "a subscriber that is made once, before the loop",
+        "Move it to before the loop.",
+    ),
+    "rospy.wait_for_message": (
+        "Each turn of the loop makes a subscriber, waits for one message, and drops it: what comes"
+        " in between is missed, and each turn waits for a connection.",
+        "a subscriber that is made once, and whose callback keeps the message",
+        "Subscribe before the loop, and read what the callback has kept.",
+    ),
+}
 _AROUND = (ast.While, ast.For, ast.If, ast.Try, ast.FunctionDef, ast.Lambda)
 
 
@@ -46,41 +61,20 @@ class NotKept(PythonRule):
     def _in_loops(self) -> Iterator[Finding]:
         """Yield a warning for each subscriber that a loop makes anew in each turn."""
         for call in self.source.nodes(ast.Call):
-            name = self.source.dotted(call.func)
-            if name not in ("rospy.Subscriber", "rospy.wait_for_message"):
-                continue
+            said = _IN_LOOPS.get(self.source.dotted(call.func) or "")
             around = (one for one in self.source.above(call) if isinstance(one, _AROUND))
             loop = next(around, self.source.tree)
             leaves = any(isinstance(one, ast.Break) for one in ast.walk(loop))
-            if isinstance(loop, ast.While) and not leaves and name != "rospy.Subscriber":
+            if said and isinstance(loop, ast.While) and not leaves:
+                message, expected, fix = said
                 yield self.finding(
-                    "lifetime",
-                    "Each turn of the loop makes a subscriber, waits for one message, and drops it:"
-                    " what comes in between is missed, and each turn waits for a connection.",
-                    call,
-                    severity=WARNING,
-                    expected="a subscriber that is made once, and whose callback keeps the message",
-                    fix="Subscribe before the loop, and read what the callback has kept.",
-                )
-            elif isinstance(loop, ast.While) and not leaves:
-                yield self.finding(
-                    "lifetime",
-                    "Each turn of the loop makes one more subscriber, and rospy keeps all: each"
-                    " message is handled once more than before.",
-                    call,
-                    severity=WARNING,
-                    expected="a subscriber that is made once, before the loop",
-                    fix="Move it to before the loop.",
+                    "lifetime", message, call, severity=WARNING, expected=expected, fix=fix
                 )
 
     def _publishers(self) -> Iterator[Finding]:
         """Yield a warning for each publisher that is made anew whenever a callback is called."""
-        called = {
-            self.source.definition(argument)
-            for call in self.source.nodes(ast.Call)
-            if self.source.dotted(call.func) in (*_CALLING, *_ANSWERING)
-            for argument in arguments_of(call)
-        }
+        takes = (*_CALLING, *_ANSWERING)
+        called = self.handed_over(lambda call: self.source.dotted(call.func) in takes)
         for call in self.source.nodes(ast.Call):
             function = self.source.function(call)
             if self.source.dotted(call.func) != "rospy.Publisher" or function not in called:

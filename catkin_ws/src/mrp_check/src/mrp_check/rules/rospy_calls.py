@@ -90,11 +90,7 @@ class Calls(PythonRule):
         if not isinstance(node, ast.Name) or not isinstance(function, ast.FunctionDef):
             return False
         given = {one.arg for one in function.args.args} - {"self"}
-        taken = {
-            self.source.definition(argument(one, 2, "callback"))
-            for one in self.source.nodes(ast.Call)
-            if self.source.dotted(one.func) == "rospy.Subscriber"
-        }
+        taken = self.handed_over(lambda one: self.source.dotted(one.func) == "rospy.Subscriber")
         is_given_anew = self.source.stored(self.source.key(node)) != [None]
         return {node.id} == given and function in taken and not is_given_anew
 

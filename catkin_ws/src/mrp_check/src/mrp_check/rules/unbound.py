@@ -78,7 +78,7 @@ class Unbound(PythonRule):
             if isinstance(one, ast.If):
                 ways = [one.body, one.orelse]
                 above = self._if_above(one)
-                if not one.orelse and _is_order(one.test) and above and not _part(above, one):
+                if not one.orelse and _is_order(one.test) and above and not _skip_equal(above, one):
                     ways.pop()
             elif isinstance(one, ast.Try):
                 early = [] if self._gives_plainly(one.body[0], key) else one.handlers
@@ -137,7 +137,7 @@ def _is_order(test: ast.expr) -> bool:
     return isinstance(test, ast.Compare) and isinstance(test.ops[0], _ORDERS)
 
 
-def _part(one: ast.If, other: ast.If) -> bool:
+def _skip_equal(one: ast.If, other: ast.If) -> bool:
     """Return whether two conditions compare the same values, and both leave out that they are
     equal, as a > b and a < b do."""
     sides = []

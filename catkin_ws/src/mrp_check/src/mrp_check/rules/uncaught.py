@@ -17,8 +17,6 @@ from mrp_check.sources.python_rule import PythonRule, of_sources
 
 # Its own name, and those of the errors that it is one of.
 _CATCHES = {"ServiceException", "ROSException", "Exception", "BaseException"}
-
-
 _TRANSFORMS = {"waitForTransform", "lookupTransform", "lookup_transform", "transformPose"}
 # The names of its errors, and of the modules before them.
 _CATCH_TRANSFORMS = ("TransformException", "LookupException", "tf", "tf2", "tf2_ros")

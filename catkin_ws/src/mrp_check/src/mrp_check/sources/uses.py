@@ -151,16 +151,18 @@ def is_ros_package(name: str) -> bool:
     return any((pathlib.Path(share) / name / "package.xml").is_file() for share in SHARES)
 
 
+def _includes() -> list[pathlib.Path]:
+    return [pathlib.Path(share).parent / "include" for share in SHARES]
+
+
 def _has_headers(folder: str) -> bool:
-    places = (pathlib.Path(share).parent / "include" / folder for share in SHARES)
-    return any(next(place.glob("*.h*"), None) for place in places)
+    return any(next((place / folder).glob("*.h*"), None) for place in _includes())
 
 
 def is_header(header: str) -> bool:
     """Return whether a package of this machine has a header, as written after #include."""
-    within = [pathlib.Path(share).parent / "include" for share in SHARES]
-    places = [place / folder for place in within for folder in ("", header.split("/")[0])]
-    return any((place / header).is_file() for place in places)
+    folders = ("", header.split("/")[0])
+    return any((place / one / header).is_file() for place in _includes() for one in folders)
 
 
 def without_comments(text: str) -> str:
