@@ -91,7 +91,7 @@ debug: packages-debug $(BUILT_TUTORIAL)  ## start one node, NODE=publisher_cpp_n
 	@$(IN_WORKSPACE) $(LOCAL) source devel/setup.bash; exec tools/debug.sh "$(NODE)"
 
 $(BUILT_WHOLE): $(call sources,catkin_ws/src)
-	@$(IN_WORKSPACE) tools/timed.py build env $$($(CACHE)) $(CATKIN_MAKE) $(WHOLE); $(FOR_EDITORS)
+	@$(IN_WORKSPACE) env $$($(CACHE)) $(CATKIN_MAKE) $(WHOLE); $(FOR_EDITORS)
 	@touch $@ $(BUILT_TUTORIAL)
 
 $(BUILT_TUTORIAL): $(call sources,catkin_ws/src/mrp)
@@ -102,7 +102,7 @@ $(BUILT_TUTORIAL): $(call sources,catkin_ws/src/mrp)
 .PHONY: test
 test: packages-test $(BUILT_WHOLE)  ## build, run the tests that matter most, and print one summary
 	@rm -rf $(RESULTS)
-	@$(IN_WORKSPACE) $(ALONE) source devel/setup.bash; tools/timed.py "tests, quick" tools/run_tests.sh quick
+	@$(IN_WORKSPACE) $(ALONE) source devel/setup.bash; tools/run_tests.sh quick
 
 .PHONY: test-all
 test-all: test test-rest  ## run every test
@@ -110,7 +110,7 @@ test-all: test test-rest  ## run every test
 # Its summary is that of all: what `make test` left is still there.
 .PHONY: test-rest
 test-rest: packages-test-all $(BUILT_WHOLE)  ## run the tests that make test leaves out
-	@$(IN_WORKSPACE) $(ALONE) source devel/setup.bash; tools/timed.py "tests, slow" tools/run_tests.sh slow
+	@$(IN_WORKSPACE) $(ALONE) source devel/setup.bash; tools/run_tests.sh slow
 
 .PHONY: labs
 labs:  ## list the labs: each is a launch file that shows one claim
@@ -154,11 +154,6 @@ bench: packages-bench $(BUILT_WHOLE)  ## measure how fast nodes are; QUICK=1: le
 .PHONY: bench-record
 bench-record:  ## put what `make bench` measured into the pages
 	@/usr/bin/python3 catkin_ws/tools/record_bench.py $(BENCH)
-
-# It compares what a fresh clone's `make test-all` took: a second build takes no time.
-.PHONY: own-times
-own-times:  ## fail if building and testing took longer than before; RECORD=1: keep the times
-	@/usr/bin/python3 catkin_ws/tools/own_times.py $(if $(RECORD),record,check)
 
 # The pages that it links to are built once.
 .PHONY: view
@@ -262,10 +257,6 @@ need-docker:
 .PHONY: docker-build
 docker-build: need-docker  ## build the image mrp, which runs the four nodes anywhere
 	$(IMAGE_OF) --target runtime --tag $(IMAGE) -
-
-.PHONY: docker-size
-docker-size: docker-build  ## fail if the image mrp is larger than before; RECORD=1: keep its size
-	@/usr/bin/python3 catkin_ws/tools/image_size.py $(if $(RECORD),record,check) $(IMAGE)
 
 .PHONY: docker-build-ssh
 docker-build-ssh: docker-build  ## build the image for docker/several_hosts/remote.yaml

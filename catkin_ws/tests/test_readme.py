@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What the README shows, against what happens."""
 
-import csv
 import os
 import re
 import signal
@@ -20,7 +19,6 @@ from mrp_testing.workspace import ROOT, WORKSPACE
 pytestmark = pytest.mark.quick
 
 README = (ROOT / "README.md").read_text()
-IDLE = 4.0  # seconds: where a node takes longer to compile, other work slows the machine down
 
 
 def console_block():
@@ -152,26 +150,3 @@ def test_layout_is_that_of_the_folders():
     for folder, endings in files.items():
         found = [path for path in (ROOT / folder).iterdir() if path.is_file()]
         assert {path.suffix for path in found} == endings, folder
-
-
-@proves(
-    "On a machine that is set up, with idle cores, make test takes 3 min 26 s, and make test-all "
-    "takes 15 min 11 s.",
-)
-def test_times_are_those_of_the_recording():
-    """The last commit of own_times.csv whose stages were all recorded, on idle cores."""
-    took = {}
-    for row in csv.DictReader((WORKSPACE / "own_times.csv").read_text().splitlines()):
-        if float(row["node"]) < IDLE:
-            took.setdefault(row["commit"], {})[row["stage"]] = float(row["seconds"])
-    last = [stages for stages in took.values() if "tests, slow" in stages][-1]
-    quick = sum(last[stage] for stage in ("build", "tests, quick"))
-    expected = [divmod(round(seconds), 60) for seconds in (quick, sum(last.values()))]
-    shown = re.findall(r"takes\s(\d+) min (\d+) s", README)
-    assert [(int(minutes), int(seconds)) for minutes, seconds in shown] == expected
-
-
-def test_table_of_bare_machines_is_the_recording():
-    rows = csv.reader((WORKSPACE / "bare_machines.csv").read_text().splitlines())
-    header, *figures = [f"| {' | '.join(row)} |" for row in rows]
-    assert "\n".join([header, "| --- | ---: | ---: | ---: | ---: |", *figures]) in README
