@@ -8,10 +8,11 @@ MAKEFLAGS += --no-print-directory
 # What a recipe begins with that builds or runs anything of the workspace:
 # - a pyenv or conda python first on PATH breaks catkin and every Python node;
 # - another workspace, sourced in the user's shell, is none of this one's business;
-# - ROS Noetic proper has a file to source, Debian's ROS has not.
-NOETIC := $(wildcard /opt/ros/noetic/setup.bash)
-IN_ENVIRONMENT := export PATH=/usr/bin:/bin:/usr/sbin:/sbin:"$$PATH"; \
-  unset CMAKE_PREFIX_PATH ROS_PACKAGE_PATH PYTHONPATH; $(if $(NOETIC),source $(NOETIC);)
+# - Debian 14's CMake 4 refuses what catkin itself asks for, unless it is told to take it as 3.5;
+# - ROS One and ROS Noetic have a file to source, Debian's ROS has not.
+OPT_ROS := $(firstword $(wildcard /opt/ros/one/setup.bash /opt/ros/noetic/setup.bash))
+IN_ENVIRONMENT := export PATH=/usr/bin:/bin:/usr/sbin:/sbin:"$$PATH" CMAKE_POLICY_VERSION_MINIMUM=3.5; \
+  unset CMAKE_PREFIX_PATH ROS_PACKAGE_PATH PYTHONPATH; $(if $(OPT_ROS),source $(OPT_ROS);)
 IN_WORKSPACE := cd catkin_ws; $(IN_ENVIRONMENT)
 
 # What the tests share serves two tools, too, which run where nothing is built.
