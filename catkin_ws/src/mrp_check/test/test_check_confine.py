@@ -17,6 +17,8 @@ import uuid
 import psutil
 import pytest
 from mrp_check import confine, sandbox
+from mrp_check.building.catkin import Catkin
+from mrp_check.confined import variables
 from mrp_testing.process import processes_with
 from mrp_testing.proves import proves
 from mrp_testing.waiting import wait_until
@@ -337,6 +339,22 @@ def test_a_process_that_has_just_ended_is_no_error(tmp_path, monkeypatch):
 
     monkeypatch.setattr(psutil, "process_iter", lambda names: [Ended()])
     assert sandbox.hand_over(str(tmp_path)) == tmp_path.stat().st_uid
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize("isolation", sandbox.Isolation)
+def test_compiler_has_no_cache_that_the_packages_user_cannot_reach(
+    tmp_path, monkeypatch, isolation
+):
+    """Root's home is closed to the user that root runs the package's programs as."""
+    monkeypatch.setattr(sandbox, "isolation", lambda: isolation)
+    home = tmp_path / "home"
+    home.mkdir(mode=0o700)
+    monkeypatch.setenv(variables.CCACHE, str(home / "cache"))
+    is_cached = "CCACHE_DIR" in Catkin.compiler_environment()
+    assert is_cached == (isolation is not sandbox.Isolation.USER)
+    home.chmod(0o711)
+    assert "CCACHE_DIR" in Catkin.compiler_environment()
 
 
 def test_the_checkers_own_programs_run_where_they_are_copied_to(monkeypatch):

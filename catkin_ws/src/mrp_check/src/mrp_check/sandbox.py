@@ -10,6 +10,7 @@ import functools
 import os
 import pathlib
 import shutil
+import stat
 import subprocess
 import tempfile
 import threading
@@ -183,6 +184,17 @@ def _new_owner(folder: str) -> int:
             " of them here. Add them, or run the checker as a user who is not root"
         ) from None
     return owner
+
+
+def reaches(folder: str) -> bool:
+    """Return whether a command that may use a folder outside of its scratch folder can enter it.
+
+    With namespaces the folder is bound into them; for another user its whole path must be open.
+    """
+    if isolation() is not Isolation.USER:
+        return True
+    parents = pathlib.Path(os.path.realpath(folder)).parents
+    return all(parent.stat().st_mode & stat.S_IXOTH for parent in parents if parent.exists())
 
 
 def code() -> pathlib.Path:

@@ -12,7 +12,7 @@ import shlex
 import shutil
 import typing
 
-from mrp_check import confine
+from mrp_check import confine, sandbox
 from mrp_check.building import headers
 from mrp_check.building.stubs import Stubs, absent
 from mrp_check.confined import variables, written
@@ -85,7 +85,7 @@ class Catkin:
 
     def _run(self, *command: str) -> confine.Result:
         """Run a command that may call the compiler."""
-        environment = {**self._compiler(), "CXXFLAGS": self.workspace.compiler_flags}
+        environment = {**self.compiler_environment(), "CXXFLAGS": self.workspace.compiler_flags}
         cache = environment.get("CCACHE_DIR")
         if cache:
             os.makedirs(cache, exist_ok=True)  # within the confinement it could not be made
@@ -118,13 +118,15 @@ class Catkin:
         return Step(result.code == 0, result.output + "\n" + result.errors, why)
 
     @staticmethod
-    def _compiler() -> dict[str, str]:
+    def compiler_environment() -> dict[str, str]:
         """Return the variables with which the compiler's messages are plain, in English."""
         found = {"GCC_COLORS": "", "VERBOSE": "", "CLICOLOR": "0", "PATH": search_path()}
-        if os.environ.get(variables.CCACHE) and shutil.which("ccache"):
+        cache = os.environ.get(variables.CCACHE)
+        # Without it where the package's user cannot reach it, as below root's home.
+        if cache and shutil.which("ccache") and sandbox.reaches(cache):
             found["PATH"] = "/usr/lib/ccache:" + search_path()
             found.update(
-                CCACHE_DIR=os.environ[variables.CCACHE],
+                CCACHE_DIR=cache,
                 CCACHE_NOHASHDIR="1",
                 CCACHE_UMASK="000",
                 CCACHE_BASEDIR="/",
