@@ -9,9 +9,11 @@ MAKEFLAGS += --no-print-directory
 # - a pyenv or conda python first on PATH breaks catkin and every Python node;
 # - another workspace, sourced in the user's shell, is none of this one's business;
 # - Debian 14's CMake 4 refuses what catkin itself asks for, unless it is told to take it as 3.5;
-# - ROS One and ROS Noetic have a file to source, Debian's ROS has not.
+# - ROS One and ROS Noetic have a file to source, Debian's ROS has not;
+# - in a test, mrp_testing/guard.py puts programs in the place of sudo and its like.
 OPT_ROS := $(firstword $(wildcard /opt/ros/one/setup.bash /opt/ros/noetic/setup.bash))
-IN_ENVIRONMENT := export PATH=/usr/bin:/bin:/usr/sbin:/sbin:"$$PATH" CMAKE_POLICY_VERSION_MINIMUM=3.5; \
+IN_ENVIRONMENT := export CMAKE_POLICY_VERSION_MINIMUM=3.5 \
+  PATH="$${MRP_TEST_GUARD:+$$MRP_TEST_GUARD:}/usr/bin:/bin:/usr/sbin:/sbin:$$PATH"; \
   unset CMAKE_PREFIX_PATH ROS_PACKAGE_PATH PYTHONPATH; $(if $(OPT_ROS),source $(OPT_ROS);)
 IN_WORKSPACE := cd catkin_ws; $(IN_ENVIRONMENT)
 
@@ -327,11 +329,11 @@ need-pytest: need-docker
 
 .PHONY: docker-containers
 docker-containers: docker-build-ssh docker-build-class need-pytest
-	@/usr/bin/python3 -m pytest -n 4 --dist loadgroup -m 'not dev' \
+	@MRP_TEST_ENGINE=yes /usr/bin/python3 -m pytest -n 4 --dist loadgroup -m 'not dev' \
 	  --junit-xml=$(DOCKER_RESULTS)/containers.xml docker/test
 
 # A node is built there, before it can run.
 .PHONY: docker-dev
 docker-dev: need-pytest
 	@catkin_ws/tools/install_others.sh
-	@MRP_TEST_DEADLINE=600 /usr/bin/python3 -m pytest -m dev docker/test
+	@MRP_TEST_ENGINE=yes MRP_TEST_DEADLINE=600 /usr/bin/python3 -m pytest -m dev docker/test

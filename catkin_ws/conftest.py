@@ -10,6 +10,9 @@ import os
 
 import pytest
 
+# No test reaches the machine's package manager, sudo or containers.
+pytest_plugins = ("mrp_testing.guard",)
+
 KINDS = ("quick", "slow", "sets")
 
 # They take longest: begun last, they would keep one processor busy after all others are done.

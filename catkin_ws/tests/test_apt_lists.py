@@ -86,10 +86,9 @@ def test_list_says_first_what_it_is_for(stage):
     "It does nothing if all packages are there.",
     "The second call installs nothing, and builds nothing if nothing has changed.",
 )
+@pytest.mark.place
 def test_installer_has_nothing_to_do_where_the_tests_run(tmp_path):
-    """As nothing is missing, neither apt-get nor sudo is called: here they would fail."""
-    for name in ("apt-get", "sudo"):
-        stand_in(tmp_path, name, "exit 1\n")
+    """As nothing is missing, neither apt-get nor sudo is called: the guard would refuse them."""
     lists = [str(LISTS[stage]) for stage in TEST]
     done = install(lists, tmp_path)
     assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
@@ -106,8 +105,11 @@ def test_installer_takes_any_alternative(tmp_path):
     "make deps says what it installs, what for, and how much it is.",
     "Before a target installs packages, it says what for, how many, and how much.",
 )
-def test_installer_says_what_it_installs_what_for_and_how_much(tmp_path):
+@pytest.mark.place
+@pytest.mark.parametrize("user", ["root", "other"])
+def test_installer_says_what_it_installs_what_for_and_how_much(tmp_path, user):
     """apt-get stands in: it says how much it would be, then that it fetches and installs."""
+    become(tmp_path, user)
     script = """case "$*" in
   *--print-uris*) echo '0 upgraded, 3 newly installed, 0 to remove'
     echo 'Need to get 1,234 kB/5 MB of archives.'
@@ -125,7 +127,10 @@ esac
     assert done.stdout == said
 
 
-def test_installer_shows_why_apt_get_failed(tmp_path):
+@pytest.mark.place
+@pytest.mark.parametrize("user", ["root", "other"])
+def test_installer_shows_why_apt_get_failed(tmp_path, user):
+    become(tmp_path, user)
     script = "echo 'E: no space left'\ncase \"$*\" in *install*) exit 1 ;; esac\n"
     stand_in(tmp_path, "apt-get", script)
     stand_in(tmp_path, "apt-cache", "echo Package: no-such-package\n")
@@ -147,7 +152,9 @@ def test_installer_without_apt_points_to_the_container(tmp_path):
     )
 
 
+@pytest.mark.place
 def test_installer_says_which_package_no_archive_has(tmp_path):
+    become(tmp_path, "root")
     stand_in(tmp_path, "apt-get", "")
     path = tmp_path / "list.txt"
     path.write_text("no-such-package | nor-this-one\n")
@@ -157,6 +164,16 @@ def test_installer_says_which_package_no_archive_has(tmp_path):
         "error: no package archive of this system has 'no-such-package or nor-this-one'. "
         "Run it in the container instead: make docker-run\n"
     )
+
+
+def become(folder, user):
+    """Have the installer find itself run by root; or by another one, whose sudo is a stand-in.
+
+    As the real one, it keeps only the first three file descriptors.
+    """
+    stand_in(folder, "id", f"echo {0 if user == 'root' else 1000}\n")
+    if user != "root":
+        stand_in(folder, "sudo", 'exec "$@" 3>&-\n')
 
 
 def stand_in(folder, name, script):

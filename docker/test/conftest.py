@@ -6,6 +6,9 @@ import os
 import pytest
 from containers import PREFIX, docker
 
+# Without an engine that is given to them, mrp_testing.guard refuses Docker.
+pytest_plugins = ("mrp_testing.guard",)
+
 # They call make as a user does: not within make.
 for name in ("MAKEFLAGS", "MAKELEVEL", "MFLAGS"):
     os.environ.pop(name, None)
@@ -17,6 +20,13 @@ def pytest_collection_modifyitems(items):
     for item in items:
         if item.path.stem != "test_faults":
             item.add_marker(pytest.mark.xdist_group(item.path.stem))
+
+
+def pytest_sessionstart():
+    if not os.environ.get("MRP_TEST_ENGINE"):
+        pytest.exit(
+            "these tests use this machine's Docker engine: make docker-containers gives it", 4
+        )
 
 
 @pytest.fixture(scope="session")
