@@ -10,7 +10,7 @@ import pathlib
 import traceback
 import typing
 
-from mrp_check import causes, confine, judging, suppression
+from mrp_check import causes, confine, judging, sandbox, suppression
 from mrp_check.any_case import AnyCase
 from mrp_check.building.catkin import missing_tool
 from mrp_check.case import Case
@@ -185,6 +185,7 @@ class _Examination:
             left_out=[id_ for id_ in REQUIREMENTS if is_any and id_ not in {*self.asked, *MORE}],
             console=_console(known.get("observed")),
             suppressed=[finding for finding in suppressed if finding.id in self.ids],
+            isolation=sandbox.isolation_text(),
             folder=package.root.resolve(),
         )
 

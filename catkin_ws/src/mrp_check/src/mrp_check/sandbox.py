@@ -43,28 +43,38 @@ class ConfineError(Exception):
 
 
 class Isolation(enum.Enum):
-    """How far what runs is kept apart. The text says what does not hold, as a sentence's end."""
+    """How far what runs is kept apart, in the words that each report has."""
 
-    NAMESPACES = ""
+    NAMESPACES = "The package ran in a sandbox."
     USER = (
-        "this system makes no namespaces. The package's programs run as another user, who can use"
-        " the network and read what all users can read"
+        "No sandbox here: the package runs as another user, who can use the network and read what"
+        " everybody can read."
     )
-    NONE = (
-        "this system makes no namespaces. The package's programs run as you: they can read and"
-        " change your files, and this verdict. Check only what you trust, or use the container"
-    )
+    NONE = "No sandbox here: the package runs with your permissions. Only check code you trust."
+
+
+def isolation() -> Isolation:
+    """Return the Isolation that this user has on this system."""
+    if bubblewraps_error() is None:
+        return Isolation.NAMESPACES
+    return Isolation.NONE if os.getuid() else Isolation.USER
+
+
+def isolation_text() -> str:
+    """Return what the Isolation is, and what bubblewrap says where it makes no sandbox."""
+    return " ".join(filter(None, [isolation().value, bubblewraps_error()]))
 
 
 @functools.lru_cache(maxsize=None)
-def isolation() -> Isolation:
-    """Return the Isolation that this user has on this system."""
+def bubblewraps_error() -> str | None:
+    """Try bubblewrap; return its first line if it fails, or None."""
     command = [*bubblewrap([]), "/bin/true"]
-    with contextlib.suppress(FileNotFoundError):  # bubblewrap may not be installed
+    try:
         done = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True)
-        if done.returncode == 0:
-            return Isolation.NAMESPACES
-    return Isolation.NONE if os.getuid() else Isolation.USER
+    except FileNotFoundError:
+        return "bubblewrap is not installed."
+    said = done.stderr.decode("utf-8", "replace").strip().splitlines()
+    return (said or [f"bwrap: exit code {done.returncode}"])[0] if done.returncode else None
 
 
 def bubblewrap(binds: Iterable[tuple[str, str, str]]) -> list[str]:

@@ -16,6 +16,7 @@ from mrp_check.contract import by_hand, spec
 from mrp_check.contract.errors import CannotCheck, ClusterError, PackageError, SpecError
 from mrp_check.contract.finding import ERROR
 from mrp_check.contract.verdict import FINDINGS, MET, UNCHECKED, public, unchecked
+from mrp_check.contract.words import printable
 from mrp_check.report import (
     alike,
     class_table,
@@ -167,9 +168,9 @@ def say_how_apart(machines=None):
 
     machines: the Cluster, if it is not this machine
     """
-    said = machines.not_apart if machines else {sandbox.isolation().value}
-    for not_apart in sorted(filter(None, said)):
-        print(f"check: {not_apart}.", file=sys.stderr)
+    said = machines.isolations if machines else {sandbox.isolation_text()}
+    for isolation in sorted(said - {sandbox.Isolation.NAMESPACES.value}):
+        print(f"check: {isolation}", file=sys.stderr)
 
 
 def run_class(options):
@@ -185,7 +186,8 @@ def run_class(options):
     )
     set_ = {}
     if options.by_hand:
-        names, points = [entry.name for entry in room.entries], class_table.most(contract)
+        names = [printable(entry.name) for entry in room.entries]
+        points = class_table.most(contract)
         set_ = by_hand.read(options.by_hand, names, points, contract.late)
     earlier = moved.before(options.before) if options.before else None
     pairs = []
@@ -253,7 +255,7 @@ def run_package(options):
             if options.timing:
                 progress.show("the end")
     except (PackageError, SpecError, CannotCheck) as error:
-        report = unchecked(str(error))
+        report = unchecked(printable(str(error)))
     finally:
         progress.clear()
     if options.public and contract:

@@ -22,6 +22,7 @@ from mrp_check.cli import marking
 from mrp_check.contract import spec
 from mrp_check.contract.errors import CannotCheck, ClusterError, PackageError
 from mrp_check.contract.verdict import UNCHECKED, unchecked
+from mrp_check.contract.words import printable
 from mrp_check.report import json_
 from mrp_check.report.class_table import Submission
 from mrp_check.scratch import scratch_folder
@@ -109,27 +110,28 @@ class Classroom:
             reason = str(error)
         except Exception as error:
             reason = f"{type(error).__name__}: {error}"
-        return Submission(entry.name, json_.data(unchecked(reason)))
+        return Submission(printable(entry.name), json_.data(unchecked(printable(reason))))
 
     def _submission(self, entry):
+        name = printable(entry.name)
         with scratch_folder() as scratch:
             packed = submissions.archives(entry)
             package = None if packed else self._package(entry, scratch)
             depends_on = {"package": self._fingerprint(packed, package), **self._common}
-            file = self.results / f"{entry.name}.json"
+            file = self.results / f"{name}.json"
             kept = json_.kept(file)
             if kept and kept.get("depends_on") == depends_on:
-                return Submission(entry.name, kept["report"], True, depends_on)
+                return Submission(name, kept["report"], True, depends_on)
             package = package or self._package(entry, scratch)
-            self._now.append(entry.name)
+            self._now.append(name)
             try:
-                report = self.report_of(package, entry.name)
+                report = self.report_of(package, name)
             finally:
-                self._now.remove(entry.name)
+                self._now.remove(name)
                 self._ended += 1
         if report["verdict"] != UNCHECKED:
             json_.keep(file, {"depends_on": depends_on, "report": report})
-        return Submission(entry.name, report, depends_on=depends_on)
+        return Submission(name, report, depends_on=depends_on)
 
     def _package(self, entry, scratch):
         return Package(submissions.package_in(entry, scratch, self.package))
@@ -148,7 +150,8 @@ class Classroom:
         For a packed submission, it is made of the archives, which are not unpacked for it.
         """
         digest = hashlib.sha256()
-        of_package = [(name, package.root / name) for name in package.files] if package else []
+        files = [*package.files, *package.not_utf8] if package else []
+        of_package = [(name, package.root / name) for name in files]
         for name, path in [*((f"{self.package}/{one.name}", one) for one in packed), *of_package]:
             entry = path.stat()
             known = f"{name}\0{entry.st_mode & 0o111}\0{entry.st_size}\0"
@@ -169,7 +172,7 @@ class Classroom:
             class_=self._id,
             checker=marking.checker(),
             contract=self.spec_file.read_bytes(),
-            folder=package.root.resolve().name,
+            folder=printable(package.root.resolve().name),
             files=marking.packed(package),
             too_large=package.left_out,
             timeout=self.timeout,

@@ -25,7 +25,7 @@ class Cluster:
     address: of the scheduler, such as tcp://192.168.0.7:8786
     say: called with a sentence when the last worker is lost, and when there is one again
     threads: how many they have together; those that come later take over from others
-    not_apart: what a student's code could reach on some of them, as sentences
+    isolations: how far they keep a student's code apart, as sentences
 
     Raises ClusterError, as all of its methods do.
     """
@@ -53,7 +53,7 @@ class Cluster:
         try:
             self._client.wait_for_workers(1, timeout=wait)
             self.threads = sum(self._client.nthreads().values())
-            self.not_apart = {*filter(None, self._client.run(_not_apart).values())}
+            self.isolations = {*self._client.run(sandbox.isolation_text).values()}
         except Exception as error:
             self._client.close()
             raise self._unusable(error) from None
@@ -135,10 +135,6 @@ async def _connect(address):
 
 def _said(error):
     return f"It says: {type(error).__name__}: {error}".partition("\n")[0]
-
-
-def _not_apart():
-    return sandbox.isolation().value
 
 
 def _mark(job):

@@ -72,7 +72,7 @@ def packed(package: Package) -> bytes:
             folders[:] = [name for name in folders if not is_of_tools(name)]
             name = os.path.relpath(folder, package.root)
             tar.add(folder, name, recursive=False, filter=without_owner)
-        for name in package.files:
+        for name in (*package.files, *package.not_utf8):
             tar.add(package.root / name, name, recursive=False, filter=without_owner)
     return file.getvalue()
 

@@ -27,6 +27,7 @@ class Report:
     console: the lines that roslaunch and its nodes printed, as far as they ran
     is_public: whether hidden requirements have been left out
     suppressed: the findings that a comment in the package suppresses
+    isolation: how far the package was kept apart as it ran
     folder: the package's, as an absolute path without links; None if there is none
     """
 
@@ -41,6 +42,7 @@ class Report:
     console: list[str] = dataclasses.field(default_factory=list)
     is_public: bool = False
     suppressed: list[Finding] = dataclasses.field(default_factory=list)
+    isolation: str = ""
     folder: pathlib.Path | None = None
 
 

@@ -29,6 +29,14 @@ def last_part(name: str) -> str:
     return name.rsplit("/", 1)[-1]
 
 
+_NOT_UTF8 = re.compile("[\udc80-\udcff]")  # how Python reads bytes of a file's name
+
+
+def printable(name: str) -> str:
+    """Return a file's name with %FC, for example, in the place of a byte that is not UTF-8."""
+    return _NOT_UTF8.sub(lambda match: f"%{ord(match[0]) - 0xDC00:02X}", name)
+
+
 def with_article(name: str) -> str:
     """Return a name behind a or an, whichever it takes."""
     return f"{'an' if name[0] in 'AEIOUaeiou' else 'a'} {name}"

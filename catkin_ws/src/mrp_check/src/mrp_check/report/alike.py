@@ -15,6 +15,7 @@ import tempfile
 from typing import Iterable
 
 from mrp_check.contract.errors import PackageError
+from mrp_check.contract.words import printable
 from mrp_check.report import console
 from mrp_check.report.class_table import cell
 from mrp_check.student import fingerprints, submissions
@@ -98,7 +99,7 @@ def pairs_in(entries: Iterable[pathlib.Path], package: str, templates: Iterable[
 def _code(entry: pathlib.Path, package: str) -> Code:
     with tempfile.TemporaryDirectory(prefix="mrp_check_") as scratch:
         root = submissions.package_in(entry, pathlib.Path(scratch), package)
-        return fingerprints.of_package(Package(root), entry.name)
+        return fingerprints.of_package(Package(root), printable(entry.name))
 
 
 def _alike(codes: list[Code]) -> list[Pair]:

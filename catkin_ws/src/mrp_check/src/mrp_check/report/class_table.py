@@ -98,18 +98,8 @@ def csv_text(submissions, spec):
     file = io.StringIO()
     writer = csv.writer(file)
     asked = [id_ for id_ in REQUIREMENTS if spec.asks(id_)]
-    columns = [
-        "submission",
-        "package",
-        "verdict",
-        "points",
-        "of",
-        "by_hand",
-        "mark",
-        "moved",
-        "progress",
-    ]
-    writer.writerow([*columns, *asked, "why"])
+    columns = "submission package verdict points of by_hand mark moved progress".split()
+    writer.writerow([*columns, *asked, "why", "isolation"])
     for one in submissions:
         writer.writerow(
             [
@@ -124,6 +114,7 @@ def csv_text(submissions, spec):
                 cell(one.progress(spec)),
                 *map(one.verdict_on, asked),
                 cell(" | ".join(one.causes()[:_MOST_CAUSES])),
+                cell(one.report.get("isolation", "")),
             ]
         )
     return file.getvalue()
@@ -166,6 +157,7 @@ def html_text(submissions, spec, pages, pairs=()):
         has_marks=any(str(one.by_hand) for one in submissions),
         has_moved=any(one.moved for one in submissions),
         since=since(submissions, spec),
+        isolations=isolations(submissions),
         pairs=pairs,
     )
 
@@ -184,8 +176,13 @@ def text(submissions, spec):
     lines += [f"{one.name}: {said_of_mark(one, spec)}" for one in submissions if str(one.by_hand)]
     lines += [f"{one.name}: {one.moved}" for one in submissions if one.moved]
     lines += [f"{one.name}: {one.progress(spec)}" for one in submissions if one.before]
-    lines += filter(None, [since(submissions, spec)])
+    lines += filter(None, [since(submissions, spec), *isolations(submissions)])
     return console.plain("\n".join(lines))
+
+
+def isolations(submissions):
+    """Return how far the packages were kept apart as they ran: most often one sentence for all."""
+    return sorted({one.report["isolation"] for one in submissions if "isolation" in one.report})
 
 
 def since(submissions, spec):

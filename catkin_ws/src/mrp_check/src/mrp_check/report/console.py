@@ -91,7 +91,8 @@ def text(report, colours=False):
     if report.left_out:
         left_out = f"Left out, as only a contract can say it: {', '.join(report.left_out)}."
         lines += ["", *_wrapped("", left_out, "")]
-    return "\n".join([*lines, "", summary(report)])
+    isolation = [plain(report.isolation)] if report.isolation else []
+    return "\n".join([*lines, "", *isolation, summary(report)])
 
 
 def suppressed_line(finding, report):

@@ -30,6 +30,8 @@ def text(report):
         lines.append(_command(_COMMANDS[finding.severity], place, "\n".join(says_of(finding))))
     if report.reason:
         lines.append(_command("error", {"title": "mrp_check"}, report.reason))
+    if report.isolation:
+        lines.append(_command("notice", {"title": "mrp_check"}, report.isolation))
     return "\n".join(lines)
 
 

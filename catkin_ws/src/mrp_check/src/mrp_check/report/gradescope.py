@@ -27,7 +27,7 @@ def text(report, spec):
 
 def _result(report, spec):
     shown = public(report, spec.hidden)
-    said = [console.summary(shown), report.reason]
+    said = [console.summary(shown), report.reason, report.isolation]
     return {
         "output": console.plain("\n".join(filter(None, said))),
         "output_format": "text",

@@ -24,7 +24,7 @@ def data(report):
             del finding[name]
         finding["section"] = REQUIREMENTS[finding["id"]].section
     del result["console"], result["folder"], result["is_public"]
-    for name in ("reason", "left_out", "suppressed"):
+    for name in ("reason", "left_out", "suppressed", "isolation"):
         if not result[name]:
             del result[name]
     return result

@@ -17,6 +17,8 @@ _COUNTED = {"tests": "testcase", "failures": "failure", "errors": "error", "skip
 def text(report):
     name = console.plain(f"mrp_check.{report.package or 'check'}")
     suite = ElementTree.Element("testsuite", name=name)
+    if report.isolation:
+        _add(_add(suite, "properties"), "property", name="isolation", value=report.isolation)
     for id_, verdict in report.requirements.items():
         case = _case(suite, f"mrp_check.{REQUIREMENTS[id_].stage}", id_)
         findings = [finding for finding in report.findings if finding.id == id_]

@@ -66,5 +66,5 @@ def _comment(one, spec):
     causes = [f for f in report.findings if f.severity == ERROR and not f.consequence_of]
     said = [f"{console.where(f, report)}: {f.message}" for f in causes]
     by_hand = class_table.said_of_mark(one, spec) if str(one.by_hand) else ""
-    lines = [console.summary(report), *filter(None, [report.reason, by_hand]), *said]
+    lines = filter(None, [console.summary(report), report.reason, by_hand, *said, report.isolation])
     return "<br>".join(html.escape(console.plain(line)) for line in lines)

@@ -46,12 +46,15 @@ def _rule(id_):
 
 
 def _invocation(report):
-    """Return whether all could be checked, and why not."""
-    invocation = {"executionSuccessful": report.verdict != UNCHECKED}
-    if report.reason:
-        said = {"level": "error", "message": {"text": console.plain(report.reason)}}
-        invocation["toolExecutionNotifications"] = [said]
-    return invocation
+    """Return whether all could be checked, why not, and under which isolation."""
+    said = [("error", report.reason), (NOTE, report.isolation)]
+    notifications = [
+        {"level": level, "message": {"text": console.plain(text)}} for level, text in said if text
+    ]
+    return {
+        "executionSuccessful": report.verdict != UNCHECKED,
+        "toolExecutionNotifications": notifications,
+    }
 
 
 def _result(finding, report, rules):

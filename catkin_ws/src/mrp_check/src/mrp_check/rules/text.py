@@ -9,8 +9,9 @@ from typing import Iterator
 
 from mrp_check import evidence
 from mrp_check.case import Case
-from mrp_check.contract.finding import NOTE, Finding
+from mrp_check.contract.finding import NOTE, WARNING, Finding
 from mrp_check.contract.requirements import Requirement, Rule
+from mrp_check.contract.words import printable
 from mrp_check.student.package import MAX_BYTES, Package
 
 _TEXT = ("python", "cpp", "header", "launch", "message", "cmake")
@@ -22,6 +23,17 @@ def _findings(case: Case) -> Iterator[Finding]:
     for path in package.left_out:
         said = f"{path} has more than {MAX_BYTES // 10**6} MB: it is left out of the check."
         yield Finding("text", said, path, severity=NOTE, fix="Hand in the package without it.")
+    if package.not_utf8:
+        names = ", ".join(map(printable, package.not_utf8))
+        yield Finding(
+            "text",
+            "The check leaves out files whose names aren't UTF-8, because many programs can't read"
+            f" such a name: {names}",
+            severity=WARNING,
+            expected="names in UTF-8",
+            seen="bytes of another encoding, shown as %FC, for example",
+            fix="Rename them. Old zip programs make such names of letters like ü.",
+        )
     relayed = case.model.relayed()
     for path in package.files:
         kind = package.kind(path)

@@ -14,7 +14,7 @@ import xml.etree.ElementTree as ElementTree
 from typing import Iterable, overload
 
 from mrp_check.contract.errors import PackageError
-from mrp_check.contract.words import last_part
+from mrp_check.contract.words import last_part, printable
 
 # What is built or kept by tools, and no part of a package.
 NOT_SOURCES = {".git", ".svn", ".vscode", ".idea", "__pycache__", ".pytest_cache", "CMakeFiles"}
@@ -65,6 +65,7 @@ class Package:
     name: as package.xml says, or the folder's name if package.xml cannot be read
     files: the paths of its files, relative to root, with "/" between folders, in order
     left_out: the paths of files that are too large to be looked at
+    not_utf8: the same of those whose paths are not UTF-8: they are not looked at either
 
     Raises PackageError if there is no such folder, no package.xml, or too much of it.
     """
@@ -77,6 +78,7 @@ class Package:
             raise PackageError(f"{root} is no folder; expected the folder of a package.")
         self._bytes: dict[str, bytes] = {}
         self.left_out: list[str] = []
+        self.not_utf8: list[str] = []
         self.files = self._list()
         self._known = {*self.files}
         if "package.xml" not in self.files:
@@ -96,6 +98,9 @@ class Package:
                 if not self._is_inside(path):
                     continue
                 known, size = path.relative_to(self.root).as_posix(), path.stat().st_size
+                if printable(known) != known:
+                    self.not_utf8.append(known)
+                    continue
                 if size > MAX_BYTES:
                     self.left_out.append(known)
                     continue
@@ -223,4 +228,4 @@ class Package:
             # It is no XML; its name can be read all the same.
             found = re.search(r"<name>\s*(\w+)\s*</name>", self.text("package.xml"))
             text = found.group(1) if found else ""
-        return text or self.root.resolve().name
+        return text or printable(self.root.resolve().name)

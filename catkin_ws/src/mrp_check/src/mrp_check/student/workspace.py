@@ -22,6 +22,7 @@ from typing import Callable, Mapping, Sequence, Tuple, TypeVar
 from mrp_check import confine
 from mrp_check.confined import variables, written
 from mrp_check.contract.resources import SHARES
+from mrp_check.contract.words import printable
 from mrp_check.student.package import Package
 
 T = TypeVar("T")
@@ -72,7 +73,7 @@ class Workspace:
     ) -> None:
         self.package, self.timeout, self.progress = package, timeout, progress
         self.folder, self.given = folder / "workspace", folder / "given"
-        self.package_folder = self.folder / "src" / package.root.resolve().name
+        self.package_folder = self.folder / "src" / printable(package.root.resolve().name)
         self.given.mkdir(exist_ok=True)
         self._kept = self.given / "kept.json"
         cmake = [*package.of_kind("cmake"), *(p for p in package.files if p.endswith(".cmake"))]
