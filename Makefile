@@ -61,7 +61,6 @@ RESULTS := $(CURDIR)/catkin_ws/build/test_results
 SITE := $(CURDIR)/catkin_ws/build/docs
 SCREENSHOTS := $(CURDIR)/catkin_ws/build/screenshots
 BENCH := $(CURDIR)/catkin_ws/build/bench
-ORIGINAL := $(CURDIR)/catkin_ws/build/original
 
 # A target's prerequisites are made in their order: the packages first.
 .NOTPARALLEL:
@@ -149,9 +148,8 @@ exercise: packages-check  ## show the next exercise, or check it; HINT=1 gives a
 # What else runs on this machine shows in the figures: end it before.
 .PHONY: bench
 bench: packages-bench $(BUILT_WHOLE)  ## measure how fast nodes are; QUICK=1: less of it; RESUME=1: go on with the last run
-	@$(if $(QUICK),,$(IN_WORKSPACE) $(WITH_TESTING) tools/build_original.py $(ORIGINAL) > /dev/null)
 	@$(IN_WORKSPACE) $(ALONE) source devel/setup.bash; \
-	exec rosrun mrp_bench bench.py $(if $(QUICK),--quick,--beside $(ORIGINAL)) \
+	exec rosrun mrp_bench bench.py $(if $(QUICK),--quick) \
 	  $(if $(RESUME),--resume) $(BENCH)
 
 .PHONY: bench-record

@@ -12,7 +12,7 @@ import signal
 import sys
 import time
 
-from mrp_bench import container, fans, launches, plans, report, starts
+from mrp_bench import launches, plans, report, starts
 from mrp_bench.master import Master
 from mrp_bench.programs import ProgramError
 from mrp_bench.rounds import PlanError, Results, run
@@ -23,31 +23,11 @@ def arguments():
     parser.add_argument("folder", type=pathlib.Path, help="where the results go")
     parser.add_argument("--quick", action="store_true", help="less of everything")
     parser.add_argument("--resume", action="store_true", help="go on where the last run ended")
-    parser.add_argument(
-        "--beside",
-        type=pathlib.Path,
-        help="a built workspace, whose launch file is measured beside",
-    )
     return parser.parse_args()
 
 
 def say(line, begin=time.monotonic()):  # noqa: B008  (this program's begin)
     print(f"{time.monotonic() - begin:5.0f} s  {line}", flush=True)
-
-
-def run_starts(args, results):
-    """Measure start and stop of the four nodes: quickly, only a warm start of ours."""
-    variants, missing = [starts.ours()], {}
-    if args.beside:
-        variants.append(starts.beside(args.beside))
-    if not args.quick:
-        reason = container.why_not()
-        if reason:
-            missing[container.IMAGE] = reason
-        else:
-            variants.append(starts.in_container())
-    rounds = plans.QUICK_STARTS if args.quick else plans.FULL_STARTS
-    starts.run(variants, rounds, results, say, missing, cold_too=not args.quick)
 
 
 def main():
@@ -67,9 +47,8 @@ def main():
             run(plan, rounds, results, say)
             if not args.quick:
                 launches.run(plans.ROBOTS, 1, results, say)
-                fans.run(plans.FANS, results, say)
         # Without that master: roslaunch starts one of its own, as for a student.
-        run_starts(args, results)
+        starts.run(plans.QUICK_STARTS if args.quick else plans.FULL_STARTS, results, say)
         report.write(results, say)
     except (ProgramError, PlanError) as error:
         sys.exit(f"error: {error}")

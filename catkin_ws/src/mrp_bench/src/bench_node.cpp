@@ -9,7 +9,6 @@
 //   no_delay=1    asks the publisher for TCP_NODELAY
 //   async=N       spins in N threads
 //   batch=N       messages of 8 bytes go N at a time, in one message
-//   chatter=1     publishes text, and prints what it does, as ROS's first tutorial does
 
 #include <mrp_bench/node_receiver.h>
 #include <mrp_bench/node_sender.h>

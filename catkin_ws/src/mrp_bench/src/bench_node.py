@@ -12,7 +12,6 @@ no_delay=1    asks the publisher for TCP_NODELAY
 buff_size=N   of the subscriber; bytes
 serialised=1  publishes bytes that are a message already
 batch=N       messages of 8 bytes go N at a time, in one message
-chatter=1     publishes text, and prints what it does, as ROS's first tutorial does
 """
 
 import ctypes
@@ -23,7 +22,7 @@ import time
 import rospy
 from mrp_bench.msg import Batch, Stamped
 from mrp_bench.program import Answers, Samples, obey, options
-from std_msgs.msg import String, UInt64
+from std_msgs.msg import UInt64
 
 PR_SET_TIMERSLACK = 29  # of prctl(2)
 OVERHEAD = 12  # of Stamped: the stamp, and the length of its data
@@ -45,7 +44,6 @@ class NodeSender:
     def __init__(self, options):
         self.serialised = options.get("serialised")
         self.batch_size = options.get("batch")
-        self.chatter = options.get("chatter")
         queue = None if options.get("unqueued") else options.get("queue", 10)
         self.batch = []
         self.small = rospy.Publisher("small", UInt64, queue_size=queue)
@@ -54,8 +52,7 @@ class NodeSender:
             return
         self.large = rospy.Publisher("large", Stamped, queue_size=queue)
         self.batches = rospy.Publisher("batches", Batch, queue_size=queue)
-        self.texts = rospy.Publisher("chatter", String, queue_size=queue)
-        self.publishers += [self.large, self.batches, self.texts]
+        self.publishers += [self.large, self.batches]
 
     def wait_for_subscribers(self, count):
         for publisher in self.publishers:
@@ -70,11 +67,7 @@ class NodeSender:
             self.message = Stamped(data=bytes(size - OVERHEAD))
 
     def send(self, stamp):
-        if self.chatter:
-            text = f"hello world {stamp}"
-            rospy.loginfo(text)
-            self.texts.publish(text)
-        elif self.size > 8 and self.serialised:
+        if self.size > 8 and self.serialised:
             struct.pack_into("<Q", self.message.bytes, 0, stamp)
             self.large.publish(self.message)
         elif self.size > 8:
@@ -103,7 +96,6 @@ class NodeReceiver:
         self.others = [
             rospy.Subscriber("large", Stamped, self.large_callback, **settings),
             rospy.Subscriber("batches", Batch, self.batch_callback, **settings),
-            rospy.Subscriber("chatter", String, self.text_callback, **settings),
         ]
 
     def small_callback(self, msg):
@@ -116,11 +108,6 @@ class NodeReceiver:
         arrival = time.monotonic_ns()
         for stamp in msg.stamps:
             self.samples.add(stamp, arrival)
-
-    def text_callback(self, msg):
-        arrival = time.monotonic_ns()
-        rospy.loginfo(rospy.get_caller_id() + "I heard %s", msg.data)
-        self.samples.add(int(msg.data.split()[-1]), arrival)
 
 
 def main():

@@ -1,14 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """make bench: what its tables and plots make of known measurements."""
 
-import csv
 import json
 import xml.etree.ElementTree as ElementTree
 
-import numpy
 import pytest
 from mrp_bench import (
-    fan_figures,
     launch_figures,
     noise,
     plots,
@@ -69,7 +66,7 @@ def test_summary_of_known_samples(measurements):
     assert shared.receiver_cpu is None
 
 
-def content_of(measurements=(), starts=(), fans=(), verdict=None, cores=2):
+def content_of(measurements=(), starts=(), verdict=None, cores=2):
     """Return what results.json says of these; machine: 2 cores, 6.4 GB."""
     facts = ("processor", "system", "kernel", "roscpp", "python")
     content = {
@@ -77,9 +74,8 @@ def content_of(measurements=(), starts=(), fans=(), verdict=None, cores=2):
         "noise": {"least": 0.01, "most": 0.5, "probes": 2},
         "verdict": verdict,
         "rows": [row._asdict() for row in summary.summarise(measurements)],
-        "starts": {"columns": [], "missing": {}, "timeline": None},
+        "starts": {"figures": {}, "exits": [], "starts": 0, "timeline": None},
         "robots": launch_figures.summarise(starts, cores, 6400),
-        "fans": fan_figures.summarise(fans, cores),
     }
     # As the pages read it.
     return json.loads(json.dumps(content))
@@ -125,12 +121,9 @@ def test_report_is_in_all_files(measurements, tmp_path):
     content = json.loads((tmp_path / "results.json").read_text())
     assert content["verdict"] is None
     assert [row["latency"]["p50"] for row in content["rows"]] == [10, 25, 5] * 2
-    with open(tmp_path / "results.csv", newline="") as file:
-        assert [row["p50_us"] for row in csv.DictReader(file)] == ["10.00", "25.00", "5.00"] * 2
+    # One record per line.
+    assert sum('"way"' in line for line in (tmp_path / "results.json").open()) == 6
     assert "| C++ to C++ | 25.0 " in (tmp_path / "table.md").read_text()
-    assert {"C++ to C++", "25.0", "raw TCP, C++", "10.0"} <= svg_texts(tmp_path / "latency.svg")
-    assert {"C++ to C++", "990, 2% lost"} <= svg_texts(tmp_path / "throughput.svg")
-    assert plots.latency(content).alt.endswith(", shared pointers 5.0 to C++ to C++ 25.0.")
 
 
 def svg_texts(path):
@@ -179,112 +172,6 @@ def test_growth_with_the_robots():
     assert noisy.rows[2] == ["4", *["too noisy"] * 7, "3"]
     assert noisy.after == []
     assert launch_figures.exponents(launch_figures.medians(starts[:6])) == {}
-
-
-def fan(publishers, subscribers, language="cpp", up=None, seconds=1, lost=()):
-    """Return what is measured of a fan in which each link adds the same to all but the memory.
-
-    seconds: from when the first message is sent until the last one arrives
-    lost: the numbers of messages that no subscriber gets
-    """
-    nodes = max(publishers, subscribers)
-    latency = nodes * 10_000
-    sent = numpy.linspace(1, 1 + seconds * 10**9 - latency, 100 * publishers).astype(int).tolist()
-    pairs = [(stamp, stamp + latency) for i, stamp in enumerate(sent) if i not in lost]
-    return {
-        "language": language,
-        "publishers": publishers,
-        "subscribers": subscribers,
-        "up": nodes if up is None else up,
-        "publisher_megabytes": 2,
-        "subscriber_megabytes": 3,
-        "sender_cpu": 0.2 * nodes,
-        "receiver_cpu": 0.1 * nodes,
-        "sender_switches": 0,
-        "sent": sent,
-        "received": [[number for pair in pairs for number in pair]] * subscribers,
-    }
-
-
-def test_figures_of_a_fan():
-    assert fan_figures.figures(fan(1, 2, seconds=2, lost=[3, 50])) == {
-        "up": 2,
-        "cores": pytest.approx(0.3),
-        "publisher_megabytes": 2,
-        "subscriber_megabytes": 3,
-        "p50": 20,
-        "p99": 20,
-        "per_second": pytest.approx(98),
-        "sent": 200,
-        "lost": 4,
-    }
-
-
-def test_two_publishers_may_send_at_the_same_time():
-    one = {**fan(1, 1), "sent": [1, 1, 2], "received": [[1, 11, 2, 12, 1, 13]]}
-    assert fan_figures.figures(one)["lost"] == 0
-    one["received"] = [[1, 11, 2, 12]]
-    assert fan_figures.figures(one)["lost"] == 1
-
-
-@pytest.mark.slow
-@proves(
-    "For each cost the tables give the exponent with which it grows: with 1 a cost doubles with "
-    "the number of nodes, with 0 it stays the same.",
-    "They also say how many nodes fill the processors.",
-)
-def test_growth_of_fans():
-    fans = [fan(count, 1) for count in (1, 2, 4, 8)] + [fan(1, count, up=3) for count in (2, 4, 8)]
-    found = fan_figures.series(fans)
-    assert {key: list(of) for key, of in found.items()} == {
-        ("cpp", "publishers"): [1, 2, 4, 8],
-        ("cpp", "subscribers"): [1, 2, 4, 8],
-    }
-    growth = fan_figures.exponents(found["cpp", "publishers"])
-    assert {name: round(estimate.value, 6) for name, estimate in growth.items()} == {
-        "up": 1,
-        "cores": 1,
-        "publisher_megabytes": 0,
-        "subscriber_megabytes": 0,
-        "p50": 1,
-        "p99": 1,
-        "per_second": 1,
-    }
-    publishers, subscribers = tables.fans(content_of(fans=fans))
-    assert publishers.title == "C++: publishers to one subscriber"
-    figures = ["2.40", "2.00", "3.00", "80", "80", "800", "0"]
-    assert publishers.rows[3] == ["8", "8.00", *figures]
-    assert subscribers.rows[3] == ["8", "3.00", *figures]
-    assert publishers.after == ["8 publishers fill the 2 cores."]
-    _, subscribers = tables.fans(content_of(fans=fans, cores=4))
-    assert subscribers.after == ["8 subscribers do not fill the 4 cores."]
-    assert fan_figures.exponents({1: {}, 2: {}}) == {}
-
-
-@pytest.mark.slow
-def test_table_of_fans_has_no_figures_of_a_noisy_machine():
-    fans = [fan(count, 1, lost=[3]) for count in (1, 2, 4)]
-    publishers, _ = tables.fans(content_of(fans=fans, verdict="noisy", cores=1))
-    assert publishers.rows[2] == ["4", *["too noisy"] * 7, "1 of 400"]
-    assert publishers.rows[3] == ["exponent", *["too noisy"] * 7, ""]
-    assert publishers.after == []
-    assert tables.fans(content_of()) == []
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("verdict", [None, "too noisy"])
-def test_plot_of_fans(tmp_path, verdict):
-    measured = [
-        fan(*sides, language)
-        for language in ("cpp", "py")
-        for count in (1, 2, 4)
-        for sides in {(count, 1), (1, count)}
-    ]
-    plots.write(content_of(fans=measured, verdict=verdict), tmp_path)
-    assert [path.name for path in tmp_path.iterdir()] == ["fans.svg"]
-    texts = svg_texts(tmp_path / "fans.svg")
-    assert {"Cores in use, of 2", "Python: subscribers of one publisher", "4"} <= texts
-    assert ("too noisy a machine" in texts) == (verdict is not None)
 
 
 @pytest.mark.slow

@@ -8,7 +8,6 @@
 #include <mrp_bench/direct_queue.h>
 #include <mrp_bench/program.h>
 #include <ros/ros.h>
-#include <std_msgs/String.h>
 #include <std_msgs/UInt64.h>
 
 #include <string>
@@ -38,14 +37,6 @@ public:
                                     samples_.add(stamp, arrival);
                                   }
                                 });
-    texts_ = subscribe<std_msgs::String>(
-        "chatter",
-        [this](const auto& message)
-        {
-          const int64_t arrival = now();
-          ROS_INFO("I heard: [%s]", message->data.c_str());
-          samples_.add(std::stoll(message->data.substr(sizeof("hello world"))), arrival);
-        });
   }
 
 private:
@@ -70,6 +61,6 @@ private:
   Samples samples_;
   DirectQueue direct_queue_;
   ros::NodeHandle nh_;
-  ros::Subscriber small_, large_, batches_, texts_;
+  ros::Subscriber small_, large_, batches_;
 };
 }  // namespace mrp_bench

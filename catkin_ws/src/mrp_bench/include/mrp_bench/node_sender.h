@@ -7,11 +7,7 @@
 #include <mrp_bench/Stamped.h>
 #include <mrp_bench/program.h>
 #include <ros/ros.h>
-#include <std_msgs/String.h>
 #include <std_msgs/UInt64.h>
-
-#include <sstream>
-#include <string>
 
 namespace mrp_bench
 {
@@ -19,9 +15,7 @@ class NodeSender
 {
 public:
   NodeSender(const Options& options, ros::NodeHandle nh)
-      : shared_(options.number("shared", 0) != 0),
-        batch_size_(options.number("batch", 0)),
-        chatter_(options.number("chatter", 0) != 0)
+      : shared_(options.number("shared", 0) != 0), batch_size_(options.number("batch", 0))
   {
     const int queue_size = options.number("queue", 10);
     small_ = nh.advertise<std_msgs::UInt64>("small", queue_size);
@@ -31,12 +25,11 @@ public:
     }
     large_ = nh.advertise<Stamped>("large", queue_size);
     batches_ = nh.advertise<Batch>("batches", queue_size);
-    texts_ = nh.advertise<std_msgs::String>("chatter", queue_size);
   }
 
   void waitForSubscribers(unsigned count)
   {
-    for (const ros::Publisher* publisher : {&small_, &large_, &batches_, &texts_})
+    for (const ros::Publisher* publisher : {&small_, &large_, &batches_})
     {
       while (ros::ok() && *publisher && publisher->getNumSubscribers() < count)
       {
@@ -62,11 +55,7 @@ public:
 
   void send(int64_t stamp)
   {
-    if (chatter_)
-    {
-      sendText(stamp);
-    }
-    else if (size_ > 8 && shared_)
+    if (size_ > 8 && shared_)
     {
       shared_message_->stamp = stamp;
       large_.publish(shared_message_);
@@ -100,23 +89,12 @@ public:
   }
 
 private:
-  void sendText(int64_t stamp)
-  {
-    std_msgs::String message;
-    std::stringstream text;
-    text << "hello world " << stamp;
-    message.data = text.str();
-    ROS_INFO("%s", message.data.c_str());
-    texts_.publish(message);
-  }
-
   static const size_t OVERHEAD = 12;  // of Stamped: the stamp, and the length of its data
 
   const bool shared_;
   const int batch_size_;
-  const bool chatter_;
   size_t size_ = 8;
-  ros::Publisher small_, large_, batches_, texts_;
+  ros::Publisher small_, large_, batches_;
   Stamped large_message_;
   StampedPtr shared_message_;
   Batch batch_;

@@ -18,8 +18,7 @@ _DEADLINE = 300
 
 _ESCAPES = re.compile(r"\x1b\[[0-9;]*m|\x1b\][^\x07]*\x07")
 _STARTED = re.compile(r"process\[(\S+?)(?:-\d+)?\]: started with pid \[(\d+)\]")
-# The original's Python nodes say their group, and not their name; one says it without the bracket.
-_READY = re.compile(r"(PUBLISHER|SUBSCRIBER) (CPP|PY) NODE\] namespace of \w+ = /(\w+)/(\w*)")
+_READY = re.compile(r"\[(PUBLISHER|SUBSCRIBER) (CPP|PY) NODE\] namespace of \w+ = /(\w+/\w+)")
 _RECEIVED = re.compile(r"\[(SUBSCRIBER \w+ NODE)\] received message with data = \d+")
 _STOPPING = re.compile(r"\[([\w/]+)(?:-\d+)?\] killing on exit")
 _MASTER = "setting /run_id to "  # what roslaunch does once the master that it has started answers
@@ -50,11 +49,10 @@ class Console:
         for name, pid in _STARTED.findall(line):
             self.pids[name] = int(pid)
             self._happened(moment, "started", name)
-        for kind, language, group, name in _READY.findall(line):
+        for kind, language, name in _READY.findall(line):
             if kind == "SUBSCRIBER":
                 self._subscribers.add(f"{kind} {language} NODE")
-            name = name or f"{kind}_{language}_node".lower()
-            self._happened(moment, "ready", f"{group}/{name}")
+            self._happened(moment, "ready", name)
         for what, pattern in (("received", _RECEIVED), ("stopping", _STOPPING)):
             for name in pattern.findall(line):
                 self._happened(moment, what, name)
@@ -65,10 +63,7 @@ class Console:
             self.events.append((moment, what, name))
 
     def is_up(self, count):
-        """Return whether that many nodes are ready, and each kind of subscriber has a message.
-
-        What says of itself that it is a subscriber is one: the original has one that publishes.
-        """
+        """Return whether that many nodes are ready, and each kind of subscriber has a message."""
         whats = [what for _, what, _ in list(self.events)]
         received = whats.count("received")
         return whats.count("ready") == count and received == len(self._subscribers)
@@ -150,7 +145,6 @@ class Launched:
 
     def __exit__(self, *exception):
         if self._process.poll() is None:
-            # A container goes on if the client is killed that has started it.
             self._process.send_signal(signal.SIGINT)
             try:
                 self._process.wait(30)

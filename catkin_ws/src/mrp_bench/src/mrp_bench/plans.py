@@ -37,8 +37,6 @@ BURST_FAST = [
     "py_batch",
 ]
 BURST_SLOW = ["py_cpp", "py_py", "py_timer_slack", "py_no_delay", "py_to_4", "py_queue_10"]
-CHATTER = ["cpp_chatter", "py_chatter"]
-ROSTOPIC = ["rostopic_pub", "rostopic_echo"]
 
 # A slice takes long enough that the kernel's buffers do not hold all of it.
 # (size in bytes, messages per second, how many); a rate of 0 is as fast as it goes.
@@ -47,8 +45,7 @@ SMALL, LARGE = (8, 1000, 500), (MB, 50, 25)
 QUICK_ROUNDS = 3
 QUICK_STARTS = 1
 QUICK = [
-    *steps(PAIRS + FASTER + CHATTER, (8, 1000, 120)),
-    *steps(["raw_cpp", "raw_py", *ROSTOPIC], (8, 100, 15)),
+    *steps(PAIRS + FASTER, (8, 1000, 120)),
     *steps(PAIRS, (64 * kB, 500, 40), (4 * MB, 20, 5)),
     *steps(["cpp_shared", "cpp_nodelet"], (4 * MB, 20, 5)),
     *steps(["raw_cpp", "cpp_batch"], (8, 0, 50000)),
@@ -61,12 +58,9 @@ QUICK = [
 
 FULL_ROUNDS = 6
 ROBOTS = [1, 2, 5, 10, 20, 50]
-FANS = [1, 3, 10, 30, 100]  # most of the time is that of the starts of Python nodes
 FULL_STARTS = 4
 FULL = [
-    *steps(PAIRS + FASTER_SMALL + CHATTER, SMALL),
-    *steps(PAIRS + ROSTOPIC, (8, 100, 50)),
-    *steps(PAIRS, (8, 10, 8), (8, 10000, 3000)),
+    *steps(PAIRS + FASTER_SMALL, SMALL),
     # At 1 kB TCP may hold a message back until the one before it is acknowledged.
     *steps([*PAIRS, "cpp_no_delay", "py_no_delay"], (kB, 1000, 300)),
     *steps(PAIRS, (64 * kB, 500, 150), (4 * MB, 20, 12)),

@@ -1,10 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The plots of what results.json says: each is a function that returns an svg.Plot, or None."""
 
-import textwrap
-
 from mrp_bench import svg
-from mrp_bench.tables import FAN_SIDES, ROBOTS
+from mrp_bench.tables import ROBOTS
 from mrp_bench.ways import WAYS, size_text
 
 _WIDTH = 720
@@ -34,56 +32,6 @@ def write(content, folder):
             (folder / f"{name}.svg").write_text(svg.document(plot))
 
 
-def latency(content):
-    """Draw p50, p90 and p99 of each way, for 8 bytes at 1000 Hz."""
-    rows = [row for row in content["rows"] if (row["size"], row["rate"]) == (8, 1000)]
-    rows.sort(key=lambda row: row["latency"]["p50"])
-    spans = [[row["latency"][name] for name in ("p50", "p90", "p99")] for row in rows]
-    notes = [f"{span[0]:.1f}" for span in spans]
-    title = "8 bytes at 1000 Hz, µs: dot p50, thick line to p90, thin line to p99"
-    return _dots(title, rows, spans, notes)
-
-
-def throughput(content):
-    """Draw how many messages of 8 bytes each way delivers in a second."""
-    rows = [row for row in content["rows"] if (row["size"], row["rate"]) == (8, 0)]
-    rows.sort(key=lambda row: -row["throughput"])
-    notes = []
-    for row in rows:
-        lost = f", {row['lost'] / row['sent']:.0%} lost" if row["lost"] else ""
-        notes.append(f"{row['throughput']:,.0f}".replace(",", " ") + lost)
-    title = "8 bytes as fast as it goes, messages per second"
-    return _dots(title, rows, [[row["throughput"]] for row in rows], notes)
-
-
-def _dots(title, rows, spans, notes):
-    """Draw a row for each way: its name, a dot, lines to further values, and a note."""
-    if not rows:
-        return None
-    left, right, top = 290, 150, 40
-    names = [textwrap.wrap(WAYS[row["way"]].text, 42) for row in rows]
-    bottom = top + svg.ROW * sum(map(len, names))
-    scale = svg.Scale([value for span in spans for value in span], left, _WIDTH - right)
-    parts = [svg.text(0, 16, title, more='font-weight="bold"')]
-    for tick in scale.ticks():
-        parts.append(svg.line(scale(tick), top, scale(tick), bottom, more='opacity="0.15"'))
-        parts.append(
-            svg.text(scale(tick), bottom + 16, f"{tick:,}".replace(",", " "), "middle", 12)
-        )
-    y = top + svg.ROW / 2
-    for row, name, (value, *further), note in zip(rows, names, spans, notes):
-        color = svg.GREY if WAYS[row["way"]].is_raw else svg.BLUE
-        for width, end in zip((5, 1), further):
-            parts.append(svg.line(scale(value), y, scale(end), y, color, width))
-        parts.append(svg.mark("circle", scale(value), y, color))
-        parts.append(svg.text(_WIDTH, y + 4, note, "end", 12))
-        for words in name:
-            parts.append(svg.text(0, y + 4, words))
-            y += svg.ROW
-    first, last = (f"{WAYS[rows[at]['way']].text} {notes[at]}" for at in (0, -1))
-    return svg.Plot(_WIDTH, bottom + 24, parts, f"{title}: from {first} to {last}.")
-
-
 def latency_by_size(content):
     """Draw the p50 of the plain ways against the size."""
     # At several rates: the one that is nearest to 1000 Hz.
@@ -93,25 +41,15 @@ def latency_by_size(content):
             rates.setdefault(row["size"], set()).add(row["rate"])
     nearest = {size: min(of, key=lambda rate: abs(rate - 1000)) for size, of in rates.items()}
     rows = [row for row in content["rows"] if nearest.get(row["size"]) == row["rate"]]
-    return _by("size", rows, size_text)
-
-
-def latency_by_rate(content):
-    """Draw the p50 of the plain ways against the rate, for 8 bytes."""
-    rows = [row for row in content["rows"] if row["size"] == 8 and row["rate"]]
-    return _by("rate", rows, lambda rate: f"{rate} Hz")
-
-
-def _by(what, rows, words):
-    ticks = {number: words(number) for number in sorted({row[what] for row in rows})}
+    ticks = {size: size_text(size) for size in sorted({row["size"] for row in rows})}
     if len(ticks) < 2:
         return None
     series = []
     for way, (color, mark) in _LINES.items():
-        points = sorted((row[what], row["latency"]["p50"]) for row in rows if row["way"] == way)
+        points = sorted((row["size"], row["latency"]["p50"]) for row in rows if row["way"] == way)
         if points:
             series.append(svg.Series(WAYS[way].text, color, mark, points))
-    title = f"p50 in µs, by {what}"
+    title = "p50 in µs, by size"
     parts = svg.panel(title, series, 50, 30, 450, 260, ticks) + svg.legend(series, 50, 335, 220)
     return svg.Plot(520, 400, parts, svg.in_words(title, series, ticks))
 
@@ -141,47 +79,6 @@ def scale(content):
     title = "Costs by the number of robots of four nodes each (^ exponent)"
     parts = svg.panel(title, series, 50, 30, 450, 300, ticks) + svg.legend(series, 50, 375, 240)
     return svg.Plot(520, 440, parts, svg.in_words(title, series, ticks))
-
-
-_FAN_COLORS = {"C++": svg.BLUE, "Python": svg.RED}
-_FAN_STYLES = {"publishers": ("circle", False), "subscribers": ("up", True)}
-
-
-def fans(content):
-    """Draw the costs against the number of publishers or subscribers, in four panels."""
-    found = content["fans"]["series"]
-    counts = sorted({one["nodes"] for of in found for one in of["figures"]})
-    if len(counts) < 3:
-        return None
-    panels = {
-        "Seconds until all are connected": ("up",),
-        f"Cores in use, of {content['machine']['cores']}": ("cores",),
-        "MB per node of the many": ("many_megabytes",),
-        "Latency in µs: p50, and thin p99": ("p50", "p99"),
-    }
-    top = svg.ROW * (len(found) // 2) + 50
-    ticks = {count: str(count) for count in counts}
-    parts = svg.legend([_fan_line(of, "up") for of in found], 50, 12, 300)
-    words = []
-    for number, (title, names) in enumerate(panels.items()):
-        lines = [_fan_line(of, name) for of in found for name in names]
-        x, y = 50 + 370 * (number % 2), top + 260 * (number // 2)
-        parts += svg.panel(title, lines, x, y, 290, 190, ticks)
-        words.append(svg.in_words(title, lines, ticks))
-    return svg.Plot(_WIDTH, top + 490, parts, " ".join(words))
-
-
-def _fan_line(of, name):
-    mark, dashed = _FAN_STYLES[of["side"]]
-    key = of["side"][:-1] + "_megabytes" if name == "many_megabytes" else name
-    return svg.Series(
-        f"{of['language']}: {FAN_SIDES[of['side']]}",
-        _FAN_COLORS[of["language"]],
-        mark,
-        [(one["nodes"], one[key]) for one in of["figures"]],
-        dashed,
-        thin=name == "p99",
-    )
 
 
 # What the bars of the timeline say.
@@ -232,15 +129,4 @@ def _start_in_words(start):
     return " ".join(said)
 
 
-PLOTS = {
-    draw.__name__: draw
-    for draw in (
-        latency,
-        latency_by_size,
-        latency_by_rate,
-        throughput,
-        start_and_stop,
-        scale,
-        fans,
-    )
-}
+PLOTS = {draw.__name__: draw for draw in (latency_by_size, start_and_stop, scale)}

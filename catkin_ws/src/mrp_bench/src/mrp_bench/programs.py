@@ -26,10 +26,10 @@ DEADLINE = 120
 # many.
 Slice = collections.namedtuple("Slice", "size rate count")
 
-# sent: the stamps of all senders, in ns. received: of each receiver, stamps and times of arrival in
-# turns. sender_cpu: seconds of processor time of all senders together. receiver_cpu: that of all
-# receivers, or None if they are in the sender's process. sender_switches: how often one of the
-# senders' threads waited for another, or for the kernel.
+# sent: the stamps, in ns. received: of each receiver, stamps and times of arrival in turns.
+# sender_cpu: seconds of processor time. receiver_cpu: that of all receivers, or None if they are
+# in the sender's process. sender_switches: how often a thread of the sender waited for another, or
+# for the kernel.
 Measurement = collections.namedtuple(
     "Measurement", "sent received sender_cpu receiver_cpu sender_switches"
 )
@@ -148,54 +148,50 @@ class Running:
     def __init__(self, way, log):
         self.way = way
         self.receivers = []
-        self.senders = []
+        self.sender = None
         self._log = log
         self._namespace = f"/mrp_bench/{way.name}_{os.getpid()}"
 
     def start(self):
         if self.way.receiver:
-            self.receivers = self._start(self.way.receiver, self.way.receivers)
+            self.receivers = [self._program(self.way.receiver) for _ in range(self.way.receivers)]
         if not self.way.is_raw:
-            self.senders = self._start(self.way.sender, self.way.senders)
+            self.sender = self._program(self.way.sender)
 
-    def _start(self, command, count):
-        return [Program(command, self._log, self._namespace) for _ in range(count)]
+    def _program(self, command):
+        return Program(command, self._log, self._namespace)
 
     def connect(self):
         if self.way.is_raw:
             (port,) = self.receivers[0].answer("port")
-            self.senders = self._start([self.way.sender[0], f"send={port}"], 1)
-        for receiver in self.receivers or self.senders:
+            self.sender = self._program([self.way.sender[0], f"send={port}"])
+        for receiver in self.receivers or [self.sender]:
             if not self.way.is_raw:
                 receiver.answer("subscribed")
-        for sender in self.senders:
-            sender.answer("ready")
+        self.sender.answer("ready")
         self.signal(signal.SIGSTOP)
 
     def measure(self, piece):
-        """Let each sender send a Slice, and return what became of it, as a Measurement."""
+        """Let the sender send a Slice, and return what became of it, as a Measurement."""
         self.signal(signal.SIGCONT)
-        sender_cpu, receiver_cpu = _cpu(self.senders), _cpu(self.receivers)
-        switches = sum(sender.switches() for sender in self.senders)
-        for sender in self.senders:
-            sender.tell(f"run {piece.size} {piece.rate} {piece.count}")
-        sent = [stamp for sender in self.senders for stamp in sender.answer("sent")]
-        for sender in self.senders:
-            sender.tell("end")
+        sender_cpu, receiver_cpu = self.sender.cpu(), _cpu(self.receivers)
+        switches = self.sender.switches()
+        self.sender.tell(f"run {piece.size} {piece.rate} {piece.count}")
+        sent = self.sender.answer("sent").tolist()
+        self.sender.tell("end")
         received = [
-            [number for _ in self.senders for number in receiver.answer("received")]
-            for receiver in self.receivers or self.senders
+            receiver.answer("received").tolist() for receiver in self.receivers or [self.sender]
         ]
-        sender_cpu = _cpu(self.senders) - sender_cpu
+        sender_cpu = self.sender.cpu() - sender_cpu
         receiver_cpu = _cpu(self.receivers) - receiver_cpu
-        switches = sum(sender.switches() for sender in self.senders) - switches
+        switches = self.sender.switches() - switches
         self.signal(signal.SIGSTOP)
         return Measurement(
             sent, received, sender_cpu, receiver_cpu if self.receivers else None, switches
         )
 
     def _programs(self):
-        return [*self.receivers, *self.senders]
+        return [*self.receivers, *filter(None, [self.sender])]
 
     def signal(self, number):
         for program in self._programs():

@@ -1,15 +1,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The results in files: results.json, results.csv, table.md and the plots.
+"""The results in files: results.json, table.md and the plots.
 
 results.json says all that the tables and the plots show. The tutorial's pages are made of it, too.
 """
 
-import csv
 import json
 
 from mrp_bench import (
-    fan_figures,
-    fans,
     launch_figures,
     launches,
     machine,
@@ -20,8 +17,6 @@ from mrp_bench import (
     summary,
     tables,
 )
-from mrp_bench.stats import PERCENTILES
-from mrp_bench.ways import LIMITS
 
 _ABOUT_MESSAGES = (
     "A latency is the time from just before a message is published until its callback begins. "
@@ -41,17 +36,15 @@ def measured(results):
         "noise": {"least": min(probes), "most": max(probes), "probes": len(probes)},
         "verdict": noise.verdict(probes),
         "rows": [row._asdict() for row in summary.summarise(results.measurements())],
-        "starts": start_figures.summarise(*starts.load(results)),
+        "starts": start_figures.summarise(starts.load(results)),
         "robots": launch_figures.summarise(launches.load(results), cores, megabytes),
-        "fans": fan_figures.summarise(fans.load(results), cores),
     }
 
 
 def write(results, say):
     """Write all files of a folder of results (rounds.Results)."""
     content = measured(results)
-    (results.folder / "results.json").write_text(json.dumps(content, indent=1) + "\n")
-    _write_csv(results.folder / "results.csv", content["rows"])
+    (results.folder / "results.json").write_text(as_text(content))
     text = markdown(content)
     (results.folder / "table.md").write_text(text)
     plots.write(content, results.folder)
@@ -59,44 +52,18 @@ def write(results, say):
     say(f"tables, plots and all samples are in {results.folder}")
 
 
-def _write_csv(path, rows):
-    with open(path, "w", newline="") as file:
-        table = csv.writer(file)
-        percentiles = [f"{name}_us" for name in PERCENTILES]
-        ratios = [
-            f"{what}_ratio_{limit}_{bound}"
-            for what in ("latency", "throughput")
-            for limit in LIMITS
-            for bound in ("value", "low", "high")
-        ]
-        plain = (
-            "throughput",
-            "sender_cpu",
-            "receiver_cpu",
-            "sender_switches",
-            "sent",
-            "lost",
-            "disordered",
-        )
-        table.writerow(["way", "size", "rate", "rounds", *percentiles, *plain, *ratios])
-        for row in rows:
-            estimates = [
-                estimates.get(limit, ("", "", ""))
-                for estimates in (row["latency_ratio"], row["throughput_ratio"])
-                for limit in LIMITS
-            ]
-            table.writerow(
-                [row["way"], row["size"], row["rate"], row["rounds"]]
-                + [f"{row['latency'][name]:.2f}" for name in PERCENTILES]
-                + [row[name] for name in plain]
-                + [bound for estimate in estimates for bound in estimate]
-            )
+def as_text(content):
+    """Return results.json: one record per line, so that a change shows which ones it changed."""
+    others = {name: value for name, value in content.items() if name != "rows"}
+    parts = [f"{json.dumps(name)}: {json.dumps(value)}" for name, value in others.items()]
+    rows = ",\n".join(map(json.dumps, content["rows"]))
+    return "{\n" + ",\n".join(parts) + ',\n"rows": [\n' + rows + "\n]\n}\n"
 
 
 def markdown(content):
     """Return table.md. On too noisy a machine, it says so instead of figures."""
     parts = [*tables.machine(content), _ABOUT_MESSAGES]
-    for name in ("latency", "throughput", "starts", "robots", "fans"):
+    for name in ("latency", "throughput", "starts", "robots"):
         for table in tables.TABLES[name](content):
             parts += _table(table)
     return "\n\n".join(parts) + "\n"

@@ -3,7 +3,7 @@
 
 import collections
 
-from mrp_bench import cold, stats
+from mrp_bench import stats
 
 # What roslaunch itself starts, too.
 _OWN = ("master", "rosout")
@@ -36,39 +36,18 @@ _FIGURES = {
     "received_py": lambda one: _received(one, _PY),
     "nodes_ended": _nodes_ended,
     "ended": lambda one: one["end"] - one["stop"],
-    "megabytes_read": lambda one: None if one["in_container"] else one["read"],
 }
 
 
-def _columns(starts):
-    """Return (variant's name, whether cold) -> its starts, in the order of the table."""
-    columns = collections.defaultdict(list)
-    for one in starts:
-        columns[one["variant"], one["cold"]].append(one)
-    # Ours is the first, then the others; each warm, then cold.
-    return dict(sorted(columns.items(), key=lambda item: (item[0][0] != "mrp", item[0])))
-
-
-def summarise(starts, missing):
-    """Return what results.json says of starts. missing: of starts.load()."""
-    columns = [_column(name, is_cold, of) for (name, is_cold), of in _columns(starts).items()]
-    ours = [one for one in starts if one["variant"] == "mrp" and not one["cold"]]
+def summarise(starts):
+    """Return what results.json says of starts; figures is empty if there were none."""
     return {
-        "columns": columns,
-        "missing": missing,
-        "timeline": _timeline(ours) if ours else None,
-    }
-
-
-def _column(name, is_cold, starts):
-    """Return a column of the table. why_not: why it has no figures, or None."""
-    return {
-        "variant": name,
-        "cold": is_cold,
-        "why_not": cold.why_not(starts) if is_cold else None,
-        "figures": {what: _estimate(map(value, starts)) for what, value in _FIGURES.items()},
+        "figures": {what: _estimate(map(value, starts)) for what, value in _FIGURES.items()}
+        if starts
+        else {},
         "exits": _exits(starts),
         "starts": len(starts),
+        "timeline": _timeline(starts) if starts else None,
     }
 
 
@@ -81,9 +60,7 @@ def _estimate(values):
 
 
 def _exits(starts):
-    """Return (node, code, how often) of each that was not 0; None if no exit code was seen."""
-    if not any(one["exits"] for one in starts):
-        return None
+    """Return (node, code, how often) of each exit code that was not 0."""
     counts = collections.Counter(
         (name.rsplit("/", 1)[-1], code)
         for one in starts

@@ -50,8 +50,6 @@ class Series(NamedTuple):
     color: str
     mark: str
     points: list
-    dashed: bool = False
-    thin: bool = False
 
 
 def document(plot):
@@ -99,10 +97,8 @@ def legend(entries, x, y, width):
 
 
 def _stroke(series, points):
-    dashes = 'stroke-dasharray="5,3"' if series.dashed else ""
     path = "M" + "L".join(f"{x:.1f},{y:.1f}" for x, y in points)
-    width = 0.8 if series.thin else 1.8
-    return f'<path d="{path}" fill="none" stroke="{series.color}" stroke-width="{width}" {dashes}/>'
+    return f'<path d="{path}" fill="none" stroke="{series.color}" stroke-width="1.8"/>'
 
 
 class Scale:
@@ -135,7 +131,7 @@ def in_words(title, series, ticks):
     lines = []
     for one in series:
         ends = [f"{float(f'{y:.3g}'):g} at {ticks[x]}" for x, y in (one.points[0], one.points[-1])]
-        lines.append(f"{one.label}{', thin' if one.thin else ''}: {' to '.join(ends)}")
+        lines.append(f"{one.label}: {' to '.join(ends)}")
     return f"{title}. {'; '.join(lines)}."
 
 

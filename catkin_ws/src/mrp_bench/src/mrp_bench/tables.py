@@ -151,53 +151,44 @@ _STARTS = {
     "received_py": "first message at the Python subscriber",
     "nodes_ended": "Ctrl-C to the end of all four",
     "ended": "Ctrl-C to the prompt",
-    "megabytes_read": "read from the disk, MB",
 }
 
 
 def starts(content):
     """Return the table of the starts and stops of the four nodes, if there were any."""
-    columns, missing = content["starts"]["columns"], content["starts"]["missing"]
-    if not columns:
+    measured = content["starts"]
+    if not measured["figures"]:
         return []
-    titles = [f"{one['variant']}, {'cold' if one['cold'] else 'warm'}" for one in columns]
     rows = [
-        [text, *(_start_cell(one, name, content["verdict"]) for one in columns)]
+        [text, _start_cell(measured["figures"][name], content["verdict"])]
         for name, text in _STARTS.items()
     ]
-    why_not = {title: one["why_not"] for title, one in zip(titles, columns) if one["why_not"]}
     return [
         Table(
             "Start and stop of the four nodes",
-            ["until", *titles],
-            [*rows, ["exit codes", *map(_exits, columns)]],
-            ["Seconds from the call, and from Ctrl-C: medians, and intervals of 95 %."],
-            [f"{name}: {text}." for name, text in {**why_not, **missing}.items()],
+            ["until", "seconds"],
+            [*rows, ["exit codes", _exits(measured)]],
+            ["From the call, and from Ctrl-C: medians, and intervals of 95 %."],
         )
     ]
 
 
-def _start_cell(column, name, noisy):
-    if column["why_not"]:
-        return "not measured"
+def _start_cell(estimate, noisy):
     if noisy:
         return NOISY
-    estimate = column["figures"][name]
     return "not seen" if estimate is None else _interval(estimate)
 
 
-def _exits(column):
-    if column["exits"] is None:
-        return "not seen"
-    of = column["starts"]
+def _exits(measured):
+    of = measured["starts"]
     exits = [
         f"{name}: {signal.Signals(-code).name if code < 0 else code} ({count} of {of})"
-        for name, code, count in column["exits"]
+        for name, code, count in measured["exits"]
     ]
     return ", ".join(exits) or "all 0"
 
 
-# What is tabled of many robots, and of fans.
+# What is tabled of many robots.
 ROBOTS = {
     "up": "all nodes ready, s",
     "down": "Ctrl-C to the end, s",
@@ -207,24 +198,7 @@ ROBOTS = {
     "p50": "p50 beside them, µs",
     "p99": "p99, µs",
 }
-_FANS = {
-    "up": "all connected, s",
-    "cores": "cores in use",
-    "publisher_megabytes": "MB per publisher",
-    "subscriber_megabytes": "MB per subscriber",
-    "p50": "p50, µs",
-    "p99": "p99, µs",
-    "per_second": "messages per second",
-}
-FAN_SIDES = {
-    "publishers": "publishers to one subscriber",
-    "subscribers": "subscribers of one publisher",
-}
-_ABOUT_FANS = (
-    "Each publisher sends {size} bytes at {rate} Hz, and all begin at once. Cores in use are those "
-    "of all nodes together. A cost grows with the number of nodes to the power of its exponent."
-)
-_WHOLE = ("p50", "p99", "per_second")  # without decimals
+_WHOLE = ("p50", "p99")  # without decimals
 
 
 def robots(content):
@@ -251,29 +225,6 @@ def robots(content):
             after,
         )
     ]
-
-
-def fans(content):
-    """Return a table for each language, and for many publishers and many subscribers."""
-    noisy, cores = content["verdict"], content["machine"]["cores"]
-    tables = []
-    for series in content["fans"]["series"]:
-        side, figures, full = series["side"], series["figures"], series["full_at"]
-        rows = []
-        for one in figures:
-            lost = f"{one['lost']} of {one['sent']}" if one["lost"] else "0"
-            rows.append([str(one["nodes"]), *_costs(one, _FANS, noisy), lost])
-        says = f"{full} {side} fill" if full else f"{figures[-1]['nodes']} {side} do not fill"
-        tables.append(
-            Table(
-                f"{series['language']}: {FAN_SIDES[side]}",
-                [side, *_FANS.values(), "lost"],
-                rows + _exponents(series["exponents"], _FANS, noisy),
-                before=[] if tables else [_ABOUT_FANS.format(**content["fans"])],
-                after=[] if noisy else [f"{says} the {cores} cores."],
-            )
-        )
-    return tables
 
 
 def _costs(one, names, noisy):
@@ -310,5 +261,4 @@ TABLES = {
     "throughput": throughput,
     "starts": starts,
     "robots": robots,
-    "fans": fans,
 }

@@ -8,7 +8,7 @@ class Way(typing.NamedTuple):
     """name: as in the results. text: what tables and plots say.
 
     sender, receiver: the commands, see programs.py; without a receiver the sender is both
-    receivers, senders: how many; each sender sends to all receivers
+    receivers: how many
     """
 
     name: str
@@ -16,14 +16,13 @@ class Way(typing.NamedTuple):
     sender: typing.Tuple[str, ...]
     receiver: typing.Optional[typing.Tuple[str, ...]]
     receivers: int = 1
-    senders: int = 1
 
     @property
     def is_raw(self):
         return self.sender[0].startswith("bench_raw")
 
 
-CPP, PY, ROSTOPIC = "bench_node", "bench_node.py", "bench_rostopic.py"
+CPP, PY = "bench_node", "bench_node.py"
 
 
 def _way(name, text, sender, receiver, publish=(), subscribe=(), receivers=1, queue=0):
@@ -88,10 +87,6 @@ _ALL = [
     _way("py_to_4", "Python to 4 subscribers in Python", PY, PY, receivers=4),
     _way("cpp_queue_10", "C++, the tutorial's queues of 10", CPP, CPP, queue=10),
     _way("py_queue_10", "Python, the tutorial's queues of 10", PY, PY, queue=10),
-    _way("cpp_chatter", "C++ talker and listener", CPP, CPP, ("chatter=1",), ("chatter=1",)),
-    _way("py_chatter", "Python talker and listener", PY, PY, ("chatter=1",), ("chatter=1",)),
-    _way("rostopic_pub", "rostopic pub to C++", ROSTOPIC, CPP),
-    _way("rostopic_echo", "C++ to rostopic echo", CPP, ROSTOPIC, ("only_small=1",)),
 ]
 WAYS = {way.name: way for way in _ALL}
 
