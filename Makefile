@@ -220,7 +220,7 @@ doctor:  ## find what keeps the tutorial from running on this machine
 .PHONY: why
 unexport TEXT
 why: export WHY = $(value TEXT)
-why:  ## say what an error text means, and how to fix it: TEXT="...", or piped into it
+why:  ## say what an error text means, and how to fix it: paste it, pipe it in, or TEXT="..."
 	@/usr/bin/python3 catkin_ws/tools/why.py "$$WHY" || [ $$? = 1 ]
 
 .PHONY: clean

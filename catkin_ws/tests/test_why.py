@@ -6,6 +6,7 @@ import itertools
 import multiprocessing
 import os
 import pathlib
+import pty
 import re
 import signal
 import subprocess
@@ -35,13 +36,17 @@ pytestmark = pytest.mark.slow
 ENTRIES = why.entries()
 HERE = [one for one in ENTRIES if one.needs != "docker"]  # the others: docker/test/test_why.py
 THREADS = [
-    (head.partition(" http")[0].split(" or "), text)
+    (head.split(" or "), text.strip())
     for head, text in re.findall(
         r"^== (.*)\n((?:(?!== ).*\n)+)",
         (pathlib.Path(__file__).parent / "texts_of_threads.txt").read_text(),
         flags=re.MULTILINE,
     )
 ]
+# What roslaunch prints last: the cause stands above it.
+LAST_LINES = """
+[talker-1] process has died [pid 4242, exit code 1, cmd /a/talker.py __name:=a __log:=/a/t.log].
+log file: /a/talker-1*.log"""
 NO_ERRORS = (
     "the quick brown fox jumps over the lazy dog",
     "[INFO] [1795222168.878456]: [PUBLISHER PY NODE] namespace of node = /mrp/publisher_py_node",
@@ -52,7 +57,12 @@ NO_ERRORS = (
     "ORA-00942: table or view does not exist",
     "! LaTeX Error: File `biblatex.sty' not found.",
     "The name 'Console' does not exist in the current context",
-    "Trying to getState() when no goal is running. You are incorrectly using SimpleActionClient",
+    "error[E0382]: borrow of moved value: `s1`\n --> src/main.rs:5:28",
+    "Uncaught TypeError: Cannot read properties of undefined (reading 'map')",
+    "RuntimeError: There is no current event loop in thread 'MainThread'.",
+    "The current process has finished.",
+    "An attempt has been made to start a new process before the\n"
+    "current process has finished its bootstrapping phase.",
 )
 PACKAGE_XML = """<package format="2">
 <name>a</name><version>0.1.0</version><description>a</description>
@@ -199,18 +209,24 @@ def index():
     return why.Index(ENTRIES)
 
 
+def names(index, text):
+    return [one.entry.name for one in index.nearest(text)]
+
+
 @pytest.mark.parametrize("entry", ENTRIES, ids=lambda entry: entry.name)
 def test_each_text_leads_to_its_entry(entry, index):
     for text in (*entry.shows, *entry.also):
-        found = [one.name for one in index.nearest("\n".join(why.shown_on(text)))]
-        assert entry.name == found[0], text
+        text = "\n".join(why.shown_on(text))
+        assert entry.name == names(index, text)[0], text
+        if entry.name != "catkin-make-failed":
+            assert entry.name == names(index, text + LAST_LINES)[0], text
 
 
 @proves("Names, paths and numbers do not count: yours may differ from those here.")
-@pytest.mark.parametrize(("names", "text"), THREADS, ids=[text[:60] for _, text in THREADS])
-def test_names_paths_and_numbers_do_not_count(names, text, index):
-    found = {one.name for one in index.nearest(text)}
-    assert not found if names == ["outside"] else found & set(names)
+@pytest.mark.parametrize(("expected", "text"), THREADS, ids=[text[:60] for _, text in THREADS])
+def test_names_paths_and_numbers_do_not_count(expected, text, index):
+    found = set(names(index, text))
+    assert not found if expected == ["outside"] else found & set(expected)
 
 
 @proves(
@@ -218,9 +234,10 @@ def test_names_paths_and_numbers_do_not_count(names, text, index):
     'make why TEXT="..." says what an error text means.',
 )
 def test_make_why_answers_a_text():
-    done = make("why", "TEXT=RLException: [a.launch] requires the '$(arg x)' arg to be \"set\"")
+    text = "RLException: [a.launch] requires the '$(arg x)' arg to be \"set\""
+    done = make("why", f"TEXT={text}")
     assert done.returncode == 0
-    assert done.stdout.startswith("1. RLException: [a.launch] requires the 'group' arg to be set\n")
+    assert done.stdout.startswith(f"1. {text}\n")
     assert "\n   why:  `$(arg NAME)` names an argument" in done.stdout
     assert "/pages/launching.html" in done.stdout
 
@@ -230,8 +247,47 @@ def test_make_why_answers_a_text():
 )
 @pytest.mark.parametrize("text", NO_ERRORS)
 def test_nothing_is_near_what_is_no_error(text, index):
-    assert index.nearest(text) == []
-    assert why.answer([]).startswith("No entry is near this text.")
+    assert names(index, text) == []
+    assert why.answer([]).startswith("No text I know is close to this one.")
+
+
+def test_make_why_reads_what_is_pasted_into_a_terminal():
+    main, end = pty.openpty()
+    command = ["make", "-C", str(ROOT), "--no-print-directory", "why"]
+    with subprocess.Popen(command, env=environment(), stdin=end, stdout=subprocess.PIPE) as process:
+        os.write(
+            main, b'a.cpp:(.text+0x2): undefined reference to `ros::init(int&)\'\n"$(x)"\n\x04'
+        )
+        printed = process.stdout.read().decode()
+    os.close(main), os.close(end)
+    assert printed.startswith("1. a.cpp:(.text+0x2): undefined reference to `ros::init(int&)'\n")
+    assert process.returncode == 0
+
+
+# As Windows writes it, as a browser shows colours, and at the end of a very long log.
+@pytest.mark.parametrize(
+    "data",
+    [
+        "ModuleNotFoundError: No module named 'rospy'\r\n".encode("utf-16"),
+        b"[31mModuleNotFoundError: No module named 'rospy'[0m",
+        b"data: 2\n" * 200000
+        + b"ModuleNotFoundError: No module named 'rospy'\n"
+        + b"data: 2\n" * 200000,
+    ],
+    ids=["utf-16", "colours", "long"],
+)
+def test_what_is_piped_in_may_be_damaged_or_long(data, index):
+    assert names(index, why.decoded(data))[0] == "no-rospy"
+
+
+def test_an_answer_says_when_the_error_happened_in_code_of_ros(index):
+    text = """Traceback (most recent call last):
+  File "/usr/lib/python3/dist-packages/rostopic/__init__.py", line 1, in _rostopic_cmd_echo
+    x = args[0]
+IndexError: list index out of range"""
+    assert "ROS's own rostopic/__init__.py: look at what you gave" in why.answer(
+        index.nearest(text), text
+    )
 
 
 @proves("It reads a whole log from a pipe, too, and finds the lines that matter:")
@@ -269,7 +325,7 @@ NameError: name 'Strin' is not defined
 
 @pytest.mark.parametrize("name", LOGS)
 def test_an_error_counts_more_than_a_warning(name, index):
-    assert name in [one.name for one in index.nearest(LOGS[name])]
+    assert name in names(index, LOGS[name])
 
 
 @proves("The checker's findings and make doctor name the entry of what a tool prints then.")
@@ -285,8 +341,8 @@ def test_what_the_checker_and_the_doctor_name_is_there():
 
 
 def test_names_are_unique_and_pages_are_there():
-    names = [one.name for one in ENTRIES]
-    assert sorted(names) == sorted(set(names))
+    all_names = [one.name for one in ENTRIES]
+    assert sorted(all_names) == sorted(set(all_names))
     pages = WORKSPACE / "src" / "mrp" / "doc" / "pages"
     named = {one.page.partition("#")[0] for one in ENTRIES if one.page}
     assert [page for page in named if not (pages / f"{page}.rst").exists()] == []

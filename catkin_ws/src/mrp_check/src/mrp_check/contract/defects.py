@@ -43,7 +43,7 @@ KINDS = ("read", "fix", "complete", "write")
 _FIELD = re.compile(r"([A-Z][\w-]*):(?: (.*))?")
 # A patch has all fields of a group, or none.
 _GROUPS = (("Fails", "Says"), ("Finds", "In", "Tells"), ("Order", "Kind", "Task", "Hint"))
-_WHY = ("Shows", "Also", "Why", "Fix", "Page", "Try", "Needs")
+_WHY = ("Shows", "Also", "Why", "Fix", "Page", "General", "Try", "Needs")
 _FIELDS = (
     *("Base", "Breaks", "Erratum", "Missed", "Proves", "Severity"),
     *(field for group in _GROUPS for field in group),
