@@ -207,7 +207,7 @@ test-browser: packages-test-browser $(BUILT_WHOLE) docs catkin_ws/build/dask/bin
 	@catkin_ws/tools/install_others.sh
 	@rm -rf $(SCREENSHOTS)
 	@$(IN_WORKSPACE) $(ALONE) source devel/setup.bash; \
-	/usr/bin/python3 -m pytest -n 2 --dist loadgroup --junit-xml=$(RESULTS)/browser.xml browser_tests
+	/usr/bin/python3 -m pytest -n 2 --dist loadgroup --junit-xml=$(RESULTS)/browser.xml tests/browser
 	@echo "Look at the pages: $(SCREENSHOTS)"
 
 .PHONY: doctor

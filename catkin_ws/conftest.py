@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """All tests that pytest runs: each has one kind.
 
-The kinds are the marks in pytest.ini: `pytest -m KIND` runs the tests of a kind. A file says at its
-head of which kind its tests are (pytestmark = pytest.mark.slow). A test of another kind says so
+The kinds are the marks in pyproject.toml: `pytest -m KIND` runs the tests of a kind. A file says at
+its head of which kind its tests are (pytestmark = pytest.mark.slow). A test of another kind says so
 itself (@pytest.mark.quick): the mark of a test wins over that of its file.
 """
 

@@ -21,7 +21,7 @@ export default [
   },
   {
     // Selenium runs the file as the body of a function.
-    files: ["**/browser_tests/*.js"],
+    files: ["**/tests/browser/*.js"],
     languageOptions: { sourceType: "script", parserOptions: { ecmaFeatures: { globalReturn: true } } },
   },
 ];

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The site that `make docs` builds: its links. What needs a browser is in browser_tests/."""
+"""The site that `make docs` builds: its links. What needs a browser is in tests/browser/."""
 
 import html.parser
 import re

@@ -17,7 +17,7 @@ def run(folder, text, *options, mode=0o644):
     """Run pytest on a file of tests, with the conftest of these tests; return what it printed."""
     tests = folder / "tests"
     tests.mkdir()
-    for name in ("conftest.py", "pytest.ini"):
+    for name in ("conftest.py", "pyproject.toml"):
         shutil.copy(WORKSPACE / name, tests)
     (tests / "test_one.py").write_text(text)
     (tests / "test_one.py").chmod(mode)

@@ -35,13 +35,13 @@ mapfile -t shell < <(files '*.sh' '.ci/*' '*/run_autograder')
 
 check "catkin_lint" env -C catkin_ws tools/with_rosdep.sh catkin_lint --rosdistro Debian --strict -W2 src
 check "clang-format" clang-format --dry-run --Werror "${cpp[@]}"
-check "ruff check" $tools/ruff check --no-cache --config catkin_ws/ruff.toml catkin_ws docker
-check "ruff format" $tools/ruff format --check --no-cache --config catkin_ws/ruff.toml catkin_ws docker
+check "ruff check" $tools/ruff check --no-cache --config catkin_ws/pyproject.toml catkin_ws docker
+check "ruff format" $tools/ruff format --check --no-cache --config catkin_ws/pyproject.toml catkin_ws docker
 # What another program looks at by its name: expat, roslaunch, prompt_toolkit, and the confinement's watcher. What a
 # defect's head says is read by the tests and by the pages.
 check "vulture" $tools/vulture catkin_ws/src/mrp_check/{src,scripts} \
   --ignore-names '*Handler,ignore_unset_args,cpu,open_files,file_size,erratum,fails,says,proves,finds,tells,missed,why,ttimeoutlen'
-check "mypy" $tools/mypy --no-error-summary --cache-dir $lint/mypy --config-file catkin_ws/mypy.ini \
+check "mypy" $tools/mypy --no-error-summary --cache-dir $lint/mypy --config-file catkin_ws/pyproject.toml \
   --package mrp_check
 check "clangd and pyright" catkin_ws/tools/check_editor.py
 check "SARIF" catkin_ws/tools/check_sarif.py

@@ -151,7 +151,7 @@ def write(sentences):
         changed.append(tests[proof].path)
     python = [path for path in changed if path.suffix == ".py"]
     if python and _RUFF.exists():
-        config = ("--config", evidence.WORKSPACE / "ruff.toml", "--quiet")
+        config = ("--config", evidence.WORKSPACE / "pyproject.toml", "--quiet")
         for command in (("check", "--fix", "--select", "I"), ("format",)):
             options = ("--no-cache", *config, *python)
             # Its order of imports depends on the folder in which it runs: that of `make lint`.
