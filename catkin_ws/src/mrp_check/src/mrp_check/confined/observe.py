@@ -201,7 +201,11 @@ class Observer:
         try:
             if key not in self._types:
                 self._types[key] = messages.of_definition(key[0], header["message_definition"])
-            return messages.flatten(self._types[key]().deserialize(message._buff))
+            found = self._types[key]().deserialize(message._buff)
+            if key[0] == "tf2_msgs/TFMessage":
+                pairs = [(one.header.frame_id, one.child_frame_id) for one in found.transforms]
+                return {"frames": " ".join(name.lstrip("/") for pair in pairs for name in pair)}
+            return messages.flatten(found)
         except Exception:  # whatever a package sends: it is no reason to stop
             return None
 

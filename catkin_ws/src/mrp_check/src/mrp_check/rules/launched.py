@@ -10,6 +10,7 @@ from mrp_check.confined.places import Kind
 from mrp_check.contract.finding import ERROR, NOTE, WARNING, Finding, Where
 from mrp_check.contract.requirements import ANY, Rule
 from mrp_check.running.observing import Launched
+from mrp_check.running.places import Traceback
 from mrp_check.running.starting import id_of_error
 from mrp_check.running.traces import ends
 from mrp_check.running.words import code_text
@@ -54,14 +55,30 @@ def _where(launched: Launched) -> str:
 
 
 def _raised(case: Case, launched: Launched, lines: list[str]) -> Iterator[Finding]:
+    """Yield a finding about the error that each node raised: what a callback raises, rospy logs
+    for its node; the console has what all nodes print."""
+    seen = launched.seen
+    raised = set()
+    for path, name in launched.nodes.items():
+        logs = (one for one in seen.seen.logs if one.node == path and one.time < seen.asked)
+        said = [line for log in logs for line in log.text.split("\n")]
+        called = case.places.wrong_arguments(said)
+        found = case.places.traceback(said)
+        if called and not found:
+            found = called[0], "TypeError", called[1]
+        if found and name not in raised:
+            raised.add(name)
+            yield from _error(case, launched, name, found)
     found = case.places.traceback(lines)
-    if found is None or found[1] == "KeyboardInterrupt":
-        return  # that is Ctrl-C
+    names = [n for n in launched.nodes.values() if found and found[0][0] in case.places.sources(n)]
+    if found and names and names[0] not in raised:
+        yield from _error(case, launched, names[0], found)
+
+
+def _error(case: Case, launched: Launched, name: str, found: Traceback) -> Iterator[Finding]:
     place, kind, text = found
-    nodes = [n for n in launched.nodes.values() if place[0] in case.places.sources(n)]
-    name = nodes[0] if nodes else None
-    if name is None or case.nodes[name].not_up:
-        return
+    if kind == "KeyboardInterrupt" or case.nodes[name].not_up:
+        return  # that is Ctrl-C; or it has been said
     source = case.package.line(place[0], place[1])
     if "sys.argv[" in source:
         said = f"{name} waits for arguments on its command line: {kind}: {text}"

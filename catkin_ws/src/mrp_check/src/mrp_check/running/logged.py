@@ -1,0 +1,104 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What the nodes logged in their recorded runs, and the page's entry that answers such a line."""
+
+from __future__ import annotations
+
+import functools
+import pathlib
+import re
+from typing import Iterator, NamedTuple
+
+from mrp_check.confined.seen import DirectResult, Line, Log, Seen
+from mrp_check.contract.words import last_part
+from mrp_check.running.observing import Observed
+from mrp_check.student.package import Package
+
+# The entries that explain error texts: a folder of the whole workspace, which a package lacks that
+# is installed by itself.
+ENTRIES = pathlib.Path(__file__).resolve().parents[5] / "why"
+_ENTRY = re.compile(r"\[([a-z][\w-]*)\]")
+_TEXT = re.compile(r"(?:Shows|Also): (?:\d\d\| )?(.+)")
+# How roscpp and rospy begin a line on the console; and what differs from one run to the next.
+_HEAD = re.compile(r"^\[ ?[A-Z]+\] \[[\d., ]+\]:? ")
+_VARIABLE = re.compile(
+    r"""<[^>]*>|\[[^]]*\]|'[^']*'|"[^"]*"|\{[^}]*\}|(?<![\w.])/[\w/.-]+|\d[\d.]*"""
+)
+_FEWEST = 3  # words of an entry's text, without what differs
+
+
+class Run(NamedTuple):
+    """A recorded run of a node.
+
+    where: in the words of a message, such as "under launch/all.launch"
+    logs: its lines on /rosout before it was asked to end
+    lines: what was printed until then, by all nodes of a launch file
+    seen: what was seen of all nodes; asked: when they were to end
+    """
+
+    node: str
+    where: str
+    logs: list[Log]
+    lines: list[Line]
+    seen: Seen
+    asked: float
+
+
+def runs(observed: Observed) -> Iterator[Run]:
+    """Yield each node's runs: under the launch files, and by itself."""
+    if observed.launch:
+        paths = {started.path: name for name, started in observed.started.items()}
+        launch = observed.launch
+        yield from _runs("under the launch file", paths, launch.seen, launch.lines, launch.asked)
+    for launched in observed.launches:
+        where = f"under {launched.file}" if launched.file else "together with the other nodes"
+        seen = launched.seen
+        yield from _runs(where, launched.nodes, seen.seen, seen.lines, seen.asked)
+    direct = observed.direct or DirectResult()
+    for name, alone in direct.nodes.items():
+        asked = alone.asked or alone.ended_after or 0.0
+        if alone.name:
+            paths = {alone.name: name}
+            yield from _runs("started by itself", paths, direct.seen, alone.lines, asked)
+
+
+def _runs(
+    where: str, paths: dict[str, str], seen: Seen, lines: list[Line], asked: float
+) -> Iterator[Run]:
+    before = [line for line in lines if line[0] < asked]
+    for path, node in paths.items():
+        logs = [log for log in seen.logs if log.node == path and log.time < asked]
+        yield Run(node, where, logs, before, seen, asked)
+
+
+def is_own(package: Package, log: Log) -> bool:
+    """Return whether a line is logged by the package's code: rospy says the file's name, and
+    roscpp the path that the compiler was given."""
+    names = {last_part(file) for file in package.files}
+    is_library = log.file.startswith(("/usr/", "/opt/", "/tmp/binarydeb/", "./", "../"))
+    return last_part(log.file) in names and not is_library
+
+
+def answer(text: str) -> str:
+    """Return the name of the entry of the folder why that answers a line; empty if none does, or
+    if there is no such folder."""
+    said = _shape(text)
+    found = [(len(shape), name) for shape, name in entries() if shape in said]
+    return max(found)[1] if found else ""
+
+
+def _shape(text: str) -> str:
+    return " ".join(_VARIABLE.sub("#", _HEAD.sub("", text)).lower().split())
+
+
+@functools.lru_cache(maxsize=None)
+def entries() -> list[tuple[str, str]]:
+    """Return (what stays the same of a text, name of its entry), of each text of each entry."""
+    found, name = [], ""
+    for file in sorted(ENTRIES.glob("*.txt")):
+        for line in file.read_text(encoding="utf-8").splitlines():
+            entry, text = _ENTRY.fullmatch(line), _TEXT.match(line)
+            name = entry[1] if entry else name
+            shape = _shape(text[1]) if text else ""
+            if len(re.findall(r"[a-z]+", shape)) >= _FEWEST:
+                found.append((shape, name))
+    return found

@@ -1,0 +1,283 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Two packages without a contract whose launch file starts all their nodes: in the first, each node
+has a fault that only a run shows; in the second, nothing is wrong with the same nodes."""
+
+import check_rules
+
+_CMAKE = """\
+cmake_minimum_required(VERSION 3.10)
+project(some_pkg)
+find_package(catkin REQUIRED COMPONENTS
+  actionlib geometry_msgs roscpp rospy std_msgs std_srvs tf2_ros)
+catkin_package()
+include_directories(${catkin_INCLUDE_DIRS})
+add_executable(asks src/asks.cpp)
+target_link_libraries(asks ${catkin_LIBRARIES})
+"""
+_DEPENDS = "".join(
+    f"  <depend>{name}</depend>\n" for name in ("actionlib", "geometry_msgs", "std_srvs", "tf2_ros")
+)
+_LAUNCH = """\
+<launch>
+  <node pkg="some_pkg" type="talker.py" name="talker"/>
+  <node pkg="some_pkg" type="deaf.py" name="deaf"/>
+  <node pkg="some_pkg" type="open_goal.py" name="open_goal"/>
+  <node pkg="some_pkg" type="canceled_goal.py" name="canceled_goal"/>
+  <node pkg="some_pkg" type="client.py" name="client"/>
+  <node pkg="some_pkg" type="frames.py" name="frames"/>
+  <node pkg="some_pkg" type="sends_frames.py" name="sends_frames"/>
+  <node pkg="some_pkg" type="service.py" name="service"/>
+  <node pkg="some_pkg" type="caller.py" name="caller"/>
+  <node pkg="some_pkg" type="number.py" name="number"/>
+  <node pkg="some_pkg" type="once.py" name="once"/>
+  <node pkg="some_pkg" type="hears_once.py" name="hears_once"/>
+  <node pkg="some_pkg" type="rate.py" name="rate">
+    <param name="rate" value="5"/>
+  </node>
+  <node pkg="some_pkg" type="asks" name="asks"/>
+</launch>
+"""
+_HEAD = "#!/usr/bin/env python3\nimport rospy\n"
+_TALKER = """\
+from std_msgs.msg import String
+
+rospy.init_node("talker")
+publisher = rospy.Publisher("chatter", String, queue_size=10)
+rate = rospy.Rate(10)
+while not rospy.is_shutdown():
+    publisher.publish("hello")
+    rate.sleep()
+"""
+_DEAF = """\
+from std_msgs.msg import String
+
+
+def hear():
+    rospy.loginfo("heard something")
+
+
+rospy.init_node("deaf")
+subscriber = rospy.Subscriber("chatter", String, hear)
+rospy.spin()
+"""
+_OPEN_GOAL = """\
+import actionlib
+from actionlib.msg import TestAction, TestResult
+
+
+def execute(goal):
+    if goal.goal > 5:
+        server.set_succeeded(TestResult(result=goal.goal))
+
+
+rospy.init_node("open_goal")
+server = actionlib.SimpleActionServer("open_goal", TestAction, execute, auto_start=False)
+server.start()
+rospy.spin()
+"""
+_CANCELED_GOAL = """\
+import actionlib
+from actionlib.msg import TestAction, TestResult
+
+
+def execute(goal):
+    rate = rospy.Rate(10)
+    for _ in range(10):
+        if server.is_preempt_requested():
+            server.set_preempted()
+            break
+        rate.sleep()
+    server.set_succeeded(TestResult(result=goal.goal))
+
+
+rospy.init_node("canceled_goal")
+server = actionlib.SimpleActionServer("canceled_goal", TestAction, execute, auto_start=False)
+server.start()
+rospy.spin()
+"""
+_CLIENT = """\
+import actionlib
+from actionlib.msg import TestAction, TestGoal
+
+rospy.init_node("client")
+open_goal = actionlib.SimpleActionClient("open_goal", TestAction)
+canceled_goal = actionlib.SimpleActionClient("canceled_goal", TestAction)
+open_goal.wait_for_server()
+canceled_goal.wait_for_server()
+open_goal.send_goal_and_wait(TestGoal(goal=3))
+canceled_goal.send_goal(TestGoal(goal=3))
+rospy.sleep(0.5)
+canceled_goal.cancel_goal()
+rospy.spin()
+"""
+_FRAMES = """\
+import tf2_ros
+
+rospy.init_node("frames")
+rate = rospy.Rate(10)
+while not rospy.is_shutdown():
+    buffer = tf2_ros.Buffer()
+    listener = tf2_ros.TransformListener(buffer)
+    try:
+        buffer.lookup_transform("map", "base_link", rospy.Time(0))
+    except tf2_ros.TransformException as error:
+        rospy.logwarn("no transform: %s", error)
+    rate.sleep()
+"""
+_SENDS_FRAMES = """\
+import tf2_ros
+from geometry_msgs.msg import TransformStamped
+
+rospy.init_node("sends_frames")
+broadcaster = tf2_ros.TransformBroadcaster()
+transform = TransformStamped()
+transform.header.frame_id, transform.child_frame_id = "map", "base_link"
+transform.transform.rotation.w = 1
+rate = rospy.Rate(20)
+while not rospy.is_shutdown():
+    transform.header.stamp = rospy.Time.now()
+    broadcaster.sendTransform(transform)
+    rate.sleep()
+"""
+_SERVICE = """\
+from std_srvs.srv import SetBool, SetBoolResponse
+
+
+def switch(request):
+    return SetBoolResponse(succes=request.data)
+
+
+rospy.init_node("service")
+service = rospy.Service("switch", SetBool, switch)
+rospy.spin()
+"""
+_CALLER = """\
+from std_srvs.srv import SetBool
+
+rospy.init_node("caller")
+try:
+    rospy.wait_for_service("switch")
+    rospy.ServiceProxy("switch", SetBool)(True)
+    rospy.spin()
+except rospy.ServiceException as error:
+    rospy.logerr("it failed: %s", error)
+    rospy.spin()
+except rospy.ROSInterruptException:
+    pass
+"""
+_NUMBER = """\
+from std_msgs.msg import Int32
+
+
+def hear(message):
+    rospy.loginfo("heard %s", message.data)
+
+
+rospy.init_node("number")
+subscriber = rospy.Subscriber("chatter", Int32, hear)
+rospy.spin()
+"""
+_ONCE = """\
+from std_msgs.msg import String
+
+rospy.init_node("once")
+publisher = rospy.Publisher("greeting", String, queue_size=10)
+publisher.publish("hello")
+rospy.spin()
+"""
+_HEARS_ONCE = """\
+from std_msgs.msg import String
+
+
+def hear(message):
+    rospy.loginfo("heard %s", message.data)
+
+
+rospy.init_node("hears_once")
+subscriber = rospy.Subscriber("greeting", String, hear)
+rospy.spin()
+"""
+_RATE = """\
+rospy.init_node("rate")
+rate = rospy.Rate(rospy.get_param("rate"))
+while not rospy.is_shutdown():
+    rate.sleep()
+"""
+_ASKS = """\
+#include <ros/ros.h>
+#include <std_msgs/String.h>
+
+int key = 0;
+
+void hear(const std_msgs::String::ConstPtr& message)
+{
+  ROS_INFO("heard %s", message->data.c_str());
+}
+
+int main(int argc, char** argv)
+{
+  ros::init(argc, argv, "asks");
+  ros::NodeHandle node;
+  ros::Subscriber subscriber = node.subscribe("chatter", 10, hear);
+  ros::Rate rate(10);
+  while (ros::ok())
+  {
+    if (key > 0)
+    {
+      ros::spinOnce();
+    }
+    rate.sleep();
+  }
+}
+"""
+# What is wrong in a file, and what is right.
+_RIGHT = {
+    "deaf.py": [("def hear():", "def hear(message):")],
+    "open_goal.py": [("if goal.goal > 5", "if goal.goal > 0")],
+    "canceled_goal.py": [("            break\n", "            return\n")],
+    "frames.py": [
+        (
+            "while not rospy.is_shutdown():\n    buffer = tf2_ros.Buffer()\n    listener = tf2_ros"
+            ".TransformListener(buffer)\n",
+            "buffer = tf2_ros.Buffer()\nlistener = tf2_ros.TransformListener(buffer)\n"
+            "while not rospy.is_shutdown():\n",
+        )
+    ],
+    "service.py": [("succes=", "success=")],
+    "number.py": [("Int32", "String")],
+    "once.py": [("queue_size=10", "queue_size=10, latch=True")],
+    "rate.py": [('"rate"))', '"~rate"))')],
+    "asks.cpp": [("key > 0", "key >= 0")],
+}
+_SOURCES = {
+    "talker.py": _TALKER,
+    "deaf.py": _DEAF,
+    "open_goal.py": _OPEN_GOAL,
+    "canceled_goal.py": _CANCELED_GOAL,
+    "client.py": _CLIENT,
+    "frames.py": _FRAMES,
+    "sends_frames.py": _SENDS_FRAMES,
+    "service.py": _SERVICE,
+    "caller.py": _CALLER,
+    "number.py": _NUMBER,
+    "once.py": _ONCE,
+    "hears_once.py": _HEARS_ONCE,
+    "rate.py": _RATE,
+    "asks.cpp": _ASKS,
+}
+
+
+def make(folder, is_right):
+    """Make the package in which each node is right, or in which each is wrong; return it."""
+    manifest = check_rules.MANIFEST.replace("</package>", f"{_DEPENDS}</package>")
+    files = {"package_DOT_xml": manifest, "CMakeLists_DOT_txt": _CMAKE}
+    files["launch__all_DOT_launch"] = _LAUNCH
+    for name, source in _SOURCES.items():
+        for wrong, right in _RIGHT.get(name, ()) if is_right else ():
+            assert wrong in source, name
+            source = source.replace(wrong, right)
+        stem, _, ending = name.partition(".")
+        is_cpp = ending == "cpp"
+        file = f"src__{stem}_DOT_cpp" if is_cpp else f"scripts__{stem}_DOT_py"
+        files[file] = source if is_cpp else _HEAD + source
+    return check_rules.make(folder, **files)

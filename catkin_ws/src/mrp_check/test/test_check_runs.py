@@ -1,0 +1,60 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What only a run shows is reported at its place, and nothing of the same nodes without a fault."""
+
+import pytest
+import run_packages
+from mrp_check import check
+from mrp_check.contract.finding import ERROR, NOTE, WARNING
+from mrp_check.running import logged
+
+pytestmark = pytest.mark.slow
+
+# (severity, id, file and what stands in the line, what the message says)
+FOUND = [
+    (ERROR, "callbacks", "scripts/deaf.py: def hear", "takes no argument|takes 0 positional"),
+    (ERROR, "callbacks", "scripts/open_goal.py: SimpleActionServer", "without ending the goal"),
+    (ERROR, "callbacks", "scripts/canceled_goal.py: set_", "a goal that has ended already"),
+    (ERROR, "callbacks", "scripts/service.py: succes=", "while it answers a service"),
+    (ERROR, "warnings", "scripts/frames.py: logwarn", "though both are published"),
+    (ERROR, "type", "scripts/number.py: Int32", "nothing arrives"),
+    (ERROR, "starts", "scripts/rate.py: get_param", "'float' and 'dict'"),
+    (NOTE, "warnings", "scripts/caller.py: logerr", "of its own, such as: it failed"),
+]
+
+
+def test_faults_that_only_a_run_shows(tmp_path):
+    package = run_packages.make(tmp_path, is_right=False)
+    report = check.check(package, None)
+    assert not report.reason
+    found = report.findings
+    missed = [wanted for wanted in FOUND if not any(_is(package, wanted, one) for one in found)]
+    assert not missed, [(one.severity, one.id, one.file, one.line, one.message) for one in found]
+    nodes = {one.node or one.file for one in found if one.severity == ERROR}
+    assert not nodes & {"talker.py", "client.py", "caller.py", "sends_frames.py"}
+
+
+def test_the_same_nodes_without_a_fault(tmp_path):
+    report = check.check(run_packages.make(tmp_path, is_right=True), None)
+    found = [one for one in report.findings if one.severity in (ERROR, WARNING)]
+    assert (report.reason, found) == ("", [])
+
+
+def _is(package, wanted, finding):
+    severity, id_, place, said = wanted
+    file, _, text = place.partition(": ")
+    line = package.line(finding.file, finding.line) if finding.line else ""
+    is_there = finding.file == file and text in line
+    says = any(part in finding.message for part in said.split("|"))
+    return (finding.severity, finding.id) == (severity, id_) and is_there and says
+
+
+@pytest.mark.quick
+def test_a_line_is_linked_to_the_entry_that_answers_it(monkeypatch, tmp_path):
+    said = "Could not process inbound connection: topic types do not match: [a/B] vs. [c/D]{'x': 1}"
+    logged.entries.cache_clear()
+    assert logged.answer(f"[WARN] [1795831174.7]: {said}") == "types-differ-rospy"
+    assert logged.answer("Something that nobody has ever read.") == ""
+    logged.entries.cache_clear()
+    monkeypatch.setattr(logged, "ENTRIES", tmp_path)
+    assert logged.answer(said) == ""
+    logged.entries.cache_clear()
