@@ -12,11 +12,8 @@ from mrp_check.rules import (
     callbacks,
     counter,
     early_callback,
-    early_timer,
     lifetime,
-    lists,
     message_fields,
-    no_value,
     node_name,
     node_start,
     not_called,
@@ -29,8 +26,7 @@ from mrp_check.rules import (
     swapped_sources,
     typed,
     unbound,
-    unfilled,
-    unheard,
+    unpacked,
 )
 from mrp_check.sources import facts, node, python_facts, python_read, uses
 from mrp_check.student import cmake, manifest
@@ -117,19 +113,18 @@ def python_findings(folder, source, **others):
     package = make(folder, src__odd_DOT_py=source, **others)
     read, problem = python_read.read(package, "src/odd.py")
     if problem:
+        problem.severity = "error"
         return [problem]
     known = facts.Facts(python={read.file: read}, relevant=[read.file])
     one = types.SimpleNamespace(package=package, facts=known)
-    rules = python_names, message_fields, rospy_calls, early_timer, not_called, not_kept, responses
-    rules += (no_value, lists, early_callback, unfilled, typed, unbound, unheard)
+    rules = python_names, message_fields, rospy_calls, not_called, not_kept, responses
+    rules += (early_callback, typed, unbound, unpacked)
     return [finding for file in rules for finding in of(file.RULE, one)]
 
 
 def of(rule, one):
     """Yield what a rule finds; it has to name each of its ids, as the checker asks for them."""
-    for finding in rule.findings(one):
-        assert finding.id in rule.ids
-        yield finding
+    yield from rule.ask(one)
 
 
 def node_findings(package, model, found):

@@ -5,12 +5,11 @@ import types
 
 import check_rules
 import pytest
-from mrp_check.contract.finding import ERROR, NOTE, WARNING
-from mrp_check.rules import agreed, cmake, messages, package_name, targets
+from mrp_check.contract.finding import ERROR, WARNING
+from mrp_check.rules import cmake, messages, package_name, targets
 from mrp_check.sources import uses
 from mrp_check.student import manifest
 from mrp_check.student.package import Package
-from mrp_testing.proves import proves
 from one_source import case, lines_of
 
 pytestmark = pytest.mark.quick
@@ -32,64 +31,6 @@ def known_case(folder, components, tags, **files):
     )
     known.manifest = manifest.parse(known.package)
     return known
-
-
-@proves("So is a package that only one of CMakeLists.txt and package.xml names.")
-@pytest.mark.parametrize(
-    ("components", "tags", "severity", "found"),
-    [
-        ("roscpp rospy std_msgs)", DEPEND, WARNING, []),
-        ("roscpp rospy tf)", DEPEND, WARNING, [3]),
-        ("roscpp)\nfind_package(Boost)", DEPEND, WARNING, [4]),
-        ("roscpp)\nfind_package(Boost)", f"{DEPEND}<depend>libboost-dev</depend>", WARNING, []),
-        ("roscpp std_msgs)", "<exec_depend>std_msgs</exec_depend>", WARNING, [11]),
-        ("roscpp)", "<exec_depend>std_msgs</exec_depend>", WARNING, []),
-        ("roscpp)", f"{DEPEND}\n<depend>std-msgs</depend>", WARNING, [12]),
-        ("roscpp)", f"{DEPEND}\n<depend>rmessage_runtime</depend>", WARNING, [12]),
-        ("roscpp)", "<depend>rospy std_msgs</depend>", WARNING, [11]),
-        ("roscpp)", "<build_depend>tf</build_depend>\n<build_depend>tf</build_depend>", NOTE, [12]),
-        ("roscpp)", "<build_depend>tf</build_depend>\n<exec_depend>tf</exec_depend>", NOTE, []),
-        ("roscpp message_generation)", DEPEND, WARNING, [3]),
-    ],
-    ids=range(12),
-)
-def test_what_the_two_files_say_of_other_packages(components, tags, severity, found, tmp_path):
-    known = known_case(tmp_path, components, tags)
-    known.model.catkin_package = None
-    assert lines_of(agreed, known, severity) == found
-
-
-@pytest.mark.parametrize(
-    ("components", "text", "found"),
-    [
-        ("roscpp rospy tf)", "", [3]),
-        ("roscpp rospy tf)", "#include <tf/tf.h>\nimport rospy\n", []),
-        ("roscpp std_msgs message_runtime)", "<launch/>", []),
-    ],
-    ids=range(3),
-)
-def test_what_nothing_uses_is_a_note(components, text, found, tmp_path):
-    known = known_case(tmp_path, components, DEPEND, **{"some_DOT_txt": text, "msg__A_DOT_msg": ""})
-    known.model.catkin_package = None
-    assert lines_of(agreed, known, NOTE) == found
-
-
-@pytest.mark.parametrize(
-    ("added", "severity", "found"),
-    [
-        ("", NOTE, []),
-        (" message_runtime", NOTE, []),
-        ("", WARNING, [6]),
-        (" message_runtime", WARNING, []),
-    ],
-    ids=range(4),
-)
-def test_what_messages_need_is_passed_on(added, severity, found, tmp_path):
-    generated = MADE.format("DEPENDENCIES std_msgs")
-    tags = f"{DEPEND}<depend>message_generation</depend>"
-    known = known_case(tmp_path, generated, tags, msg__A_DOT_msg="int32 a\n")
-    known.model.depends += added.split()
-    assert lines_of(agreed, known, severity) == found
 
 
 @pytest.mark.parametrize(

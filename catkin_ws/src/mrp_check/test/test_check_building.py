@@ -97,7 +97,7 @@ def test_a_function_that_returns_nothing_is_found_though_it_compiles(tmp_path):
     done = subprocess.run(command, stderr=subprocess.PIPE, text=True)
     (finding,) = compiler.without_return(package, done.stderr, package.root)
     assert done.returncode == 0
-    assert (finding.severity, finding.file, finding.line) == ("error", "src/a.cpp", 4)
+    assert (finding.certainty, finding.file, finding.line) == ("", "src/a.cpp", 4)  # seen
 
 
 @proves(
@@ -118,7 +118,7 @@ def test_what_compiles_and_does_something_else(tmp_path):
         [*command, package.root / "src" / "a.cpp"], stderr=subprocess.PIPE, text=True
     )
     found = [*compiler.doubts(package, done.stderr, package.root)]
-    assert {one.severity for one in found} == {"warning"}
+    assert {one.certainty for one in found} == {"habit"}
     assert sorted((one.line, one.message.split()[0]) for one in found) == [
         *((5, "In"), (10, "The"), (11, "Perhaps"), (12, "A"), (13, "This"), (15, "This"))
     ]

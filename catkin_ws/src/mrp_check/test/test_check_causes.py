@@ -18,7 +18,7 @@ def facts():
 
 def findings(*entries):
     return [
-        Finding(id_, "It is so.", file, line, stage=stage, node=node)
+        Finding(id_, "It is so.", file, line, stage=stage, node=node, severity="error")
         for id_, file, line, stage, node in entries
     ]
 

@@ -7,27 +7,17 @@ import check_rules
 import pytest
 from mrp_check.contract.finding import ERROR, NOTE, WARNING
 from mrp_check.rules import (
-    angles,
     cmake,
     compile,
     definitions,
-    fields_given,
-    install,
     messages,
-    own_calls,
     package_name,
     python_setup,
-    relative_import,
-    resized,
     scripts,
     undeclared,
 )
 from mrp_check.sources import asked, uses
-from mrp_check.sources.facts import Facts
-from mrp_check.sources.python_source import Source
 from mrp_check.student import manifest
-from mrp_check.student.package import Package
-from mrp_testing.proves import proves
 from one_source import SPEC, case, lines_of
 
 pytestmark = pytest.mark.quick
@@ -75,29 +65,6 @@ def test_a_library_is_named_in_the_manifest(header, found, tmp_path):
     assert [one.line for one in check_rules.of(undeclared.RULE, known)] == found
 
 
-@proves("What catkin_make install would leave out is a note.")
-@pytest.mark.parametrize(
-    ("rules", "found"),
-    [
-        ("", ["a", "launch/a.launch"]),
-        ("install(TARGETS a RUNTIME DESTINATION bin)", ["launch/a.launch"]),
-        ("install(TARGETS a)\ninstall(DIRECTORY launch DESTINATION share)", []),
-        ("install(TARGETS ${ALL})", []),
-    ],
-    ids=range(4),
-)
-def test_what_is_not_installed_is_a_note(rules, found, tmp_path):
-    known = case(
-        *(tmp_path, "cpp", INIT),
-        CMakeLists_DOT_txt=f"{MADE_BY_CMAKE}{rules}\n",
-        launch__a_DOT_launch="<launch/>\n",
-    )
-    said = [one for one in check_rules.of(install.RULE, known)]
-    assert [one.severity for one in said] == [NOTE] * len(found)
-    for one, name in zip(said, found, strict=True):
-        assert f"does not install {name}:" in one.message
-
-
 @pytest.mark.parametrize(("name", "found"), [("Some_pkg", [3]), ("2_pkg", [3]), ("some-pkg2", [])])
 def test_a_package_has_a_usual_name(name, found, tmp_path):
     text = check_rules.MANIFEST.replace("some_pkg", name)
@@ -123,71 +90,7 @@ ADDS = "uint32 a\nstring b\n---\nint64 sum  # of both\nint64 mul\n"
 SERVES = "def f(r):\n    return {}\nrospy.Service('add', Add, f)"
 
 
-@pytest.mark.parametrize(
-    ("lines", "found"),
-    [
-        ("q = AddRequest()\nq.a = sys.argv[1]\nq.b = sys.argv[2]", [6]),
-        ("q = AddRequest()\nq.a = int(sys.argv[1])", []),
-        ("q = AddRequest(input(), input())", [5]),
-        ("def f(a):\n    call(a, '')\ncall = rospy.ServiceProxy('add', Add)\nf(sys.argv[1])", [8]),
-        (SERVES.format("mul, sum"), [6]),
-        (SERVES.format("[sum, mul]"), []),
-        (SERVES.format("AddResponse(r.mul, r.sum)"), [6]),
-        (SERVES.format("1, 2"), []),
-        ("r = AddResponse()\nr.sum = a / b", [6]),
-        ("r = AddResponse()\nr.sum = a // b", []),
-        ("r = AddResponse()\nr.mean = a / b", []),
-        ("m = MeanFeedback()\nm.mean = a / 2", [6]),
-    ],
-    ids=range(12),
-)
-def test_the_fields_of_a_definition_get_what_they_are_for(lines, found, tmp_path):
-    lines = f"from some_pkg.srv import Add, AddRequest, AddResponse\n{lines}"
-    lines = f"from some_pkg.msg import MeanFeedback; {lines}"
-    mean = "int32 n\n---\nfloat32 mean\n---\nuint32 mean\n"
-    known = case(tmp_path, "py", lines, srv__Add_DOT_srv=ADDS, action__Mean_DOT_action=mean)
-    assert lines_of(fields_given, known) == found
-
-
-@pytest.mark.parametrize(
-    ("line", "found"),
-    [("from beside import A", [1]), ("import beside", [1]), ("from .beside import A", [])],
-    ids=range(3),
-)
-def test_a_module_imports_its_neighbour_as_python_3_does(line, found, tmp_path):
-    files = {"src/some_pkg/__init__.py": line, "src/some_pkg/beside.py": "A = 1\n"}
-    package = check_rules.make(tmp_path / "some_pkg")
-    for file, text in files.items():
-        (package.root / file).parent.mkdir(parents=True, exist_ok=True)
-        (package.root / file).write_text(text)
-    package = Package(package.root)
-    facts = Facts(python={file: Source(file, text) for file, text in files.items()})
-    known = types.SimpleNamespace(package=package, facts=facts)
-    assert lines_of(relative_import, known) == found
-
-
 NODE = "class Node:\n    def turn(self, side, fast=False):\n        pass\n\nn = Node()\n"
-
-
-@pytest.mark.parametrize(
-    ("lines", "found"),
-    [
-        (f"{NODE}n.turn()", [9]),
-        (f"{NODE}n.turn(1)", []),
-        (f"{NODE}n.turn(side=1)", []),
-        (f"{NODE}n.turn(1, 2, 3)", [9]),
-        (f"{NODE}n.turn(*sides)", []),
-        (f"{NODE}n.trun(1)", [9]),
-        (f"{NODE}n = other()\nn.trun(1)", []),
-        (f"{NODE.replace('Node:', 'Node(Base):')}n.trun(1)", []),
-        (f"{NODE.replace('pass', 'self.spin = rospy.spin')}n.spin()", []),
-        ("def go(a):\n    pass\ngo()", [6]),
-        ("def go(*a):\n    pass\ngo()", []),
-    ],
-    ids=range(11),
-)
-def test_what_a_source_calls_of_its_own(lines, found, tmp_path):
-    assert lines_of(own_calls, case(tmp_path, "py", lines)) == found
 
 
 @pytest.mark.parametrize(
@@ -207,21 +110,6 @@ def test_an_action_by_another_name(line, found, tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("between", "found"),
-    [
-        ("", [6]),
-        ("v.clear();", []),
-        ("v[0] = 1;", []),
-        ("}\nvoid g() {", []),
-    ],
-    ids=range(4),
-)
-def test_values_behind_those_that_resize_made(between, found, tmp_path):
-    known = case(tmp_path, "cpp", f"v.resize(2);\n{between}\nv.push_back(1);")
-    assert lines_of(resized, known) == found
-
-
-@pytest.mark.parametrize(
     ("line", "found"),
     [
         ("from some_pkg.msg import Own", [1]),
@@ -235,22 +123,6 @@ def test_a_script_hides_the_module_that_it_imports(line, found, tmp_path):
     package = check_rules.make(tmp_path / "some_pkg", scripts__some_pkg_DOT_py=text)
     said = check_rules.file_findings(scripts, package, spec=SPEC)
     assert [one.line for one in said if "own folder" in one.message] == [2] * len(found)
-
-
-@pytest.mark.parametrize(
-    ("lines", "found"),
-    [
-        ("a = atan2(y, x)\nturn = 2 * (a - self.pose.theta)", [5]),
-        ("turn = math.atan2(y, x) - yaw", [4]),
-        ("def steer(p):\n    return atan2(y, x)\nturn = steer(p) - theta", [6]),
-        ("turn = math.atan2(y, x) - yaw\nwhile turn > math.pi:\n    turn -= 2 * math.pi", []),
-        ("turn = normalize(atan2(y, x) - yaw)", []),
-        ("turn = atan2(y, x) - offset", []),
-    ],
-    ids=range(6),
-)
-def test_the_difference_of_two_angles(lines, found, tmp_path):
-    assert lines_of(angles, case(tmp_path, "py", lines)) == found
 
 
 @pytest.mark.parametrize(
@@ -330,22 +202,6 @@ def test_what_makes_messages_is_needed_to_build_alone(tag, passed_on, found, tmp
     known.spec = types.SimpleNamespace(**vars(known.spec), messages={}, services={})
     said = [one for one in check_rules.of(messages.RULE, known) if "alone; who" in one.message]
     assert [(one.file, one.line) for one in said] == found
-
-
-@pytest.mark.parametrize(
-    ("rule", "found"),
-    [
-        ("DIRECTORY maps/", ["maps/"]),
-        ("FILES src/a.cpp no.yaml", ["no.yaml"]),
-        ("TARGETS b RUNTIME", []),
-    ],
-)
-def test_what_is_installed_is_there(rule, found, tmp_path):
-    text = f"{MADE_BY_CMAKE}install({rule} DESTINATION share)\n"
-    known = case(tmp_path, "cpp", INIT, CMakeLists_DOT_txt=text)
-    assert [
-        one.seen for one in check_rules.of(install.RULE, known) if one.severity == WARNING
-    ] == found
 
 
 @pytest.mark.parametrize(("text", "found"), [("int32 int", [1]), ("int32 integer", [])])

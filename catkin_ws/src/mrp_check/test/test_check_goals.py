@@ -3,8 +3,8 @@
 
 import check_rules
 import pytest
-from mrp_check.rules import goal_ends, goals
-from one_source import case, lines_of
+from mrp_check.rules import goals
+from one_source import case
 
 pytestmark = pytest.mark.quick
 
@@ -19,44 +19,6 @@ def work(goal):
 def other(goal):
     b.set_succeeded()
 """
-
-
-@pytest.mark.parametrize(
-    ("ending", "lines", "found"),
-    [
-        ("cpp", f"{CPP}", [6]),
-        ("cpp", f"{CPP}\n// end();", [9]),
-        ("cpp", f"{CPP}\nend();", []),
-        ("cpp", f"{CPP}\ngoals(&end);", []),
-        ("cpp", f"n.subscribe(name, 1, hear);\n{CPP}{ENDS}", []),
-        ("py", PYTHON.format("other", "a.set_succeeded()"), []),
-        ("py", PYTHON.format("work", "a.set_succeeded()"), [5]),
-        ("py", PYTHON.format("work", "a.set_succeeded(); b.set_succeeded()"), []),
-        ("py", PYTHON.format("work", "ends.end(goal)"), [9]),
-    ],
-    ids=range(9),
-)
-def test_what_ends_a_goal(ending, lines, found, tmp_path):
-    known = case(tmp_path, ending, lines)
-    assert lines_of(goal_ends, known) == found
-
-
-@pytest.mark.parametrize(
-    ("result", "end", "found"),
-    [
-        ("int32 sum", "server.setSucceeded()", [4]),
-        ("int32 sum", "server.setSucceeded(result)", []),
-        ("", "server.setSucceeded()", []),
-        ("# int32 sum", "server.setSucceeded()", []),
-    ],
-    ids=range(4),
-)
-def test_a_goal_that_succeeds_has_a_result(result, end, found, tmp_path):
-    action = f"int32 a\n---\n{result}\n---\nint32 done\n"
-    known = case(tmp_path, "cpp", f"{end}; {SERVES}", action__Do_DOT_action=action)
-    assert [
-        one.line for one in check_rules.of(goal_ends.RULE, known) if "zeros" in one.message
-    ] == found
 
 
 SERVER = "a = actionlib.SimpleActionServer('a', A, work, False)\na.start()"

@@ -23,7 +23,7 @@ LAYERS = (
     ("any_case",),
     ("evidence",),
     ("rules",),
-    ("report", "causes", "judging", "suppression"),
+    ("report", "causes", "suppression"),
     ("check",),
     ("learning",),
     ("cli",),

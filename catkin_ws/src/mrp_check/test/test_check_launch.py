@@ -54,7 +54,7 @@ def findings(folder, text, **files):
         files[f"src__{name}_py_node_DOT_py"] = "#!/usr/bin/env python\n"
     package = check_rules.make(folder / "some_pkg", launch__pub_sub_DOT_launch=text, **files)
     case = check_rules.case_of(package, folder / "scratch", model=check_rules.model_of(package))
-    found = [finding for rule in RULES for finding in rule.findings(case)]
+    found = [finding for rule in RULES for finding in check_rules.of(rule, case)]
     case.close()
     return found
 

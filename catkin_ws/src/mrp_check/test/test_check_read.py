@@ -8,25 +8,12 @@ import pytest
 from check_rules import MANIFEST
 from mrp_check import check
 from mrp_check.building import configuring, placeholders
-from mrp_check.confined.launch_dump import Started
 from mrp_check.confined.places import Kind, Place
 from mrp_check.confined.seen import LaunchResult, Seen
 from mrp_check.contract.finding import ERROR, NOTE, WARNING, Finding
-from mrp_check.rules import (
-    arguments,
-    configured,
-    definitions,
-    global_names,
-    launched,
-    load_manifest,
-    remapped,
-    unread,
-    unset,
-    waiting,
-)
+from mrp_check.rules import arguments, definitions, launched, waiting
 from mrp_check.sources.facts import Facts
 from mrp_check.student.cmake import Model
-from mrp_check.student.launch import Launch
 
 pytestmark = pytest.mark.quick
 
@@ -36,39 +23,6 @@ MAIN = "int main()\n{{\n  {}\n}}\n"
 def case(package):
     facts = Facts(sources={file: [file] for file in package.of_kind("cpp")})
     return types.SimpleNamespace(package=package, facts=facts, launch=None, launches=[])
-
-
-@pytest.mark.parametrize(
-    ("text", "line"),
-    [
-        (MAIN.format('int a; n.getParam("a", a); if (a > 5) a = 5;'), 3),
-        (MAIN.format('int a, b;\n  if (b)\n  {\n    n.getParam("a", a);\n  }'), 6),
-        (MAIN.format('int a = 3; n.getParam("a", a);'), None),
-        (MAIN.format('int a; a = 3; n.getParam("a", a);'), None),
-        (MAIN.format('int a; if (n.hasParam("a")) { n.getParam("a", a); }'), None),
-        (MAIN.format('int a; if (!n.getParam("a", a)) a = 3;'), None),
-        (MAIN.format('int a; if (!n.getParam("a", a)) { warn(); }\n  f(a);\n'), 3),
-        (MAIN.format('int a; if (!n.getParam("a", a)) { return 1; }\n  f(a);\n'), None),
-        (MAIN.format('int a; if (n.getParam("a", a)) { say(); } else { warn(); }\n  f(a);\n'), 3),
-        (MAIN.format('int a; if (n.getParam("a", a)) {} else { a = 1; }\n  f(a);\n'), None),
-        (MAIN.format('int a; if (n.getParam("a", a)) { f(a); }\n'), None),
-        (MAIN.format('std::string a; n.getParam("a", a);'), None),
-        ("int a;\n" + MAIN.format('n.getParam("a", a);'), None),
-    ],
-    ids=range(13),
-)
-def test_a_number_without_a_value_is_found_where_a_parameter_is_read_into_it(text, line, tmp_path):
-    package = check_rules.make(tmp_path / "some_pkg", src__a_DOT_cpp=text)
-    found = [(one.severity, one.line) for one in check_rules.of(unset.RULE, case(package))]
-    assert found == ([(WARNING, line)] if line else [])
-
-
-def test_a_parameter_that_a_launch_file_sets_under_a_name_like_it_is_named(tmp_path):
-    text = MAIN.format('int a; n.getParam("print_rate", a);')
-    known = case(check_rules.make(tmp_path / "some_pkg", src__a_DOT_cpp=text))
-    known.launches = [types.SimpleNamespace(params={"/a/print_rat": 2})]
-    (found,) = check_rules.of(unset.RULE, known)
-    assert found.message.endswith("A launch file sets print_rat.")
 
 
 @pytest.mark.parametrize(
@@ -148,120 +102,7 @@ def test_many_findings_are_one_line_without_a_contract_if_they_are_of_many_files
     assert one.message.startswith("5 such faults in files that are no node: 0.py")
 
 
-@pytest.mark.parametrize(
-    ("source", "params", "remaps", "is_up", "found"),
-    [
-        ('ros::NodeHandle n("~"); n.param("rate", r, 1);', {"/a/rate": 2}, [], True, []),
-        ('n.param("rate", r, 1);', {"/a/rte": 2}, [], True, [("starts", 3)]),
-        ('n.param("rate", r, 1);', {"/b/rte": 2}, [], True, []),
-        ("n.param(name, r, 1);", {"/a/rte": 2}, [], True, []),
-        ('ros::NodeHandle n("~"); n.param("gains/p", r, 1);', {"/a/gains/p": 2}, [], True, []),
-        ('n.advertise<A>("chatter", 1);', {}, [("/chater", "/b")], False, [("topic", 4)]),
-        ('n.advertise<A>("chatter", 1);', {}, [("/chatter", "/b")], False, []),
-        ('n.advertise<A>("chatter", 1);', {}, [("/chater", "/b")], True, []),
-    ],
-    ids=range(8),
-)
-def test_what_a_launch_file_gives_is_named_in_a_source(
-    source, params, remaps, is_up, found, tmp_path
-):
-    text = (
-        '<launch>\n  <node pkg="some_pkg" type="a" name="a">\n    <param name="rte" value="2"/>\n'
-        '    <remap from="chater" to="b"/>\n  </node>\n</launch>\n'
-    )
-    package = check_rules.make(
-        tmp_path / "some_pkg", src__a_DOT_cpp=MAIN.format(source), launch__a_DOT_launch=text
-    )
-    file = "launch/a.launch"
-    node = Started("some_pkg", "a", "a", "/", "", remaps, [], "", "", file, 2)
-    known = case(package)
-    known.facts.sources = {"a": ["src/a.cpp"]}
-    known.nodes = {"a": types.SimpleNamespace(is_up=is_up)}
-    known.launches = [Launch("", nodes=[node], files=[file], params=params, file=file)]
-    assert check_rules.told(check_rules.of(unread.RULE, known)) == found
-
-
-@pytest.mark.parametrize(
-    ("source", "package", "found"),
-    [
-        ('n.getParam("gain", a);', "some_pkg", [2]),
-        ('n.getParam("rate", a);', "some_pkg", []),
-        ('n.getParam("gain", a);', "tf", []),  # a node of another package may read it
-        ("n.getParam(name, a);", "some_pkg", []),
-    ],
-    ids=range(4),
-)
-def test_a_parameter_that_nothing_reads_is_a_note(source, package, found, tmp_path):
-    text = '<launch>\n  <param name="rate" value="2"/>\n</launch>\n'
-    files = {"src__a_DOT_cpp": MAIN.format(source), "launch__a_DOT_launch": text}
-    known = case(check_rules.make(tmp_path / "some_pkg", **files))
-    node = Started(package, "a", "a", "/", "", [], [], "", "", "launch/a.launch", 2)
-    known.launches = [Launch("", nodes=[node], params={"/rate": 2}, file="launch/a.launch")]
-    assert [one.line for one in check_rules.of(unread.RULE, known)] == found
-
-
 OF_BOTH = 'ros::NodeHandle n;\n  ros::NodeHandle own("~");\n  '
-
-
-@pytest.mark.parametrize(
-    ("source", "params", "lines"),
-    [
-        ('n.param("rate", r, 1);', {"/a/rate": 2}, [3]),
-        ('n.hasParam("rate");', {"/a/rate": 2}, [3]),
-        ('ros::NodeHandle n("~");\n  n.param("rate", r, 1);', {"/a/rate": 2}, []),
-        ('n.param(ros::this_node::getName() + "/rate", r, 1);', {"/a/rate": 2}, []),
-        ('n.param("rate", r, 1);', {"/rate": 2}, []),
-        ('n.param("rate", r, 1);', {"/a/rate": 2, "/rate": 2}, []),
-        (f'{OF_BOTH}n.param("rate", r, 1);', {"/a/rate": 2}, [5]),
-        (f'{OF_BOTH}own.param("rate", r, 1);', {"/a/rate": 2}, []),
-        ('tf2_ros::Buffer b;\n  n.param("rate", r, 1);', {"/a/rate": 2}, [4]),
-        (f'{OF_BOTH}n = own;\n  n.param("rate", r, 1);', {"/a/rate": 2}, []),
-        (f'A() : n(own) {{}}\n  {OF_BOTH}n.param("rate", r, 1);', {"/a/rate": 2}, []),
-    ],
-    ids=range(11),
-)
-def test_a_parameter_of_a_nodes_own_is_read_as_one(source, params, lines, tmp_path):
-    package = check_rules.make(tmp_path / "some_pkg", src__a_DOT_cpp=MAIN.format(source))
-    node = Started("some_pkg", "a", "a", "/", "", [], [], "", "", "a.launch", 2)
-    known = case(package)
-    known.facts.sources = {"a": ["src/a.cpp"]}
-    known.nodes = {"a": types.SimpleNamespace(is_up=True)}
-    known.launches = [Launch("", nodes=[node], files=[], params=params, file="a.launch")]
-    assert [one.line for one in check_rules.of(unread.RULE, known)] == lines
-
-
-@pytest.mark.parametrize(
-    ("remap", "topic", "found"),
-    [
-        (("~out", "b"), "/group/b", 0),
-        (("out", "group/out"), "/group/group/out", 0),
-        (("out", "/b"), "/b", 0),
-        (("ou", "b"), "/group/out", 1),
-        (("~ain", "b"), "/group/a/out", 1),
-    ],
-    ids=range(5),
-)
-def test_a_launch_file_renames_what_its_node_uses(remap, topic, found, tmp_path):
-    known = case(check_rules.make(tmp_path / "some_pkg", src__a_DOT_cpp=MAIN.format("f();")))
-    node = Started("some_pkg", "a", "a", "/group", "", [remap], [], "", "", None)
-    seen = types.SimpleNamespace(publications=[], subscriptions=[])
-    seen.publications.append(types.SimpleNamespace(node=node.path, topic=topic))
-    launched_ = types.SimpleNamespace(
-        nodes={node.path: "a"}, seen=types.SimpleNamespace(seen=seen), file="a.launch"
-    )
-    known.observed = types.SimpleNamespace(launches=[launched_])
-    known.launches = [Launch("", nodes=[node], files=[], params={}, file="a.launch")]
-    known.nodes = {"a": types.SimpleNamespace(is_up=True)}
-    assert len([*check_rules.of(remapped.RULE, known)]) == found
-    launched_.file = None  # the node was started by itself
-    assert not [*check_rules.of(remapped.RULE, known)]
-
-
-@pytest.mark.parametrize(("name", "found"), [("a", []), ("b", [("messages", 2)])])
-def test_what_a_cfg_file_makes_has_its_name(name, found, tmp_path):
-    text = f'#!/usr/bin/env python\nexit(gen.generate(PACKAGE, "node", "{name}"))\n'
-    package = check_rules.make(tmp_path / "some_pkg", cfg__a_DOT_cfg=text)
-    assert check_rules.told(check_rules.of(configured.RULE, case(package))) == found
 
 
 @pytest.mark.parametrize(
@@ -321,48 +162,6 @@ def test_a_package_that_generate_messages_does_not_name(tmp_path):
     model = Model(package.root, [], complete=False)
     finding = configuring.finding(package, output, package.root, model)
     assert "uses geometry_msgs/Point, and generate_messages() does not name" in finding.message
-
-
-@pytest.mark.parametrize(
-    ("published", "heard", "found"),
-    [
-        ("/chatter", "/chatter", [("topic", 2)]),
-        ("chatter", "chatter", []),
-        ("/cmd_vel", "/pose", []),
-        ("/rosout", "/rosout", []),
-    ],
-    ids=range(4),
-)
-def test_where_own_nodes_meet_is_no_global_name(published, heard, found, tmp_path):
-    text = 'int main()\n{ n.advertiseService("go", f); }\n'
-    known = case(check_rules.make(tmp_path / "some_pkg", src__a_DOT_cpp=text))
-    ends = (2, Kind.PUBLISHER, published), (3, Kind.SUBSCRIBER, heard)
-    known.facts.places = [Place("src/a.cpp", *one) for one in ends]
-    assert check_rules.told(check_rules.of(global_names.RULE, known)) == found
-
-
-def test_a_global_name_in_a_source_that_could_not_be_read(tmp_path):
-    text = 'int main()\n{\n  n.advertise<A>("/a", 1);\n  n.subscribe("/a", 1, f);\n}\n'
-    known = case(check_rules.make(tmp_path / "some_pkg", src__a_DOT_cpp=text))
-    assert not [*check_rules.of(global_names.RULE, known)]
-    known.facts.unread = {"src/a.cpp"}
-    assert check_rules.told(check_rules.of(global_names.RULE, known)) == [("topic", 3)]
-
-
-def test_a_service_of_a_global_name(tmp_path):
-    text = 'int main()\n{ n.advertiseService("/go", f); }\n'
-    known = case(check_rules.make(tmp_path / "some_pkg", src__a_DOT_cpp=text))
-    assert check_rules.told(check_rules.of(global_names.RULE, known)) == [("topic", 2)]
-
-
-@pytest.mark.parametrize(
-    ("name", "found"),
-    [("some_pkg", []), ("std_msgs", []), ("no_such_pkg", [("python-names", 2)])],
-)
-def test_load_manifest_names_a_package_that_is_there(name, found, tmp_path):
-    text = f"import roslib\nroslib.load_manifest('{name}')\n  print 1\n"
-    known = case(check_rules.make(tmp_path / "some_pkg", src__a_DOT_py=text))
-    assert check_rules.told(check_rules.of(load_manifest.RULE, known)) == found
 
 
 @pytest.mark.parametrize(

@@ -33,16 +33,21 @@ CAUSE = Finding(
     seen="<nothing & more>",
     fix="Add\n+rospy.spin()",
     stage="static",
+    severity="error",
 )
 RESULT = Finding("values", "No value came.", "src/a.py", 9, consequence_of="spin", stage="run")
-NOTE = Finding("lifetime", "It is not kept.", "src/a.py", 4, severity="note", stage="static")
+RESULT.severity = "error"
+HINTED = Finding("lifetime", "It is not kept.", "src/a.py", 4, severity="note", stage="static")
 # Of one line `def b(): rospy.spin`.
-CHANGE = Finding("spin", "100% wrong,\nsee.", "src/b, c.py", 7, "warning", stage="static")
-CHANGE = dataclasses.replace(CHANGE, change=("spin", "spin()"), column=16)
-SUPPRESSED = dataclasses.replace(NOTE, suppressed="It is kept elsewhere.")
+CHANGE = Finding("spin", "100% wrong,\nsee.", "src/b, c.py", 7, stage="static")
+CHANGE = dataclasses.replace(CHANGE, severity="warning", change=("spin", "spin()"), column=16)
+SUPPRESSED = dataclasses.replace(HINTED, certainty="hint", suppressed="It is kept elsewhere.")
 
 
 def report(*findings, reason="", suppressed=()):
+    for finding in findings:
+        finding.severity = finding.severity or "error"
+        finding.certainty = "seen"
     verdicts = {id_: check.MET for id_ in REQUIREMENTS}
     verdicts.update({f.id: check.BROKEN for f in findings if f.severity == "error"})
     verdicts.update({f.id: check.UNCHECKED for f in findings if f.consequence_of})
@@ -57,7 +62,7 @@ def report(*findings, reason="", suppressed=()):
 
 REPORTS = [
     report(suppressed=[SUPPRESSED]),
-    report(CAUSE, RESULT, NOTE),
+    report(CAUSE, RESULT, HINTED),
     report(reason="There is no folder x."),
 ]
 
@@ -75,7 +80,7 @@ def test_schema_refuses_what_is_no_report(report_schema):
 
 
 def test_junit_counts():
-    suite = ElementTree.fromstring(junit.text(report(CAUSE, RESULT, NOTE)))
+    suite = ElementTree.fromstring(junit.text(report(CAUSE, RESULT, HINTED)))
     counts = {name: int(suite.get(name)) for name in ("tests", "failures", "errors", "skipped")}
     assert counts == {"tests": len(REQUIREMENTS), "failures": 1, "errors": 0, "skipped": 1}
     (failure,) = suite.iter("failure")
@@ -151,7 +156,7 @@ def test_page_shows_what_a_package_says_as_text():
     "it.",
 )
 def test_console_shows_verdicts_causes_first_and_pages():
-    text = console.text(report(NOTE, RESULT, CAUSE))
+    text = console.text(report(HINTED, RESULT, CAUSE))
     assert "  [FAIL] Each node waits for callbacks (spin)" in text
     assert "  [--]   Publishers publish the right values (values)" in text
     assert text.index("src/a.py:3: error:") < text.index("src/a.py:9: error:")

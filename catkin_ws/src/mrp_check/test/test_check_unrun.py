@@ -5,21 +5,11 @@ import types
 
 import check_rules
 import pytest
-from mrp_check import judging
 from mrp_check.confined.launch_dump import Started
 from mrp_check.confined.places import Kind, Place
 from mrp_check.confined.seen import Registration, Seen
-from mrp_check.contract.finding import ERROR, NOTE, WARNING, Finding
-from mrp_check.rules import (
-    cpp_format,
-    deaf_loop,
-    deaf_python,
-    long_loop,
-    meeting,
-    same_name,
-    unbuilt,
-    written,
-)
+from mrp_check.contract.finding import ERROR, HABIT, HINT, NOTE, WARNING, Finding
+from mrp_check.rules import deaf_loop, deaf_python, meeting, same_name, starts
 from mrp_check.running.observing import Launched
 from mrp_check.sources.facts import Facts
 from mrp_check.sources.python_source import Source
@@ -38,22 +28,6 @@ def of_main(folder, body, is_up):
     known = case(check_rules.make(folder / "some_pkg", src__a_DOT_cpp=text))
     known.nodes = {"src/a.cpp": types.SimpleNamespace(name="a", is_up=is_up, direct=None)}
     return known
-
-
-@pytest.mark.parametrize(
-    ("body", "is_up", "found"),
-    [
-        ("t = n.createTimer(d, f);", False, [("spin", 4)]),
-        ("t = n.createTimer(d, f);", True, []),
-        ("t = n.createTimer(d, f);\n  ros::spin();", False, []),
-        ("if (argc != 2) { return 1; }", False, [("starts", 4)]),
-    ],
-    ids=range(4),
-)
-def test_what_the_text_of_a_node_shows_that_was_not_built(body, is_up, found, tmp_path):
-    known = of_main(tmp_path, body, is_up)
-    said = check_rules.told(check_rules.of(unbuilt.RULE, known), "warning", "note")
-    assert said == found
 
 
 HEARD = "rospy.Subscriber('b', A, hear)\n"
@@ -120,21 +94,6 @@ def test_a_loop_in_python_asks_whether_the_node_is_to_go_on(loop, is_up, found, 
 
 
 @pytest.mark.parametrize(
-    ("logs", "found"),
-    [
-        ("ROS_INFO(msg->data.c_str());", [1]),
-        ("ROS_WARN( text.c_str() );", [1]),
-        ('ROS_INFO("%s", msg->data.c_str());', []),
-        ("ROS_INFO_STREAM(msg->data.c_str());", []),
-    ],
-    ids=range(4),
-)
-def test_what_is_logged_is_no_format(logs, found, tmp_path):
-    known = case(check_rules.make(tmp_path / "some_pkg", src__a_DOT_cpp=f"void f() {{ {logs} }}\n"))
-    assert [one.line for one in check_rules.of(cpp_format.RULE, known)] == found
-
-
-@pytest.mark.parametrize(
     ("files", "anonymous", "found"),
     [
         (["a.py", "b.py"], None, ["b.py"]),
@@ -161,38 +120,6 @@ def test_two_programs_of_one_name(files, anonymous, found, tmp_path):
 TAKES = "void heard(const {}& m) {{}}\n"
 PUBLISHES = 'int main() { p = n.advertise<some_pkg::Own>("/talk", 1); }\n'
 HEARS = 'int main() { n.subscribe("talk", 1, heard); }\n'
-
-
-@pytest.mark.parametrize(
-    ("publishes", "takes", "hears", "is_up", "found"),
-    [
-        (PUBLISHES, "std_msgs::String::ConstPtr", HEARS, False, [2]),
-        (PUBLISHES, "std_msgs::StringConstPtr", HEARS, False, [2]),
-        (PUBLISHES, "std_msgs::String", HEARS, False, [2]),
-        (PUBLISHES, "some_pkg::Own::ConstPtr", HEARS, False, []),
-        (PUBLISHES, "some_pkg::Own", HEARS, False, []),
-        (PUBLISHES, "std_msgs::String", HEARS, True, []),
-        (PUBLISHES.replace("some_pkg::", ""), "std_msgs::String", HEARS, False, [2]),
-        (PUBLISHES, "std_msgs::String", HEARS.replace("talk", "say"), False, []),
-        (PUBLISHES, "", HEARS.replace("scribe(", "scribe<std_msgs::Char>("), False, [2]),
-        (PUBLISHES, "", HEARS, False, []),
-        (PUBLISHES, "some_pkg::Own", HEARS.replace("talk", "say"), False, [2]),
-        (PUBLISHES, "some_pkg::Own", HEARS.replace("talk", "say"), True, []),
-        (PUBLISHES, "some_pkg::Own", HEARS.replace("talk", "own/talk"), False, [2]),
-        (PUBLISHES, "robot_msgs::Own", HEARS.replace("talk", "own/talk"), False, []),
-    ],
-    ids=range(14),
-)
-def test_the_ends_of_a_topic_in_what_did_not_run(publishes, takes, hears, is_up, found, tmp_path):
-    files = {"src__a_DOT_cpp": publishes, "src__b_DOT_cpp": TAKES.format(takes) + hears}
-    python = "import rospy\nfrom some_pkg.msg import Own\nrospy.Publisher('talk', Own)\n"
-    package = check_rules.make(tmp_path / "some_pkg", **files, src__c_DOT_py=python)
-    known = case(package)
-    known.facts.sources["c"] = ["src/c.py"]
-    known.facts.python = {"src/c.py": Source("src/c.py", python)}
-    known.nodes = {file: types.SimpleNamespace(is_up=is_up) for file in known.facts.sources}
-    findings = [*check_rules.of(written.RULE, known)]
-    assert [(one.file, one.line) for one in findings] == [("src/b.cpp", line) for line in found]
 
 
 @pytest.mark.parametrize(
@@ -324,33 +251,31 @@ def test_a_topic_of_several_types(file, others, found):
 def test_what_needs_a_header_that_is_not_here_is_not_blamed(header, found, tmp_path):
     """What else is wrong in the package need not be what makes the program fail."""
     package = check_rules.make(tmp_path / "some_pkg", src__a_DOT_cpp=f"#include <{header}>\n")
-    known = types.SimpleNamespace(package=package, facts=Facts(sources={"a": ["src/a.cpp"]}))
-    known.built = types.SimpleNamespace(ok=False)
-    said = Finding("starts", "a could not be run: it has no executable.", severity=ERROR, node="a")
-    said.consequence_of, said.stage = "messages", "run"
-    assert len(judging.judged(known, [said], [])) == found
-
-
-@pytest.mark.parametrize(("node", "found"), [("a", 1), ("b", 2)])
-def test_a_long_loop_says_the_same_however_long_the_node_is_watched(node, found):
-    loop = Finding("exit", f"This loop does not ask: {long_loop.GOES_ON}.", severity=WARNING)
-    end = Finding("spin", "a does its work, and ends: in peace", severity=NOTE, node=node)
-    loop.node = "a"
-    case = types.SimpleNamespace(built=None)
-    assert len(judging.judged(case, [loop, end], [])) == found
+    places = types.SimpleNamespace(in_launch_file=lambda name: (None, None))
+    node = types.SimpleNamespace(name="a", has_executable=False, places=places, not_up=[])
+    node.finding = lambda id_, message, place, **more: Finding(id_, message, **more)
+    known = types.SimpleNamespace(
+        package=package,
+        facts=Facts(sources={"a": ["src/a.cpp"]}),
+        built=types.SimpleNamespace(ok=False),
+        spec=types.SimpleNamespace(is_contract=False),
+        observed=types.SimpleNamespace(problems=[], own_launch=False, launch=None),
+        nodes={"a": node},
+    )
+    assert len([*check_rules.of(starts.RULE, known)]) == found
 
 
 @pytest.mark.parametrize(
-    ("arguments", "severity", "file"),
-    [("", WARNING, "a.launch"), ("1 2", NOTE, "src/a.cpp"), (None, NOTE, "src/a.cpp")],
+    ("arguments", "certainty", "file"),
+    [("", HABIT, "a.launch"), ("1 2", HINT, "src/a.cpp"), (None, HINT, "src/a.cpp")],
 )
-def test_a_launch_file_gives_a_node_no_arguments(arguments, severity, file):
-    said = Finding("starts", "a ends.", "src/a.cpp", 1, severity=ERROR, node="a", stage="run")
+def test_a_launch_file_gives_a_node_no_arguments(arguments, certainty, file):
+    said = Finding("starts", "a ends.", "src/a.cpp", 1, node="a")
     direct = types.SimpleNamespace(lines=[(0, 0, "usage: a X Y")], code=1)
     package = types.SimpleNamespace(name="some_pkg", lines=lambda file: [])
     node = types.SimpleNamespace(name="a", direct=direct, not_up=[said], package=package)
     started = Started("some_pkg", "a", "a", "/", "", [], [], arguments or "", "", "a.launch", 2)
     launches = [] if arguments is None else [types.SimpleNamespace(nodes=[started])]
     case = types.SimpleNamespace(nodes={"a": node}, package=package, launches=launches, built=True)
-    judging.weigh(case, [said])
-    assert (said.severity, said.file) == (severity, file)
+    starts.weigh_start(case, node, said)
+    assert (said.certainty, said.file) == (certainty, file)

@@ -5,7 +5,7 @@ import check_rules
 import pytest
 from check_rules import CMAKE, MANIFEST, told
 from mrp_check.confined.launch_dump import Started
-from mrp_check.rules import agreed, cmake, dependencies, launch_nodes, messages, scripts
+from mrp_check.rules import cmake, dependencies, launch_nodes, messages, scripts
 from mrp_check.sources import executables
 from mrp_check.student.cmake import Model, parsed
 from mrp_check.student.launch import Launch
@@ -63,13 +63,6 @@ def test_a_call_that_cmake_did_not_come_to_may_be_made(ends, ids, tmp_path):
     package = check_rules.make(tmp_path / "some_pkg", CMakeLists_DOT_txt=text, **rest)
     model = Model(package.root, parsed(text, "CMakeLists.txt"), complete=ends)
     assert [one.id for one in findings(cmake, package, model=model)] == ids
-
-
-def test_a_tag_has_the_name_of_one_package(tmp_path):
-    text = MANIFEST.replace("<depend>rospy<", "<depend>rospy tf<")
-    package = check_rules.make(tmp_path / "some_pkg", package_DOT_xml=text)
-    found = [one for one in findings(agreed, package) if "several" in one.message]
-    assert [(one.severity, one.seen) for one in found] == [("warning", "<depend>rospy tf</depend>")]
 
 
 @pytest.mark.parametrize(("name", "number"), [("catkin", 1), ("catkin_simple", 0)])

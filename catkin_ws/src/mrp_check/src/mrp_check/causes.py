@@ -63,11 +63,13 @@ _LATER = {"run", "stop"}
 _OF_ALL = ("CMakeLists.txt", ".cmake", ".xml", ".launch", ".msg")
 
 
-def told_once(findings, facts=None, nodes=None):
+def told_once(findings, facts=None, nodes=None, has_contract=True):
     """Return the findings without repetitions, with consequences marked.
 
     facts: a sources.facts.Facts, which says which files a node is made of; or None
     nodes: name -> what was seen of a node of the spec, a running.node.Node; None if nothing has run
+    has_contract: without one, what keeps Linux from starting a script is repaired in the copy that
+        runs, and so nothing that ran follows from it
     """
     kept: list[Finding] = []
     seen: dict[tuple[object, ...], set[str | None]] = {}
@@ -92,6 +94,8 @@ def told_once(findings, facts=None, nodes=None):
             key=lambda one: (not _is_beside(one[1], finding), one[1].id == "dependencies"),
         )
         for number, cause in ordered:
+            if not has_contract and cause.id == "scripts" and finding.id != "configure":
+                continue
             if cause is not finding and _causes(cause, finding, number < index, facts, nodes or {}):
                 finding.consequence_of = cause.consequence_of or cause.id
                 break

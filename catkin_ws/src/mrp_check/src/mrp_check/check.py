@@ -10,13 +10,14 @@ import pathlib
 import traceback
 import typing
 
-from mrp_check import causes, confine, judging, sandbox, suppression
+from mrp_check import causes, confine, sandbox, suppression
 from mrp_check.any_case import AnyCase
 from mrp_check.building.catkin import missing_tool
 from mrp_check.case import Case
 from mrp_check.contract.errors import CannotCheck
 from mrp_check.contract.finding import ERROR, Finding
 from mrp_check.contract.requirements import ANY, CONTRACT, closure
+from mrp_check.contract.severity import weigh
 from mrp_check.contract.spec import MORE, Spec
 from mrp_check.contract.verdict import BROKEN, FINDINGS, MET, UNCHECKED, Report
 from mrp_check.report import contract, diff
@@ -103,9 +104,7 @@ class _Examination:
         def findings():
             for need in rule.needs:
                 self._provide(need)
-            for finding in rule.findings(self.case):
-                assert finding.id in rule.ids, f"a rule reports {finding.id}, and does not say so"
-                finding.stage = rule.stage
+            for finding in rule.ask(self.case):
                 self.findings.append(finding)
 
         self._guarded(rule.ids, findings)
@@ -155,14 +154,11 @@ class _Examination:
         package, known = self.case.package, vars(self.case)
         is_any = isinstance(self.case, AnyCase)
         found = copy.deepcopy(self.findings)  # more may be found: then it is asked for again
-        if is_any:
-            judging.weigh(self.case, found)
-        findings = causes.told_once(found, known.get("facts"), known.get("nodes"))
-        if is_any:
-            findings = judging.judged(self.case, findings, found)
+        findings = causes.told_once(found, known.get("facts"), known.get("nodes"), not is_any)
         for finding in findings:
             diff.add(package, finding)
         findings, suppressed = suppression.applied(package, findings, self._open(), not is_any)
+        weigh(findings, has_contract=not is_any)
         findings = [f for f in findings if f.id in self.ids]
         findings = folded(findings, known.get("facts"), is_any)
         errors = [finding for finding in findings if finding.severity == ERROR]

@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 from typing import Collection, Iterator, NamedTuple
 
-from mrp_check.contract.finding import NOTE, WARNING, Finding
+from mrp_check.contract.finding import HABIT, HINT, Finding
 from mrp_check.contract.schema import near
 from mrp_check.rules import REQUIREMENTS
 from mrp_check.student.package import Package
@@ -81,14 +81,14 @@ def _wrong(comment: Comment, idle: bool, has_contract: bool) -> Iterator[Finding
     if comment.id not in REQUIREMENTS:
         message = f"A comment is to suppress '{comment.id}': there is no such requirement."
         message += near(comment.id, REQUIREMENTS)
-        yield Finding("text", message, *place, WARNING, expected=_FORM)
+        yield Finding("text", message, *place, HABIT, expected=_FORM)
     elif has_contract:
         message = f"This comment suppresses nothing of {comment.id}: a contract says what counts."
-        yield Finding(comment.id, message, *place, NOTE)
+        yield Finding(comment.id, message, *place, HINT)
     elif not comment.reason:
         message = f"A comment is to suppress {comment.id}, and gives no reason: it does nothing."
-        yield Finding(comment.id, message, *place, WARNING, expected=_FORM)
+        yield Finding(comment.id, message, *place, HABIT, expected=_FORM)
     elif idle:
         message = f"A comment is to suppress {comment.id}, and nothing of it is found here."
         fix = "Take the comment out, or write it on the line of the finding or the line above."
-        yield Finding(comment.id, message, *place, WARNING, fix=fix)
+        yield Finding(comment.id, message, *place, HABIT, fix=fix)

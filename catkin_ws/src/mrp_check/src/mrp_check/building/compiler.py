@@ -10,7 +10,7 @@ from typing import Iterable, Iterator
 
 from mrp_check.building import cpp_words
 from mrp_check.building.cpp_words import Problem
-from mrp_check.contract.finding import WARNING, Finding, Line
+from mrp_check.contract.finding import HABIT, Finding, Line
 from mrp_check.contract.words import braced
 from mrp_check.sources import uses
 from mrp_check.student.cmake import relative
@@ -168,7 +168,7 @@ def doubts(package: Package, output: str, copy: pathlib.Path) -> Iterator[Findin
             line = package.line(place[0], place[1])
             expected = "C++ that the compiler has no doubts about"
             seen = f"{line}  (g++: {match['text']})"
-            yield Finding("compile", said, *place, WARNING, expected, seen)
+            yield Finding("compile", said, *place, HABIT, expected, seen)
 
 
 def _no_return(package: Package, file: str, line: int) -> Finding:
@@ -226,7 +226,7 @@ def older_standard(package: Package, output: str) -> Iterator[Finding]:
             "CMakeLists.txt sets a standard of C++ that is older than C++17: it works here, and"
             " ROS's headers do not compile with it where log4cxx is newer.",
             *place,
-            WARNING,
+            HABIT,
             expected="no such line, as the compiler takes C++17 by itself",
             seen=package.line(*place),
             fix="Take the line out, or set the standard to 17.",

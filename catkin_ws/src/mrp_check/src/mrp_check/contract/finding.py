@@ -10,6 +10,14 @@ Line = Tuple[str, int]  # a file, relative to the package, and a line of it
 Where = Tuple[Optional[str], Optional[int]]  # the same, as far as it is known
 Change = Tuple[str, str]  # a part of a line, and what to write for it
 
+# Why a rule is sure that something is wrong.
+SEEN = "seen"  # it was seen to fail, or a tool of ROS, CMake, gcc or Python reports it
+CERTAIN = "certain"  # a named rule of ROS, CMake or Python rules it out
+READ = "read"  # a source says so, and a contract forbids it; nobody has seen it fail
+HABIT = "habit"  # it works, but it is fragile
+HINT = "hint"  # it works; good to know
+
+# What that means for a package: contract/severity.py says it.
 ERROR, WARNING, NOTE = "error", "warning", "note"
 
 
@@ -21,7 +29,7 @@ class Finding:
     message: what is wrong, in one or two full sentences that a beginner understands
     file: relative to the package, or None if no file of the package is to blame
     line: of that file, from 1, or None
-    severity: ERROR breaks the contract; WARNING works, but ...; NOTE is a hint
+    certainty: SEEN, CERTAIN, READ, HABIT or HINT; left out, it is the one of its rule
     expected, seen: what the contract asks for, and what was found; may be empty
     fix: what to do next; below it a unified diff, where the fix is certain
     why: the entry of the page why about the text that a tool prints then, or empty
@@ -31,6 +39,7 @@ class Finding:
     suppressed: the reason why a comment suppresses it, or empty
     consequence_of: the id of the finding that is the cause of this one, or None
     stage: which stage found it; check.py fills it in
+    severity: ERROR, WARNING or NOTE; check.py fills it in
     node: the name of the spec's node that it is about, or None: tells causes from consequences
     """
 
@@ -38,7 +47,7 @@ class Finding:
     message: str
     file: str | None = None
     line: int | None = None
-    severity: str = ERROR
+    certainty: str = ""
     expected: str = ""
     seen: str = ""
     fix: str = ""
@@ -49,3 +58,4 @@ class Finding:
     change: Change | None = None
     column: int | None = None
     suppressed: str = ""
+    severity: str = ""

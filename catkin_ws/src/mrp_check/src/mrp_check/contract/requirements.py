@@ -4,12 +4,15 @@
 from __future__ import annotations
 
 import typing
-from typing import Callable, Iterable, Mapping
+from typing import Any, Callable, Iterable, Iterator, Mapping
 
-from mrp_check.contract.finding import Finding
+from mrp_check.contract.finding import CERTAIN, READ, SEEN, Finding
+from mrp_check.contract.severity import severity
 
 STAGES = ("files", "static", "build", "run", "stop")
 CONTRACT, ANY = "contract", "any"
+# How sure a rule of a stage is, unless it says otherwise.
+_SURE = {"files": CERTAIN, "static": READ, "build": SEEN, "run": SEEN, "stop": SEEN}
 
 
 class Requirement(typing.NamedTuple):
@@ -18,14 +21,12 @@ class Requirement(typing.NamedTuple):
     title: a sentence that is true of a package which meets it
     section: page of the tutorial, and the anchor on it
     seen: called with a case.Case; says why nobody can know whether it is met, or returns None
-    shown: where among its stage's requirements it is shown, if not where its rule is asked
     stage: in whose group it is shown: that of its rule
     """
 
     title: str
     section: str
     seen: Callable[..., str | None]
-    shown: int | None = None
     stage: str = ""
 
     @property
@@ -38,25 +39,35 @@ class Requirement(typing.NamedTuple):
 class Rule(typing.NamedTuple):
     """A rule, which can find requirements not met.
 
-    stage, order: when it is asked: causes come before what follows from them
+    stage: when it is asked
     needs: what it looks at, names in NEEDS
     findings: called with a case.Case, yields a Finding for each thing that is wrong
     requirements: id -> Requirement, of those that it stands for
     also: ids of other rules' requirements that it can report, too
+    sure: the certainty of findings that don't give one, if it isn't that of the stage
     only: CONTRACT if it compares with what a contract says, ANY if it is for packages without one
     """
 
     stage: str
-    order: int
     needs: tuple[str, ...]
     findings: Callable[..., Iterable[Finding]]
     requirements: Mapping[str, Requirement] = {}
     also: tuple[str, ...] = ()
     only: str = ""
+    sure: str = ""
 
     @property
     def ids(self) -> tuple[str, ...]:
         return (*self.requirements, *self.also)
+
+    def ask(self, case: Any) -> Iterator[Finding]:
+        """Yield the findings about a case.Case, each with its stage, certainty and severity."""
+        for finding in self.findings(case):
+            assert finding.id in self.ids, f"a rule reports {finding.id}, and does not say so"
+            finding.stage = self.stage
+            finding.certainty = finding.certainty or self.sure or _SURE[self.stage]
+            finding.severity = severity(finding.certainty, has_contract=True)
+            yield finding
 
 
 # What a rule may need, a member of case.Case -> what that needs in turn.

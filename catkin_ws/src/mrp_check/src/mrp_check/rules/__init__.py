@@ -1,30 +1,163 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What is wrong: each file is a rule, which has its name nowhere else.
+"""The rules: each file is one, and stands in the tuple below.
 
-RULES: all rules, in the order in which they are asked
-REQUIREMENTS: id -> Requirement, in the order in which they are shown
+RULES: in the order in which they are asked, causes before what follows from them
+REQUIREMENTS: id -> Requirement, in the same order
 """
 
 from __future__ import annotations
 
-import importlib
-import pkgutil
+from mrp_check.rules import (
+    arguments,
+    callbacks,
+    cmake,
+    compile,
+    configure,
+    console,
+    counter,
+    deaf_loop,
+    deaf_python,
+    definitions,
+    dependencies,
+    early_callback,
+    examples,
+    exit,
+    first_message,
+    goals,
+    homes,
+    idle,
+    ignored,
+    install,
+    latch,
+    launch_file,
+    launch_gone,
+    launch_group,
+    launch_moved,
+    launch_nodes,
+    launch_output,
+    launch_remap,
+    launched,
+    leftovers,
+    lifetime,
+    long_loop,
+    manifest,
+    meeting,
+    message_fields,
+    messages,
+    methods,
+    node_name,
+    node_start,
+    not_called,
+    not_kept,
+    own_name,
+    package_name,
+    python_names,
+    python_setup,
+    python_syntax,
+    queue,
+    raised,
+    rate,
+    received,
+    responses,
+    rospy_calls,
+    same_name,
+    scripts,
+    services,
+    spin,
+    starts,
+    swapped_sources,
+    targets,
+    text,
+    topic,
+    typed,
+    unbound,
+    undeclared,
+    unpacked,
+    values,
+    waiting,
+    warnings,
+    wrap,
+)
 
-from mrp_check.contract.requirements import STAGES, Requirement
-
-_NAMES = [f"{__name__}.{file.name}" for file in pkgutil.iter_modules(__path__)]
-RULES = [importlib.import_module(name).RULE for name in _NAMES]
-RULES.sort(key=lambda rule: (STAGES.index(rule.stage), rule.order))
-
-
-def _requirements() -> dict[str, Requirement]:
-    found = [
-        (rule.order if one.shown is None else one.shown, id_, one._replace(stage=rule.stage))
-        for rule in RULES
-        for id_, one in rule.requirements.items()
-    ]
-    found.sort(key=lambda entry: (STAGES.index(entry[2].stage), entry[0]))
-    return {id_: one for _, id_, one in found}
-
-
-REQUIREMENTS = _requirements()
+_FILES = (
+    # files
+    manifest,
+    dependencies,
+    package_name,
+    cmake,
+    python_setup,
+    definitions,
+    undeclared,
+    launch_gone,
+    targets,
+    messages,
+    scripts,
+    text,
+    launch_file,
+    launch_nodes,
+    launch_group,
+    launch_output,
+    launch_remap,
+    install,
+    # static
+    python_syntax,
+    python_names,
+    message_fields,
+    rospy_calls,
+    not_called,
+    not_kept,
+    responses,
+    unpacked,
+    swapped_sources,
+    node_start,
+    early_callback,
+    typed,
+    unbound,
+    node_name,
+    spin,
+    callbacks,
+    lifetime,
+    queue,
+    counter,
+    homes,
+    arguments,
+    same_name,
+    goals,
+    first_message,
+    long_loop,
+    methods,
+    ignored,
+    idle,
+    # build
+    configure,
+    compile,
+    # run
+    waiting,
+    starts,
+    own_name,
+    raised,
+    launched,
+    topic,
+    meeting,
+    examples,
+    values,
+    rate,
+    latch,
+    wrap,
+    received,
+    services,
+    console,
+    warnings,
+    launch_moved,
+    # stop
+    exit,
+    leftovers,
+    deaf_loop,
+    deaf_python,
+)
+RULES = tuple(file.RULE for file in _FILES)
+REQUIREMENTS = {
+    id_: requirement._replace(stage=rule.stage)
+    for rule in RULES
+    for id_, requirement in rule.requirements.items()
+}

@@ -9,7 +9,7 @@ from typing import Iterator
 
 from mrp_check.case import Case
 from mrp_check.confined.launch_dump import Started
-from mrp_check.contract.finding import WARNING, Finding
+from mrp_check.contract.finding import HABIT, Finding
 from mrp_check.contract.requirements import ANY, Rule
 from mrp_check.contract.words import line_of
 from mrp_check.sources import uses
@@ -139,7 +139,7 @@ def _of_number(case: Case, node: str, file: str, code: str) -> Iterator[Finding]
             f"{name}() makes 0 of an argument that is no number: {node} goes on with a wrong one.",
             file,
             line_of(read),
-            WARNING,
+            HABIT,
             expected="std::stoll(), or std::stod(), which throws std::invalid_argument",
             seen=case.package.line(file, line_of(read)),
             fix=f"Write std::stoll() or std::stod() for {name}(), and say what was wrong.",
@@ -167,7 +167,7 @@ def _of(node: str, file: str, code: str) -> Iterator[Finding]:
             f"{node} reads argv[{number}], and {goes_on}. The program then most likely dies.",
             file,
             line,
-            WARNING,
+            HABIT,
             expected=f"argc > {number} wherever argv[{number}] is read",
             seen=lines[line - 1].strip(),
             fix=fix,
@@ -176,4 +176,4 @@ def _of(node: str, file: str, code: str) -> Iterator[Finding]:
         return
 
 
-RULE = Rule("static", 93, ("facts",), _findings, also=("starts",), only=ANY)
+RULE = Rule("static", ("facts",), _findings, also=("starts",), only=ANY)

@@ -43,7 +43,6 @@ def _unused_around(node: Node, place: Place) -> Place | None:
 
 RULE = Rule(
     stage="static",
-    order=60,
     needs=("facts",),
     findings=each_node(_of),
     requirements={

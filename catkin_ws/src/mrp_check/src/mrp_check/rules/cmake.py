@@ -8,7 +8,7 @@ from typing import Iterator
 
 from mrp_check import evidence
 from mrp_check.case import Case
-from mrp_check.contract.finding import ERROR, NOTE, WARNING, Finding
+from mrp_check.contract.finding import CERTAIN, HABIT, HINT, Finding
 from mrp_check.contract.requirements import Requirement, Rule
 from mrp_check.contract.words import line_of
 from mrp_check.student.cmake import Model
@@ -58,7 +58,7 @@ def _in_round_brackets(package: Package) -> Iterator[Finding]:
             f"CMake reads $({name}) as a text: a variable stands in braces.",
             FILE,
             line,
-            WARNING,
+            HABIT,
             expected=f"${{{name}}}",
             seen=package.line(FILE, line),
             fix=f"Write ${{{name}}}.",
@@ -79,7 +79,7 @@ def _old(package: Package, model: Model) -> Iterator[Finding]:
             " stops.",
             FILE,
             asked.line,
-            WARNING if numbers < [2, 8, 12] else NOTE,
+            HABIT if numbers < [2, 8, 12] else HINT,
             expected="cmake_minimum_required(VERSION 3.10)",
             seen=package.line(FILE, asked.line),
             fix="Write cmake_minimum_required(VERSION 3.10).",
@@ -100,7 +100,7 @@ def _twice(model: Model) -> Iterator[Finding]:
                 f" catkin_LIBRARIES has nothing of {', '.join(lost)} any more.",
                 call.file,
                 call.line,
-                WARNING,
+                HABIT,
                 expected="one call, which names all",
                 seen=f"find_package({' '.join(call.arguments)})",
                 fix=f"Write all of it into line {first.line}, and take this one out.",
@@ -119,7 +119,7 @@ def _again(package: Package, model: Model) -> Iterator[Finding]:
                 f"{command}() is called again, after line {calls[0].line}: {why}.",
                 FILE,
                 call.line,
-                WARNING,
+                HABIT,
                 expected="one call",
                 seen=package.line(FILE, call.line),
                 fix=f"Write all of it into line {calls[0].line}, and take this one out.",
@@ -172,7 +172,7 @@ def _missing_calls(package: Package, model: Model) -> Iterator[Finding]:
                 expected=needed,
                 seen="no such call",
                 fix=f"Add {needed} after this line." if before else f"Add {needed}.",
-                severity=WARNING if is_package and model.add_message_files else ERROR,
+                certainty=HABIT if is_package and model.add_message_files else CERTAIN,
             )
 
 
@@ -218,7 +218,6 @@ def _no_folder(package: Package, model: Model) -> Iterator[Finding]:
 
 RULE = Rule(
     stage="files",
-    order=40,
     needs=("model",),
     findings=_findings,
     requirements={

@@ -83,7 +83,6 @@ def _of_other_machines(case: Case) -> Iterator[Finding]:
 
 RULE = Rule(
     stage="build",
-    order=20,
     needs=("built",),
     findings=findings,
     requirements={

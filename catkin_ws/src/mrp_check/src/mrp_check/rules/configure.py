@@ -10,7 +10,7 @@ from mrp_check.building import configuring, stubs
 from mrp_check.building.catkin import WANTS_TESTS
 from mrp_check.case import Case
 from mrp_check.contract.errors import CannotCheck
-from mrp_check.contract.finding import WARNING, Finding
+from mrp_check.contract.finding import HABIT, Finding
 from mrp_check.contract.requirements import Requirement, Rule
 from mrp_check.sources import uses
 
@@ -42,14 +42,13 @@ def _wants_tests(case: Case) -> Iterator[Finding]:
     if WANTS_TESTS in " ".join(output.split()):
         found = configuring.finding(case.package, output, case.package_folder, case.catkin.model)
         if found:
-            found.severity = WARNING
+            found.certainty = HABIT
             found.message += " With catkin_make, which makes tests, it goes on."
             yield found
 
 
 RULE = Rule(
     stage="build",
-    order=10,
     needs=("built",),
     findings=findings,
     requirements={

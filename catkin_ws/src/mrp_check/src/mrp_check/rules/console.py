@@ -12,6 +12,7 @@ from mrp_check.confined.places import Kind
 from mrp_check.confined.seen import Log
 from mrp_check.contract.finding import Finding
 from mrp_check.contract.requirements import CONTRACT, Requirement, Rule
+from mrp_check.running.lines import not_logged, other_words, sample
 from mrp_check.running.node import Node, each_node
 from mrp_check.running.words import PREFIX
 
@@ -79,30 +80,6 @@ def _line_findings(node: Node, line: str) -> Iterator[Finding]:
     )
 
 
-def not_logged(node: Node, text: str, wanted: str) -> Finding:
-    """Return the finding about a line that is printed, and should be logged."""
-    return node.finding(
-        "console",
-        f"{node.name} prints “{text}” without logging it: it does not reach /rosout, and has"
-        " neither level nor time.",
-        node.places.of(node.name, Kind.PRINT, Kind.SUBSCRIBER, Kind.INIT),
-        expected=f"[INFO] [time]: {wanted}",
-        seen=text,
-    )
-
-
-def other_words(node: Node, log: Log, wanted: str, fix: str = "") -> Finding:
-    """Return the finding about a line that is logged in other words than the contract's."""
-    return node.finding(
-        "console",
-        f"{node.name} logs “{log.text}”, where the contract says “{wanted}”, as the whole line.",
-        node.places.of_log(node.name, log),
-        expected=wanted,
-        seen=log.text,
-        fix=fix,
-    )
-
-
 def _name_hint(text: str, wanted: str, path: str) -> str:
     """Say how to get a node's full name, if that alone is wrong."""
     group = path.rsplit("/", 1)[0]
@@ -148,18 +125,6 @@ def _level_finding(node: Node, log: Log, wanted: str) -> Iterator[Finding]:
         )
 
 
-def sample(line: str, value: int | str, path: str = "") -> str:
-    """Return a line of the spec as it reads on the console."""
-    text = line.replace("{name}", path).replace("{value}", str(value))
-    return re.sub(r"\\(.)", r"\1", text)
-
-
-def received_pattern(node: Node) -> re.Pattern[str] | None:
-    """Return the compiled pattern of the line for a value that the node receives, or None."""
-    line = node.wanted.received_line
-    return node.wanted.pattern(line) if line else None
-
-
 def _is_logged(text: str, pattern: re.Pattern[str]) -> bool:
     """Return whether a line of the console is what the pattern says, logged as INFO."""
     prefix = PREFIX.match(text)
@@ -172,7 +137,6 @@ def _ratio(a: str, b: str) -> float:
 
 RULE = Rule(
     stage="run",
-    order=70,
     needs=("nodes",),
     findings=each_node(_of),
     requirements={

@@ -6,7 +6,7 @@ from __future__ import annotations
 from typing import Collection, Iterator
 
 from mrp_check.confined.places import Kind, Place
-from mrp_check.contract.finding import ERROR, WARNING, Finding
+from mrp_check.contract.finding import HABIT, READ, Finding
 from mrp_check.contract.requirements import CONTRACT, Rule
 from mrp_check.sources.node import Node, each_node
 
@@ -42,7 +42,7 @@ def _of(node: Node) -> Iterator[Finding]:
             "wrap",
             f"The counter {place.text} is a {kind}: {why}",
             _declared(node, place),
-            severity=ERROR if floating or bits < 32 else WARNING,
+            certainty=READ if floating or bits < 32 else HABIT,
             expected="uint32_t",
             fix=f"Make {place.text} a uint32_t.",
         )
@@ -68,4 +68,4 @@ def _declared(node: Node, place: Place) -> Place:
     return same[0] if same else place
 
 
-RULE = Rule("static", 90, ("facts",), each_node(_of), also=("wrap",), only=CONTRACT)
+RULE = Rule("static", ("facts",), each_node(_of), also=("wrap",), only=CONTRACT)

@@ -12,13 +12,14 @@ import re
 from typing import Iterator, NamedTuple
 
 from mrp_check.case import Case
-from mrp_check.contract.finding import ERROR, NOTE, WARNING, Finding
+from mrp_check.contract.finding import CERTAIN, HABIT, HINT, Finding
 from mrp_check.contract.requirements import ANY, Rule
 from mrp_check.contract.words import braced, line_of
-from mrp_check.rules.deaf_python import GOES_ON
 from mrp_check.sources import uses
 
-ASKS_KEYBOARD = "This loop only asks the keyboard"
+_GOES_ON = (
+    "This loop does not ask whether the node is to end: after Ctrl-C it goes on to its own end."
+)
 # A node with a handler of its own may end in another way.
 _HANDLER = re.compile(r"\b(?:sigaction|signal)\s*\(")
 _HEAD = re.compile(r"\b(?P<word>while\s*(?=\()|for\s*(?=\(\s*;\s*;\s*\))|do\s*(?=\{))")
@@ -69,15 +70,18 @@ def _of(case: Case, place: tuple[str, str], loop: _Loop, is_up: bool) -> Iterato
     if _EITHER.search(asks) and "&&" not in asks:
         said = "With ||, this loop goes on after Ctrl-C as long as the other side of it holds."
         wanted, fix = asks.replace("||", "&&"), "Write && for ||."
-        yield Finding("exit", said, file, line, WARNING, wanted, asks, fix, node=node)
+        yield Finding("exit", said, file, line, HABIT, wanted, asks, fix, node=node)
     if _ASKS.search(loop.asks + loop.block):
         return
     is_endless = _ENDLESS.fullmatch(asks)
     wanted = "while (ros::ok())" if is_endless else f"while (ros::ok() && {asks})"
-    said, severity = "", WARNING
+    said, certainty = "", HABIT
     if _asks_keyboard(loop):
-        severity = ERROR
-        said = f"{ASKS_KEYBOARD}: Ctrl-C does not end the node, which waits for what is typed."
+        certainty = CERTAIN
+        said = (
+            "This loop only asks the keyboard: Ctrl-C does not end the node, which waits for what"
+            " is typed."
+        )
     elif is_endless and not _LEAVES.search(_own(loop.block)):
         ended = "This loop never ends: it does not ask ros::ok(), so Ctrl-C does not end the node."
         said = "" if is_up else ended  # of one that ran, it would have been seen
@@ -87,11 +91,11 @@ def _of(case: Case, place: tuple[str, str], loop: _Loop, is_up: bool) -> Iterato
             " itself, and no callback is called any more."
         )
     elif not is_endless and _TAKES_TIME.search(loop.block):
-        said, severity = GOES_ON, NOTE
+        said, certainty = _GOES_ON, HINT
     if said:
         seen = case.package.line(file, line)
         yield Finding(
-            "exit", said, file, line, severity, wanted, seen, f"Write {wanted}.", node=node
+            "exit", said, file, line, certainty, wanted, seen, f"Write {wanted}.", node=node
         )
 
 
@@ -128,7 +132,7 @@ def _keyboard(
                 " with read(), until somebody presses Enter.",
                 file,
                 line,
-                WARNING,
+                HABIT,
                 expected="ros::init(..., ros::init_options::NoSigintHandler)",
                 seen=case.package.line(file, line),
                 fix="Let ros::init() leave SIGINT alone; or take a parameter or a topic instead.",
@@ -167,4 +171,4 @@ def _own(block: str) -> str:
     return block
 
 
-RULE = Rule("stop", 30, ("nodes",), _findings, also=("exit",), only=ANY)
+RULE = Rule("stop", ("nodes",), _findings, also=("exit",), only=ANY)

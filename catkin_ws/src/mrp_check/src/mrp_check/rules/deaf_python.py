@@ -12,9 +12,9 @@ import ast
 from typing import Iterator
 
 from mrp_check.case import Case
-from mrp_check.contract.finding import NOTE, WARNING, Finding
+from mrp_check.contract.finding import HABIT, HINT, Finding
 from mrp_check.contract.requirements import ANY, Rule
-from mrp_check.rules.unheard import callbacks, in_threads
+from mrp_check.sources.python_callbacks import callbacks, in_threads
 from mrp_check.sources.python_facts import argument
 from mrp_check.sources.python_source import Source, Variable
 
@@ -22,7 +22,7 @@ _LEAVES = (ast.Break, ast.Raise, ast.Return)
 # What asks, what ends the program, and what raises an error of rospy's once the node is to end.
 # publish() gives up in silence then.
 _ENDS = "_exit exit is_shutdown kill quit signal_shutdown spin wait_for_message".split()
-GOES_ON = (
+_GOES_ON = (
     "This loop does not ask whether the node is to end: after Ctrl-C it goes on to its own end."
 )
 _KEYBOARD = {"input", "raw_input"}
@@ -38,7 +38,7 @@ def _findings(case: Case) -> Iterator[Finding]:
             is_up = bool(node and node.is_up)
             for line, said, expected, fix in _deaf(source, is_up) if _is_rospys(source) else ():
                 seen = case.package.line(source.file, line)
-                place = source.file, line, NOTE if said is GOES_ON else WARNING
+                place = source.file, line, HINT if said is _GOES_ON else HABIT
                 if (source.file, line, said) not in reported:
                     reported.add((source.file, line, said))
                     yield Finding("exit", said, *place, expected, seen, fix, node=name)
@@ -67,7 +67,7 @@ def _deaf(source: Source, is_up: bool) -> Iterator[tuple[int, str, str, str]]:
         elif source.function(loop) not in let_off and _ends_late(source, loop):
             yield (
                 loop.lineno,
-                GOES_ON,
+                _GOES_ON,
                 "rospy.is_shutdown() in the loop",
                 "Let the loop end when rospy.is_shutdown(), too.",
             )
@@ -244,4 +244,4 @@ def _keys(source: Source, within: ast.AST, context: type[ast.expr_context]) -> s
     return {key for key in map(source.key, nodes) if key}
 
 
-RULE = Rule("stop", 31, ("nodes",), _findings, also=("exit",), only=ANY)
+RULE = Rule("stop", ("nodes",), _findings, also=("exit",), only=ANY)

@@ -17,13 +17,12 @@ from genmsg.msgs import BUILTIN_TYPES, bare_msg_type
 
 from mrp_check.case import Case
 from mrp_check.contract import resources
-from mrp_check.contract.finding import NOTE, WARNING, Finding
+from mrp_check.contract.finding import HABIT, HINT, Finding
 from mrp_check.contract.requirements import ANY, Rule
 from mrp_check.contract.words import last_part, nearest, perhaps
 from mrp_check.sources import uses
 from mrp_check.student.package import Package
 
-UNREADABLE = "which ROS cannot read"
 _BETWEEN = "---"  # a request and its response
 # Types of C++ and Python.
 _OF_LANGUAGES = {"int": "int32", "float": "float32", "double": "float64", "str": "string"}
@@ -71,7 +70,7 @@ def _unusual(package: Package) -> Iterator[Finding]:
                 "messages",
                 f"ROS writes the names of {what} in {usual}; here: {', '.join(found)}.",
                 *next(iter(found.values())),
-                NOTE,
+                HINT,
                 expected=f"names in {usual}",
                 seen=", ".join(found),
                 fix="Rename them, where they are not in use yet.",
@@ -96,7 +95,7 @@ def _of_line(
         expected = near or "the type of a message that is there"
     yield Finding(
         "messages",
-        f"{path} has a line {UNREADABLE}: {said}",
+        f"{path} has a line that ROS cannot read: {said}",
         path,
         line,
         expected=expected,
@@ -113,7 +112,7 @@ def _word_of_cpp(path: str, line: int, text: str, field: str) -> Finding:
         " of this message can be compiled.",
         path,
         line,
-        WARNING,
+        HABIT,
         expected="a name that is no word of C++ or Python",
         seen=text.strip(),
         fix="Give the field another name.",
@@ -141,4 +140,4 @@ def _unknown(package: Package, type_: str) -> tuple[str, str | None] | None:
     return said + perhaps(near), near
 
 
-RULE = Rule("files", 42, ("model",), _findings, also=("messages",), only=ANY)
+RULE = Rule("files", ("model",), _findings, also=("messages",), only=ANY)

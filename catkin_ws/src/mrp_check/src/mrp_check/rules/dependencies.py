@@ -10,7 +10,7 @@ from catkin_pkg.package import Package as Manifest
 
 from mrp_check import evidence
 from mrp_check.case import Case
-from mrp_check.contract.finding import NOTE, WARNING, Finding
+from mrp_check.contract.finding import HABIT, HINT, READ, Finding
 from mrp_check.contract.requirements import Requirement, Rule
 from mrp_check.contract.words import nearest
 from mrp_check.sources import uses
@@ -53,7 +53,7 @@ def _foreign(package: Package, name: str, use: Use) -> Finding:
         " Where it is not installed, this package cannot be built.",
         use.file,
         use.line,
-        severity="error" if use.firm else WARNING,
+        certainty=READ if use.firm else HABIT,
         expected=f"no use of {name}; or <depend>{name}</depend>, and {name} in COMPONENTS",
         seen=package.line(use.file, use.line),
         fix="Take the line out if nothing of it is used; else declare the package.",
@@ -76,7 +76,7 @@ def _kind(package: Package, name: str, use: Use, manifest: Manifest) -> Iterator
         f" {use.file} uses it.",
         FILE,
         line,
-        WARNING,
+        HABIT,
         expected=f"<depend>{name}</depend>",
         seen=package.line(FILE, line),
         fix=f"Write <depend>{name}</depend>.",
@@ -105,7 +105,7 @@ def _not_in_manifest(
         + (f" It names {near}, and there is no such package." if near else ""),
         FILE,
         line,
-        severity="error" if use.firm else WARNING,
+        certainty=READ if use.firm else HABIT,
         expected=tags,
         seen=f"<depend>{near}</depend>" if near else f"no dependency on {name}",
         fix=f"Write {name} for {near}." if near else f"Add the line {tags}.",
@@ -127,7 +127,7 @@ def _not_in_cmake(name: str, use: Use, model: Model, call: Call) -> Finding:
         + (f" It names {near}, and there is no such package." if near else ""),
         call.file,
         call.line,
-        severity="error" if is_cpp and use.firm else NOTE,
+        certainty=READ if is_cpp and use.firm else HINT,
         expected=f"find_package(catkin REQUIRED COMPONENTS ... {name} ...)",
         seen=", ".join(model.components) or "no COMPONENTS",
         fix=f"Write {name} for {near}." if near else f"Add {name} to COMPONENTS.",
@@ -137,7 +137,6 @@ def _not_in_cmake(name: str, use: Use, model: Model, call: Call) -> Finding:
 
 RULE = Rule(
     stage="files",
-    order=20,
     needs=("manifest", "model"),
     findings=_findings,
     requirements={
@@ -147,4 +146,5 @@ RULE = Rule(
             evidence.code,
         )
     },
+    sure=READ,
 )

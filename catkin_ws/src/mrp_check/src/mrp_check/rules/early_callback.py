@@ -6,7 +6,7 @@ from __future__ import annotations
 import ast
 from typing import Iterator
 
-from mrp_check.contract.finding import WARNING, Finding
+from mrp_check.contract.finding import HABIT, Finding
 from mrp_check.contract.requirements import Rule
 from mrp_check.sources.python_rule import PythonRule, arguments_of, ast_text, of_sources
 from mrp_check.sources.python_source import Defined, Variable
@@ -35,7 +35,7 @@ class EarlyCallback(PythonRule):
                         f"{function.name}() uses {said}, which is made in line {place.lineno} only:"
                         f" a {what} that comes before raises an error.",
                         call,
-                        severity=WARNING,
+                        certainty=HABIT,
                         expected=f"{said} before what calls {function.name}()",
                         fix=f"Move line {place.lineno} up to before this line.",
                     )
@@ -110,4 +110,4 @@ def may_be_inherited(key: Variable) -> bool:
     return bool(bases) or any(getattr(target, "id", "") == name for target in own)
 
 
-RULE = Rule("static", 33, ("facts",), of_sources(EarlyCallback), also=("callbacks",))
+RULE = Rule("static", ("facts",), of_sources(EarlyCallback), also=("callbacks",))

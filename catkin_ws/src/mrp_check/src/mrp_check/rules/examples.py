@@ -137,7 +137,6 @@ def _replied(node: Node) -> bool:
 
 RULE = Rule(
     stage="run",
-    order=25,
     needs=("nodes",),
     findings=_findings,
     requirements={

@@ -12,17 +12,17 @@ from mrp_check import evidence
 from mrp_check.case import Case
 from mrp_check.confined.places import Kind
 from mrp_check.confined.seen import Alone, LaunchResult
-from mrp_check.contract.finding import Finding, Where
+from mrp_check.contract.finding import HABIT, Finding, Where
 from mrp_check.contract.requirements import Requirement, Rule
 from mrp_check.contract.spec import Shutdown
 from mrp_check.contract.words import last_part
-from mrp_check.rules.busy_loop import may_wait_for_itself
 from mrp_check.running.node import Node
 from mrp_check.running.places import Traceback
 from mrp_check.running.words import code_text, last_words
 
 _BEFORE = 0.1  # seconds: what is printed so shortly before it is asked belongs to its end, too
 # What rospy itself may say when a message is published at the very moment of the end.
+_ENDED = ("KeyboardInterrupt", "ROSInterruptException")
 _AT_THE_END = ("closed topic", "closed during publish", "ROSInterruptException: rospy shutdown")
 
 
@@ -30,9 +30,17 @@ def findings(case: Case) -> Iterator[Finding]:
     """Yield a Finding for each node that does not end as the spec says."""
     for node in case.nodes.values():
         if node.direct and node.direct.asked is not None:
-            is_chance = node.direct.stopped_in is None and not case.spec.is_contract
-            if not is_chance or not may_wait_for_itself(case, node.name):
-                yield from _of(node, node.direct, node.direct.asked, case.spec.shutdown)
+            for finding in _of(node, node.direct, node.direct.asked, case.spec.shutdown):
+                # Whatever its exit code, it ended: without a contract, nobody asks for more.
+                if not case.spec.is_contract and _has_ended(node.direct):
+                    finding.certainty = HABIT
+                yield finding
+
+
+def _has_ended(direct: Alone) -> bool:
+    """Return whether a node ended by itself on Ctrl-C, though perhaps not cleanly."""
+    said = any(word in text for _, _, text in direct.lines for word in _ENDED)
+    return (direct.code or 0) > 0 or said
 
 
 def _of(node: Node, direct: Alone, asked: float, shutdown: Shutdown) -> Iterator[Finding]:
@@ -168,7 +176,6 @@ def _leaves(node: Node, code: int | None) -> Where:
 
 RULE = Rule(
     stage="stop",
-    order=10,
     needs=("nodes",),
     findings=findings,
     requirements={

@@ -88,4 +88,4 @@ def _repeats(one: ast.AST) -> bool:
     return isinstance(one, ast.While) or isinstance(one, ast.For) and "sleep" in calls
 
 
-RULE = Rule("static", 100, ("facts",), _findings, also=("topic",), only=ANY)
+RULE = Rule("static", ("facts",), _findings, also=("topic",), only=ANY)

@@ -123,4 +123,4 @@ def _attributes(within: ast.AST) -> set[str]:
     return {node.attr for node in ast.walk(within) if isinstance(node, ast.Attribute)}
 
 
-RULE = Rule("static", 97, ("facts",), _findings, also=("callbacks",), only=ANY)
+RULE = Rule("static", ("facts",), _findings, also=("callbacks",), only=ANY)

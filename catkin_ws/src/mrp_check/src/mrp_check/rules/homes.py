@@ -8,7 +8,7 @@ import re
 from typing import Iterable, Iterator
 
 from mrp_check.case import Case
-from mrp_check.contract.finding import WARNING, Finding
+from mrp_check.contract.finding import HABIT, Finding
 from mrp_check.contract.requirements import ANY, Rule
 from mrp_check.sources import uses
 from mrp_check.sources.python_source import Source
@@ -47,7 +47,7 @@ def _first_of_each(file: str, found: Iterable[tuple[str, int]]) -> Iterator[Find
                 " there such a file.",
                 file,
                 line,
-                WARNING,
+                HABIT,
                 expected="a path that is found from the package's folder: $(find PACKAGE) in a"
                 " launch file, rospkg in Python, ros::package::getPath() in C++; or a parameter",
                 seen=path,
@@ -74,4 +74,4 @@ def _in_text(part: str, start: int, text: str) -> Iterator[tuple[str, int]]:
         yield match.group(), text.count("\n", 0, start + match.start()) + 1
 
 
-RULE = Rule("static", 91, ("facts",), _findings, also=("starts",), only=ANY)
+RULE = Rule("static", ("facts",), _findings, also=("starts",), only=ANY)

@@ -14,9 +14,9 @@ from mrp_check.case import Case
 from mrp_check.contract.finding import Finding
 from mrp_check.contract.requirements import ANY, Rule
 from mrp_check.contract.words import braced, line_of
-from mrp_check.rules.unheard import callbacks
 from mrp_check.sources import in_both
 from mrp_check.sources.in_both import OfNode
+from mrp_check.sources.python_callbacks import callbacks
 from mrp_check.sources.python_source import Source
 
 _HEARS = re.compile(r"\bsubscribe\s*(?:<[^;()]*>)?\s*\(([^;]*);")
@@ -89,4 +89,4 @@ def _in_cpp(text: str) -> Iterator[tuple[int, str]]:
                 yield line_of(slept), name
 
 
-RULE = Rule("static", 125, ("facts",), _findings, also=("callbacks",), only=ANY)
+RULE = Rule("static", ("facts",), _findings, also=("callbacks",), only=ANY)

@@ -12,7 +12,7 @@ import re
 from typing import Iterator
 
 from mrp_check.case import Case
-from mrp_check.contract.finding import NOTE, WARNING, Finding
+from mrp_check.contract.finding import HABIT, HINT, Finding
 from mrp_check.contract.requirements import ANY, Rule
 from mrp_check.contract.words import line_of
 from mrp_check.sources import in_both
@@ -54,7 +54,7 @@ def _goes_on(one: OfNode, name: str, line: int, is_limited: bool) -> Finding:
         line,
         expected=f"if (!{name}(...))" if one.code else f"if not ...{name}(...):",
         fix="Look at what it returns: say what is missing, and leave.",
-        severity=WARNING if is_limited else NOTE,
+        certainty=HABIT if is_limited else HINT,
     )
 
 
@@ -87,4 +87,4 @@ def _of_python(one: OfNode) -> Iterator[Finding]:
                 return
 
 
-RULE = Rule("static", 116, ("facts",), _findings, also=("starts",), only=ANY)
+RULE = Rule("static", ("facts",), _findings, also=("starts",), only=ANY)

@@ -32,7 +32,6 @@ def _of(node: Node) -> Iterator[Finding]:
 
 RULE = Rule(
     stage="run",
-    order=45,
     needs=("nodes",),
     findings=each_node(_of, each_topic=True),
     requirements={

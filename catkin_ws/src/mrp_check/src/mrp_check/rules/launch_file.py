@@ -8,7 +8,7 @@ from typing import Callable, Iterator, Optional, Sequence, Tuple
 
 from mrp_check import evidence
 from mrp_check.case import Case
-from mrp_check.contract.finding import NOTE, WARNING, Finding, Line
+from mrp_check.contract.finding import CERTAIN, HABIT, HINT, Finding, Line
 from mrp_check.contract.requirements import Requirement, Rule
 from mrp_check.contract.words import last_part, line_of, nearest
 from mrp_check.sources import uses
@@ -33,7 +33,7 @@ def _findings(case: Case) -> Iterator[Finding]:
         said = [*commands(case.package, tags)]
         yield from said
         if launch.error:
-            error = _error(launch, tags)
+            error = _error(launch, tags, case.spec.is_contract)
             if any((one.file, one.line) == (error.file, error.line) for one in said):
                 error.consequence_of = "launch-file"
             yield error
@@ -55,7 +55,7 @@ def _in_braces(file: str, line: int, written: str) -> Finding:
         " brackets.",
         file,
         line,
-        WARNING,
+        HABIT,
         expected=right,
         seen=written,
         fix=f"Write {right}.",
@@ -76,7 +76,7 @@ def _unknown(tags: Sequence[tuple[str, Element]]) -> Iterator[Finding]:
                 f"roslaunch knows no element <{element.tag}>{where}, and passes over it.",
                 file,
                 element.line,
-                WARNING,
+                HABIT,
                 expected=f"<{near}>" if near else "an element of roslaunch",
                 seen=f"<{element.tag}>",
                 fix=f"Write <{near}>." if near else "Take it out.",
@@ -121,7 +121,7 @@ def _no_attributes(launch: Launch, tags: Sequence[tuple[str, Element]]) -> Itera
                 f"roslaunch knows no attribute {name} of <{element.tag}>, and passes over it.",
                 file,
                 element.line,
-                WARNING,
+                HABIT,
                 expected=f'{near}="..."' if near else "an attribute of roslaunch",
                 seen=f'{name}="{element.attributes[name]}"',
                 fix=f"Write {near} for {name}." if near else "Take it out.",
@@ -142,7 +142,7 @@ def unused(package: Package, tags: Sequence[tuple[str, Element]]) -> Iterator[Fi
                 f"The argument {name} changes nothing: the launch file does not use it.",
                 file,
                 element.line,
-                NOTE,
+                HINT,
                 expected=f"$(arg {name}) somewhere",
                 seen=package.line(file, element.line),
                 fix=f"Use $(arg {name}); or take it out.",
@@ -204,6 +204,9 @@ def _argument(said: _Said, name: str) -> _Words:
     return place, f"roslaunch cannot load the launch file: {said.text}", None
 
 
+# What roslaunch says where an argument, a variable of the environment, or another package's file
+# is missing.
+_WANTED = re.compile(r"requires the '\w+' arg|arg to be set|environment variable|[Nn]ot ?[Ff]ound")
 # What roslaunch says -> the function of _Said and of its groups that returns (place, message, fix),
 # and the entry of the page why.
 _WORDS = (
@@ -227,7 +230,7 @@ _WORDS = (
 )
 
 
-def _error(launch: Launch, tags: Sequence[tuple[str, Element]]) -> Finding:
+def _error(launch: Launch, tags: Sequence[tuple[str, Element]], is_contract: bool) -> Finding:
     """Return the Finding about what roslaunch said instead of loading the file."""
     said = _Said(launch, tags)
     match, words, why = next(
@@ -241,6 +244,8 @@ def _error(launch: Launch, tags: Sequence[tuple[str, Element]]) -> Finding:
         "launch-file",
         message,
         *place,
+        # Another launch file, or who calls it, may give what it wants.
+        HINT if _WANTED.search(said.text) and not is_contract else CERTAIN,
         expected="a file that roslaunch can load",
         seen=said.text[:500],
         fix=fix
@@ -251,7 +256,6 @@ def _error(launch: Launch, tags: Sequence[tuple[str, Element]]) -> Finding:
 
 RULE = Rule(
     stage="files",
-    order=90,
     needs=("launch",),
     findings=_findings,
     requirements={

@@ -10,7 +10,7 @@ import re
 from typing import Iterator
 
 from mrp_check.case import Case
-from mrp_check.contract.finding import ERROR, WARNING, Finding
+from mrp_check.contract.finding import CERTAIN, HABIT, Finding
 from mrp_check.contract.requirements import ANY, Rule
 from mrp_check.contract.words import line_of
 from mrp_check.sources import uses
@@ -21,19 +21,19 @@ _GONE = {
     r"\btype\s*=\s*\"(state_publisher)\"": (
         "robot_state_publisher has no executable state_publisher any more: roslaunch cannot start"
         " it",
-        ERROR,
+        CERTAIN,
         "robot_state_publisher",
         "",
     ),
     r"\(find xacro\)/(xacro\.py)\b": (
         "xacro has no xacro.py any more: roslaunch cannot load the file",
-        ERROR,
+        CERTAIN,
         "xacro",
         "",
     ),
     r"\bname\s*=\s*\"(use_gui)\"": (
         "joint_state_publisher does not read use_gui any more: no window with sliders comes",
-        WARNING,
+        HABIT,
         "a node of type joint_state_publisher_gui",
         "joint_state_publisher",
     ),
@@ -43,18 +43,18 @@ _GONE = {
 def _findings(case: Case) -> Iterator[Finding]:
     for file in case.package.of_kind("launch"):
         text = uses.code(case.package, file)
-        for shape, (said, severity, instead, beside) in _GONE.items():
+        for shape, (said, certainty, instead, beside) in _GONE.items():
             for match in re.finditer(shape, text) if beside in text else ():
                 yield Finding(
                     "launch-nodes",
                     f"{said} (it went with Noetic).",
                     file,
                     line_of(match, 1),
-                    severity,
+                    certainty,
                     expected=instead,
                     seen=match[1],
                     fix=f"Write {instead} for {match[1]}.",
                 )
 
 
-RULE = Rule("files", 46, ("launch",), _findings, also=("launch-nodes",), only=ANY)
+RULE = Rule("files", ("launch",), _findings, also=("launch-nodes",), only=ANY)

@@ -9,7 +9,7 @@ from typing import Iterator, Sequence
 from mrp_check import evidence
 from mrp_check.case import Case
 from mrp_check.confined.launch_dump import Started
-from mrp_check.contract.finding import WARNING, Finding
+from mrp_check.contract.finding import HABIT, Finding
 from mrp_check.contract.requirements import CONTRACT, Requirement, Rule
 from mrp_check.student.xml_file import Element
 
@@ -38,7 +38,7 @@ def _findings(case: Case) -> Iterator[Finding]:
             " given another one when it is started.",
             file,
             element.line,
-            WARNING,
+            HABIT,
             expected=f'<arg name="group" default="{group}"/> and ns="$(arg group)"',
             seen=f'ns="{element.attributes["ns"]}"',
             fix=f'Make it an argument: <arg name="group" default="{group}"/>.',
@@ -91,7 +91,6 @@ def _line(nodes: Sequence[Started], elements: Sequence[Element], has_groups: boo
 
 RULE = Rule(
     stage="files",
-    order=110,
     needs=("launch",),
     findings=_findings,
     requirements={

@@ -29,4 +29,4 @@ def findings(case: Case) -> Iterator[Finding]:
             return
 
 
-RULE = Rule("run", 90, ("nodes",), findings, also=("namespace",), only=CONTRACT)
+RULE = Rule("run", ("nodes",), findings, also=("namespace",), only=CONTRACT)

@@ -13,7 +13,7 @@ from mrp_check import evidence
 from mrp_check.building.catkin import search_path
 from mrp_check.case import Case
 from mrp_check.confined.launch_dump import Started
-from mrp_check.contract.finding import NOTE, WARNING, Finding
+from mrp_check.contract.finding import HABIT, HINT, Finding
 from mrp_check.contract.requirements import Requirement, Rule
 from mrp_check.contract.words import last_part, nearest
 from mrp_check.sources import uses
@@ -58,7 +58,7 @@ def _illegal(launch: Launch) -> Iterator[Finding]:
                 f"{node.name} is no legal name of a node: roslaunch and ROS warn of it.",
                 node.file,
                 node.line,
-                WARNING,
+                HABIT,
                 expected="letters, digits and _, with a letter first",
                 seen=f'name="{node.name}"',
                 fix=f'Write name="{legal}".',
@@ -72,7 +72,7 @@ def _elsewhere(case: Case, launch: Launch) -> Iterator[Finding]:
     for name, node in {node.package: node for node in launch.nodes}.items():
         if name != case.package.name and not uses.is_ros_package(name):
             said = uses.absent(name, "cpp")
-            yield Finding("launch-nodes", said, node.file, node.line, NOTE)
+            yield Finding("launch-nodes", said, node.file, node.line, HINT)
     for node in launch.nodes:
         is_ros = node.package == case.package.name or uses.is_called_so(node.package)
         # Both names are those of before the package was renamed.
@@ -81,12 +81,12 @@ def _elsewhere(case: Case, launch: Launch) -> Iterator[Finding]:
         )
         if (node.type in own or is_old) and not is_ros:
             found = _other_package(case.package, case.model, node, None)
-            yield dataclasses.replace(found, severity=WARNING)
+            yield dataclasses.replace(found, certainty=HABIT)
     for node in launch.nodes:
         program = node.prefix.split()[0] if node.prefix else None
         if program and not shutil.which(program, path=search_path()):
             said = uses.absent(program, "program")
-            yield Finding("launch-nodes", said, node.file, node.line, NOTE)
+            yield Finding("launch-nodes", said, node.file, node.line, HINT)
 
 
 def _missing(package: Package, launch: Launch, name: str, spare: list[Started]) -> Finding:
@@ -216,7 +216,6 @@ def _targets_line(model: Model) -> int:
 
 RULE = Rule(
     stage="files",
-    order=100,
     needs=("model", "launch"),
     findings=_findings,
     requirements={

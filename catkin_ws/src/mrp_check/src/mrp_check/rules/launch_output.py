@@ -28,7 +28,6 @@ def findings(case: Case) -> Iterator[Finding]:
 
 RULE = Rule(
     stage="files",
-    order=120,
     needs=("launch",),
     findings=findings,
     requirements={

@@ -51,6 +51,4 @@ def remap_line(package: Package, node: Started, old: str, new: str) -> int | Non
     return node.line
 
 
-RULE = Rule(
-    stage="files", order=125, needs=("launch",), findings=findings, also=("topic",), only=CONTRACT
-)
+RULE = Rule(stage="files", needs=("launch",), findings=findings, also=("topic",), only=CONTRACT)

@@ -7,7 +7,7 @@ from typing import Iterator
 
 from mrp_check.case import Case
 from mrp_check.confined.places import Kind
-from mrp_check.contract.finding import ERROR, NOTE, WARNING, Finding, Where
+from mrp_check.contract.finding import HABIT, HINT, Finding, Where
 from mrp_check.contract.requirements import ANY, Rule
 from mrp_check.running.observing import Launched
 from mrp_check.running.places import Traceback
@@ -17,7 +17,6 @@ from mrp_check.running.words import code_text
 from mrp_check.sources import asked
 
 _GIVES_UP = "RLException: "
-_MILD = (NOTE, WARNING, ERROR)
 
 
 def _findings(case: Case) -> Iterator[Finding]:
@@ -28,15 +27,15 @@ def _findings(case: Case) -> Iterator[Finding]:
         # Nobody but this program runs two ways of writing one node at once.
         is_odd = not launched.file and _has_alternatives(case)
         for one in raised if is_odd else ():
-            one.severity = min(one.severity, WARNING, key=_MILD.index)
+            one.certainty = one.certainty or HABIT
         yield from raised
-        waiting = {one.node for one in raised if one.severity == NOTE}
+        waiting = {one.node for one in raised if one.certainty == HINT}
         for path, code in ends(lines).items():
             name = launched.nodes.get(path)
             # What ends by itself, too, has been said.
             if code and name and name not in waiting and not case.nodes[name].not_up:
                 finding = _died(case, launched, name, code)
-                finding.severity = NOTE if is_odd else finding.severity
+                finding.certainty = HINT if is_odd else finding.certainty
                 yield finding
 
 
@@ -82,7 +81,7 @@ def _error(case: Case, launched: Launched, name: str, found: Traceback) -> Itera
     source = case.package.line(place[0], place[1])
     if "sys.argv[" in source:
         said = f"{name} waits for arguments on its command line: {kind}: {text}"
-        yield Finding("starts", said, *place, severity=NOTE, node=name)
+        yield Finding("starts", said, *place, certainty=HINT, node=name)
         return
     yield Finding(
         id_of_error(kind, text, "callbacks"),
@@ -116,7 +115,7 @@ def _gave_up(case: Case, launched: Launched, lines: list[str]) -> Iterator[Findi
         "starts",
         f"roslaunch gives up on {what}: {said[len(_GIVES_UP) :][:300]}",
         *place,
-        severity=NOTE,
+        certainty=HINT,
         expected="a launch file that goes on until Ctrl-C",
         seen=said[:300],
     )
@@ -124,7 +123,6 @@ def _gave_up(case: Case, launched: Launched, lines: list[str]) -> Iterator[Findi
 
 RULE = Rule(
     "run",
-    13,
     ("nodes",),
     _findings,
     also=("starts", "callbacks", "python-names", "python-syntax", "type", "node-start"),

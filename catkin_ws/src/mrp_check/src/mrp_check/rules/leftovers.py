@@ -49,7 +49,6 @@ def _starts_program(name: str | None, package: Package, places: Places) -> Where
 
 RULE = Rule(
     stage="stop",
-    order=20,
     needs=("nodes",),
     findings=findings,
     requirements={

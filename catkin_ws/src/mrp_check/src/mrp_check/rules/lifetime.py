@@ -7,7 +7,7 @@ from typing import Iterator
 
 from mrp_check import evidence
 from mrp_check.confined.places import Kind
-from mrp_check.contract.finding import Finding
+from mrp_check.contract.finding import CERTAIN, READ, Finding
 from mrp_check.contract.requirements import Requirement, Rule
 from mrp_check.sources.node import Node, each_node
 
@@ -38,6 +38,8 @@ def _of(node: Node) -> Iterator[Finding]:
             "lifetime",
             f"The {what} that {call}() makes {how}.",
             place,
+            # Nobody may need a publisher for longer.
+            certainty=READ if what == Kind.PUBLISHER.value else CERTAIN,
             expected=f"a {what} that lives as long as the node, such as a member of the class",
             fix=f"Keep it as a member: {what}_ = ...{call}(...);",
         )
@@ -45,7 +47,6 @@ def _of(node: Node) -> Iterator[Finding]:
 
 RULE = Rule(
     stage="static",
-    order=70,
     needs=("facts",),
     findings=each_node(_of),
     requirements={

@@ -14,8 +14,8 @@ from mrp_check.case import Case
 from mrp_check.contract.finding import Finding
 from mrp_check.contract.requirements import ANY, Rule
 from mrp_check.contract.words import braced, line_of
-from mrp_check.rules.unheard import in_threads
 from mrp_check.sources import in_both
+from mrp_check.sources.python_callbacks import in_threads
 from mrp_check.sources.python_source import Source
 
 GOES_ON = "after Ctrl-C it goes on to its end"
@@ -92,4 +92,4 @@ def _pauses(source: Source, loop: ast.For) -> Iterator[float]:
                     yield 1 / rate if isinstance(rate, (int, float)) and rate else 0.0
 
 
-RULE = Rule("static", 105, ("facts",), _findings, also=("exit",), only=ANY)
+RULE = Rule("static", ("facts",), _findings, also=("exit",), only=ANY)

@@ -7,7 +7,7 @@ from typing import Iterator
 
 from mrp_check import evidence
 from mrp_check.case import Case
-from mrp_check.contract.finding import Finding
+from mrp_check.contract.finding import HABIT, HINT, Finding
 from mrp_check.contract.requirements import Requirement, Rule
 from mrp_check.student.manifest import FILE
 from mrp_check.student.xml_file import elements, stray
@@ -37,16 +37,35 @@ def _findings(case: Case) -> Iterator[Finding]:
     if manifest:
         tags = [(FILE, one) for one in elements(package.bytes(FILE)) if one.tag == "package"]
         yield from stray("manifest", package, tags, ())
+    if manifest and "TODO" in manifest.licenses:
+        yield _no_licence(case)
+
+
+def _no_licence(case: Case) -> Finding:
+    # A tag may have an attribute, or go over several lines.
+    tag = case.package.find_line(FILE, "<license", 1)
+    return Finding(
+        "licensed",
+        "package.xml has the licence that catkin_create_pkg wrote: nobody may use the package.",
+        FILE,
+        case.package.find_line(FILE, "TODO</license>", tag),
+        HABIT if case.spec.is_contract else HINT,
+        expected="the name of a licence, such as BSD-3-Clause",
+        seen="<license>TODO</license>",
+        fix="Choose a licence, and write its name.",
+    )
 
 
 RULE = Rule(
     stage="files",
-    order=10,
     needs=("manifest",),
     findings=_findings,
     requirements={
         "manifest": Requirement(
             "package.xml is complete and valid", "building#package-xml", evidence.always
-        )
+        ),
+        "licensed": Requirement(
+            "package.xml names a licence", "building#package-xml", evidence.manifest
+        ),
     },
 )

@@ -10,7 +10,7 @@ from typing import Iterable, Iterator
 from mrp_check.case import Case
 from mrp_check.confined.places import Kind
 from mrp_check.confined.seen import Seen
-from mrp_check.contract.finding import ERROR, NOTE, WARNING, Finding
+from mrp_check.contract.finding import HABIT, HINT, SEEN, Finding
 from mrp_check.contract.requirements import ANY, Rule
 from mrp_check.contract.words import last_part, nearest
 from mrp_check.running.traces import ROS_TOPICS
@@ -101,7 +101,7 @@ def _of_types(case: Case, graph: Graph, end: End, publishers: list[End]) -> Iter
             file,
             line,
             # Examples may share a topic's name: each of them runs with its own partner.
-            WARNING if by_chance and end.type in types else ERROR,
+            HABIT if by_chance and end.type in types else SEEN,
             expected=other.type,
             seen=end.type,
             fix="Let both use the same type.",
@@ -128,7 +128,7 @@ def _alone(case: Case, graph: Graph, end: End, published: set[str]) -> Iterator[
             f"{graph.where}, {end.node} waits for messages on {end.topic}: {nobody} publishes any.",
             file,
             line,
-            NOTE,
+            HINT,
             node=end.node,
         )
         return
@@ -141,7 +141,7 @@ def _alone(case: Case, graph: Graph, end: End, published: set[str]) -> Iterator[
         f" {other.node} publishes on {other.topic}.",
         file,
         line,
-        ERROR if is_sure and digits[0] != digits[1] else WARNING,
+        SEEN if is_sure and digits[0] != digits[1] else HABIT,
         expected=other.topic,
         seen=end.topic,
         fix="Give both topics one name; a <remap> in the launch file does so, too.",
@@ -189,4 +189,4 @@ def _is_moved(one: End, other: End) -> bool:
     return last_part(one.topic) == last_part(other.topic)
 
 
-RULE = Rule("run", 21, ("nodes",), _findings, also=("topic", "type"), only=ANY)
+RULE = Rule("run", ("nodes",), _findings, also=("topic", "type"), only=ANY)

@@ -88,4 +88,4 @@ class Messages(PythonRule):
                 )
 
 
-RULE = Rule("static", 21, ("facts",), of_sources(Messages), also=("python-names",))
+RULE = Rule("static", ("facts",), of_sources(Messages), also=("python-names",))

@@ -10,7 +10,7 @@ from catkin_pkg.package import Package as Manifest
 
 from mrp_check import evidence
 from mrp_check.case import Case
-from mrp_check.contract.finding import ERROR, WARNING, Finding, Line
+from mrp_check.contract.finding import CERTAIN, HABIT, READ, Finding, Line
 from mrp_check.contract.requirements import Requirement, Rule
 from mrp_check.contract.spec import PACKAGE
 from mrp_check.contract.words import last_part, nearest
@@ -24,7 +24,6 @@ _GENERATION = "message_generation"
 # What of package.xml asks for it where nothing is built, too.
 _AFTER_BUILD = rf"^\s*<(?:exec_|run_|build_export_)?depend>\s*{_GENERATION}\s*<"
 _OF_MESSAGES = ("_msgs", "_srvs", "_msg", "_srv")  # how packages of messages are called
-CHANCE = "It then depends on chance whether it can be built"
 # The commands that only message_generation brings.
 _BROUGHT = r"^\s*(add_(message|service|action)_files|generate_messages)\s*\("
 
@@ -69,7 +68,7 @@ def _after_build(package: Package, manifest: Manifest, model: Model) -> Iterator
             " message_runtime.",
             file,
             line,
-            WARNING,
+            HABIT,
             expected="message_runtime",
             seen=package.line(file, line),
             fix=f"Write message_runtime here, and <build_depend>{_GENERATION}</build_depend> in"
@@ -92,7 +91,7 @@ def _in_cmake(case: Case, files: list[str]) -> Iterator[Finding]:
             brought[1] if brought else catkin_line,
             "find_package(catkin REQUIRED COMPONENTS message_generation ...)",
             "Add message_generation to COMPONENTS.",
-            WARNING if _is_brought_along(model) else ERROR,
+            HABIT if _is_brought_along(model) else READ,
         )
     for path in files:
         file = last_part(path)
@@ -108,7 +107,7 @@ def _in_cmake(case: Case, files: list[str]) -> Iterator[Finding]:
                 call.line if call else catkin_line,
                 f"{command}(FILES {file})",
                 f"Add {file} to {command}(FILES ...).",
-                ERROR if _is_used(case, path) else WARNING,
+                READ if _is_used(case, path) else HABIT,
             )
     if call and model.message_files and model.generate is None:
         yield _message_finding(
@@ -151,6 +150,7 @@ def _misplaced(line: int, command: str, path: str, elsewhere: str) -> Finding:
         f"{command}() looks for {elsewhere}, and the file lies at {path}: CMake stops.",
         FILE,
         line,
+        CERTAIN,
         expected=elsewhere,
         seen=path,
         fix=f"Move {path} to {elsewhere}.",
@@ -183,7 +183,7 @@ def _in_manifest(package: Package, manifest: Manifest, is_brought: bool) -> Iter
                 " its own, and needs it.",
                 "package.xml",
                 first_dependency(package, tag),
-                severity=WARNING if builds else ERROR,
+                certainty=HABIT if builds else READ,
                 expected=f"<{tag}>{name}</{tag}>",
                 seen=f"no <{tag}> with {name}",
                 fix=f"Add the line <{tag}>{name}</{tag}>.",
@@ -191,10 +191,10 @@ def _in_manifest(package: Package, manifest: Manifest, is_brought: bool) -> Iter
 
 
 def _message_finding(
-    message: str, line: int, expected: str, fix: str, severity: str = ERROR
+    message: str, line: int, expected: str, fix: str, certainty: str = READ
 ) -> Finding:
     seen = "no such entry"
-    return Finding("messages", message, FILE, line, severity, expected=expected, seen=seen, fix=fix)
+    return Finding("messages", message, FILE, line, certainty, expected, seen, fix)
 
 
 def _definition(
@@ -253,9 +253,11 @@ def _order(package: Package, model: Model) -> Iterator[Finding]:
             yield Finding(
                 "messages",
                 f"The target {target.name} does not wait until {header}, which {file} includes in"
-                f" line {line}, has been made. {CHANCE}.",
+                f" line {line}, has been made. It then depends on chance whether it"
+                " can be built.",
                 target.file,
                 target.line,
+                CERTAIN,
                 expected=f"add_dependencies({target.name} ${{${{PROJECT_NAME}}_EXPORTED_TARGETS}})",
                 seen="no such call",
                 fix=f"Add add_dependencies({target.name} ${{${{PROJECT_NAME}}_EXPORTED_TARGETS}})"
@@ -283,7 +285,7 @@ def _of_others(package: Package, model: Model) -> Iterator[Finding]:
                     f" in line {line}, has been made by {name}.",
                     target.file,
                     target.line,
-                    WARNING,
+                    HABIT,
                     expected=f"add_dependencies({target.name} ${{catkin_EXPORTED_TARGETS}})",
                     seen="no such call",
                     fix=f"Add add_dependencies({target.name} ${{catkin_EXPORTED_TARGETS}}) after"
@@ -326,7 +328,6 @@ def _headers(package: Package, model: Model, target: Target) -> list[str]:
 
 RULE = Rule(
     stage="files",
-    order=60,
     needs=("manifest", "model"),
     findings=_findings,
     requirements={
@@ -335,4 +336,5 @@ RULE = Rule(
         )
     },
     also=("dependencies",),
+    sure=READ,
 )

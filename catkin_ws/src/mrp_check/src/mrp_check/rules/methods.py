@@ -59,4 +59,4 @@ class Methods(PythonRule):
         return name if name and name.startswith(_OF) and not is_own else None
 
 
-RULE = Rule("static", 110, ("facts",), of_sources(Methods), also=("python-names",))
+RULE = Rule("static", ("facts",), of_sources(Methods), also=("python-names",))

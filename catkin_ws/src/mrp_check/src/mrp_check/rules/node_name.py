@@ -7,7 +7,7 @@ from typing import Iterator
 
 from mrp_check import evidence
 from mrp_check.confined.places import Kind
-from mrp_check.contract.finding import WARNING, Finding
+from mrp_check.contract.finding import HABIT, Finding
 from mrp_check.contract.requirements import CONTRACT, Requirement, Rule
 from mrp_check.sources.node import Node, each_node
 from mrp_check.sources.python_text import GAP
@@ -34,7 +34,7 @@ def _of(node: Node) -> Iterator[Finding]:
             "node-name",
             "The node asks for an anonymous name: rosrun starts it under another name each time.",
             init,
-            severity=WARNING,
+            certainty=HABIT,
             expected=node.name,
             fix="Leave anonymous out." if node.is_python else "Leave AnonymousName out.",
         )
@@ -42,7 +42,6 @@ def _of(node: Node) -> Iterator[Finding]:
 
 RULE = Rule(
     stage="static",
-    order=40,
     needs=("facts",),
     findings=each_node(_of),
     requirements={

@@ -82,7 +82,6 @@ def _too_early(node: Node, init: Place) -> Iterator[Finding]:
 
 RULE = Rule(
     stage="static",
-    order=30,
     needs=("facts",),
     findings=each_node(_of),
     requirements={

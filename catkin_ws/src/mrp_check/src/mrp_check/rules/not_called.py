@@ -8,7 +8,7 @@ import re
 from typing import Iterator
 
 from mrp_check.case import Case
-from mrp_check.contract.finding import Finding
+from mrp_check.contract.finding import CERTAIN, Finding
 from mrp_check.contract.requirements import Rule
 from mrp_check.sources.python_facts import argument
 from mrp_check.sources.python_modules import is_ros, resolve
@@ -30,6 +30,7 @@ class NotCalled(PythonRule):
                     "spin",
                     _ENDLESS.format("rospy.is_shutdown", ", and the loop does nothing"),
                     loop.test,
+                    certainty=CERTAIN,
                     expected="while not rospy.is_shutdown():",
                     fix="Write rospy.is_shutdown() with brackets.",
                     change=("is_shutdown", "is_shutdown()"),
@@ -169,6 +170,7 @@ def _of_cpp(file: str, text: str) -> Iterator[Finding]:
                 _ENDLESS.format("ros::ok", ", also after Ctrl-C"),
                 file,
                 number,
+                CERTAIN,
                 expected="ros::ok()",
                 seen=line.strip(),
                 fix="Write ros::ok() with brackets.",
@@ -178,7 +180,6 @@ def _of_cpp(file: str, text: str) -> Iterator[Finding]:
 
 RULE = Rule(
     stage="static",
-    order=24,
     needs=("facts",),
     findings=_findings,
     also=("python-names", "node-start", "spin", "exit", "callbacks"),

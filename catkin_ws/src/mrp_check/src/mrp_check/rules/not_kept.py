@@ -7,7 +7,7 @@ from __future__ import annotations
 import ast
 from typing import Iterator
 
-from mrp_check.contract.finding import NOTE, WARNING, Finding
+from mrp_check.contract.finding import HABIT, HINT, Finding
 from mrp_check.contract.requirements import Rule
 from mrp_check.sources.python_rule import PythonRule, of_sources
 
@@ -42,7 +42,7 @@ class NotKept(PythonRule):
                     f"What {name}() returns is not kept. rospy keeps it going all the same; but"
                     " nothing can stop it.",
                     node,
-                    severity=NOTE,
+                    certainty=HINT,
                     expected="a member, such as self.timer or self.subscriber",
                     fix="Keep it as a member.",
                 )
@@ -51,7 +51,7 @@ class NotKept(PythonRule):
                     "lifetime",
                     "What rospy.Publisher() returns is not kept: nothing can publish with it.",
                     node,
-                    severity=WARNING,
+                    certainty=HABIT,
                     expected="a publisher that is kept: publisher = rospy.Publisher(...)",
                     fix="Keep it, and call its publish(); or take it out.",
                 )
@@ -68,7 +68,7 @@ class NotKept(PythonRule):
             if said and isinstance(loop, ast.While) and not leaves:
                 message, expected, fix = said
                 yield self.finding(
-                    "lifetime", message, call, severity=WARNING, expected=expected, fix=fix
+                    "lifetime", message, call, certainty=HABIT, expected=expected, fix=fix
                 )
 
     def _publishers(self) -> Iterator[Finding]:
@@ -86,10 +86,10 @@ class NotKept(PythonRule):
                     f"{function.name}() makes a publisher each time that it is called: a new one is"
                     " connected to nobody yet, so what it publishes at once is lost.",
                     call,
-                    severity=WARNING,
+                    certainty=HABIT,
                     expected="a publisher that is made once, before the subscriber",
                     fix="Make it outside of the callback, and use it there.",
                 )
 
 
-RULE = Rule("static", 25, ("facts",), of_sources(NotKept), also=("lifetime",))
+RULE = Rule("static", ("facts",), of_sources(NotKept), also=("lifetime",))

@@ -7,7 +7,7 @@ import re
 from typing import Iterator
 
 from mrp_check.confined.places import Kind
-from mrp_check.contract.finding import WARNING, Finding
+from mrp_check.contract.finding import HABIT, Finding
 from mrp_check.contract.requirements import CONTRACT, Rule
 from mrp_check.contract.words import last_part
 from mrp_check.running.node import Node, each_node
@@ -35,7 +35,7 @@ def _of(node: Node) -> Iterator[Finding]:
             "The node asks for an anonymous name: rosrun starts it under another name each time;"
             " the launch file gives it its own.",
             node.places.of(node.name, Kind.INIT),
-            WARNING,
+            HABIT,
             expected=node.name,
             seen=name,
         )
@@ -50,6 +50,4 @@ def _of(node: Node) -> Iterator[Finding]:
         )
 
 
-RULE = Rule(
-    "run", 11, ("nodes",), each_node(_of, also_dead=True), also=("node-name",), only=CONTRACT
-)
+RULE = Rule("run", ("nodes",), each_node(_of, also_dead=True), also=("node-name",), only=CONTRACT)

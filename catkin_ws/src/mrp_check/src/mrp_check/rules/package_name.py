@@ -9,7 +9,7 @@ from typing import Iterator
 
 from mrp_check import evidence
 from mrp_check.case import Case
-from mrp_check.contract.finding import WARNING, Finding
+from mrp_check.contract.finding import HABIT, Finding
 from mrp_check.contract.requirements import Requirement, Rule
 from mrp_check.sources import uses
 from mrp_check.student.package import Package
@@ -65,7 +65,7 @@ def _within(package: Package) -> Iterator[Finding]:
                 " there, and builds nothing of it.",
                 path,
                 1,
-                WARNING,
+                HABIT,
                 expected="packages beside each other, in src of the workspace",
                 seen=path,
                 fix="Move that folder to beside this package; or delete it.",
@@ -83,7 +83,7 @@ def _unusual(package: Package) -> Iterator[Finding]:
         " and has small letters, digits, - and _ alone.",
         "package.xml",
         line,
-        WARNING,
+        HABIT,
         expected="a name such as my_package",
         seen=package.line("package.xml", line),
         fix="Rename the package, where it is not in use yet.",
@@ -102,7 +102,7 @@ def _of_ros(package: Package) -> Iterator[Finding]:
             " cannot be found any more.",
             "package.xml",
             line,
-            WARNING,
+            HABIT,
             expected="a name of its own",
             seen=package.line("package.xml", line),
             fix=f"Rename the package, such as my_{name}.",
@@ -111,7 +111,6 @@ def _of_ros(package: Package) -> Iterator[Finding]:
 
 RULE = Rule(
     stage="files",
-    order=30,
     needs=("manifest", "model", "launch"),
     findings=_findings,
     requirements={

@@ -12,7 +12,7 @@ from typing import Collection, Iterator, Sequence
 from pyflakes import checker, messages
 
 from mrp_check import evidence
-from mrp_check.contract.finding import NOTE, Change, Finding
+from mrp_check.contract.finding import CERTAIN, HINT, Change, Finding
 from mrp_check.contract.requirements import Requirement, Rule
 from mrp_check.contract.words import last_part, nearest, perhaps
 from mrp_check.sources import uses
@@ -35,8 +35,6 @@ _PYTHON2 = {
     **{"unicode": "str", "xrange": "range", "raw_input": "input", "long": "int"},
     **{"basestring": "str", "reduce": "functools.reduce", "unichr": "chr", "file": "open"},
 }
-
-OLD_NAME = ": its messages are made by this package"
 
 
 class Names(PythonRule):
@@ -138,15 +136,17 @@ class Names(PythonRule):
     def _old_name(self, node: ast.stmt, name: str) -> Finding:
         return self.finding(
             "python-names",
-            f"There is no package {name}{OLD_NAME}, which is called {self.package.name}.",
+            f"There is no package {name}: its messages are made by this package, which is called"
+            f" {self.package.name}.",
             node,
+            certainty=CERTAIN,
             expected=self.package.name,
             fix=f"Write {self.package.name} for {name}.",
         )
 
     def _absent(self, node: ast.stmt, module: str) -> Finding:
         self.source.absent[module] = said = uses.absent(module, "python")
-        return self.finding("python-names", said, node, severity=NOTE)
+        return self.finding("python-names", said, node, certainty=HINT)
 
     def _imported(self, node: ast.ImportFrom, origin: str) -> Iterator[Finding]:
         if origin == f"{self.package.name}.msg":
@@ -386,7 +386,6 @@ def _names_of(node: ast.stmt) -> list[str]:
 
 RULE = Rule(
     stage="static",
-    order=20,
     needs=("facts",),
     findings=of_sources(Names),
     requirements={

@@ -8,7 +8,7 @@ import posixpath
 from typing import Iterator
 
 from mrp_check.case import Case
-from mrp_check.contract.finding import WARNING, Finding
+from mrp_check.contract.finding import HABIT, Finding
 from mrp_check.contract.requirements import Rule
 from mrp_check.student.package import Package
 
@@ -31,7 +31,7 @@ def _old(package: Package) -> Iterator[Finding]:
             "cmake",
             f"{FILE} imports distutils, which Python has not any more from 3.12 on.",
             *place,
-            WARNING,
+            HABIT,
             expected="from setuptools import setup",
             seen=package.line(*place),
             fix="Take setup from setuptools; package.xml then needs"
@@ -60,7 +60,7 @@ def _no_folder(package: Package) -> Iterator[Finding]:
                 " `catkin_make install` fails.",
                 FILE,
                 line,
-                WARNING,
+                HABIT,
                 expected=f"a folder {folder} with a file __init__.py",
                 seen=package.line(FILE, line),
                 fix=f"Make the folder; or take {FILE} and catkin_python_setup() away.",
@@ -76,7 +76,6 @@ def _plain(node: ast.expr) -> object:
 
 RULE = Rule(
     stage="files",
-    order=41,
     needs=("model",),
     findings=_findings,
     also=("cmake",),

@@ -7,23 +7,26 @@ from typing import Iterator
 
 from mrp_check import evidence
 from mrp_check.case import Case
-from mrp_check.contract.finding import WARNING, Finding
+from mrp_check.contract.finding import CERTAIN, HABIT, READ, Finding
 from mrp_check.contract.requirements import Requirement, Rule
 
 
 def findings(case: Case) -> Iterator[Finding]:
+    of_nodes = {file for files in case.facts.sources.values() for file in files}
     for problem in case.facts.problems:
         if problem.file not in case.facts.relevant:
-            problem.severity = WARNING
+            problem.certainty = HABIT
             problem.message += " Nothing uses the file."
+        elif problem.file not in of_nodes:
+            problem.certainty = READ
         yield problem
 
 
 RULE = Rule(
     stage="static",
-    order=10,
     needs=("facts",),
     findings=findings,
+    sure=CERTAIN,
     requirements={
         "python-syntax": Requirement("Python can read each script", "wrong", evidence.python)
     },

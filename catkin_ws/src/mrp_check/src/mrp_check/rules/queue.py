@@ -7,7 +7,7 @@ from typing import Iterator
 
 from mrp_check import evidence
 from mrp_check.confined.places import Kind, Place
-from mrp_check.contract.finding import ERROR, WARNING, Finding
+from mrp_check.contract.finding import HABIT, READ, Finding
 from mrp_check.contract.requirements import CONTRACT, Requirement, Rule
 from mrp_check.sources.node import Node, each_node
 
@@ -56,7 +56,7 @@ def _other_queue(node: Node, place: Place, kind: Kind, queue: int, asked: int) -
         or f"The {kind.value}'s queue {rooms}; the contract asks for {asked}.",
         (place.file, place.queue_line or place.line),
         # A longer one loses nothing, and one that is little shorter hardly ever.
-        severity=ERROR if queue == 1 or (node.is_python, kind, queue) in words else WARNING,
+        certainty=READ if queue == 1 or (node.is_python, kind, queue) in words else HABIT,
         expected=f"queue_size={asked}" if node.is_python else f"a queue of {asked}",
         fix=f"Write {asked} for {queue}.",
         why="py-queue-0" if (node.is_python, kind, queue) == _REFUSED else "",
@@ -72,7 +72,7 @@ def no_queue(node: Node, place: Place, id_: str, expected: str, size: int) -> Fi
         id_,
         NO_QUEUE,
         place,
-        severity=WARNING,
+        certainty=HABIT,
         expected=expected,
         fix=f"Add queue_size={size}.",
         why="queue-size-missing",
@@ -95,7 +95,6 @@ def says_none(node: Node, place: Place) -> bool:
 
 RULE = Rule(
     stage="static",
-    order=80,
     needs=("facts",),
     findings=each_node(_of),
     requirements={"queue": Requirement("Queues are long enough", "queues", evidence.read)},

@@ -40,7 +40,6 @@ def _of(node: Node) -> Iterator[Finding]:
 
 RULE = Rule(
     stage="run",
-    order=12,
     needs=("nodes",),
     findings=each_node(_of, also_dead=True),
     also=("callbacks", "python-names", "python-syntax", "type", "node-start"),

@@ -113,7 +113,6 @@ _steady = evidence.of_publisher(
 )
 RULE = Rule(
     stage="run",
-    order=40,
     needs=("nodes",),
     findings=each_node(_of, each_topic=True),
     requirements={

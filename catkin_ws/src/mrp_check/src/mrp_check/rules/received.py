@@ -9,10 +9,10 @@ from typing import Collection, Iterator, Sequence
 from mrp_check import evidence
 from mrp_check.confined.places import Kind
 from mrp_check.confined.seen import Log
-from mrp_check.contract.finding import ERROR, WARNING, Finding, Where
+from mrp_check.contract.finding import HABIT, SEEN, Finding, Where
 from mrp_check.contract.requirements import CONTRACT, Requirement, Rule
 from mrp_check.contract.spec import Subscribes
-from mrp_check.rules.console import not_logged, other_words, received_pattern, sample
+from mrp_check.running.lines import not_logged, other_words, received_pattern, sample
 from mrp_check.running.node import Node, each_node
 from mrp_check.running.planning import BURST, PACED
 from mrp_check.running.words import PREFIX, few
@@ -66,7 +66,7 @@ def _short_queue(
         f"{node.name} was sent {len(BURST)} messages at once, and lost {len(lost)} of them:"
         " its queue is too short.",
         node.places.of_topic(node.name, Kind.SUBSCRIBER, role.topic.name),
-        ERROR if len(burst) <= 2 else WARNING,
+        SEEN if len(burst) <= 2 else HABIT,
         expected=f"a queue of {role.queue or 10}",
         seen=f"received {sorted(burst)}",
     )
@@ -152,7 +152,6 @@ def _logged_place(node: Node, logs: Sequence[Log], pattern: re.Pattern[str]) -> 
 
 RULE = Rule(
     stage="run",
-    order=60,
     needs=("nodes",),
     findings=each_node(_of),
     requirements={

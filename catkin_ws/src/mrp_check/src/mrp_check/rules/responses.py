@@ -7,12 +7,11 @@ import ast
 import re
 from typing import Iterator
 
-from mrp_check.contract.finding import WARNING, Finding
+from mrp_check.contract.finding import CERTAIN, HABIT, Finding
 from mrp_check.contract.requirements import Rule
 from mrp_check.sources.python_facts import argument
 from mrp_check.sources.python_rule import PythonRule, of_sources
 
-NO_RESPONSE = "each call of the service fails"
 _FIX = "Return a response, an object of the class that ends in Response."
 
 
@@ -44,7 +43,8 @@ class Responses(PythonRule):
         if not any(self._is_response(node, handler) for node in ast.walk(handler)):
             yield self.finding(
                 "callbacks",
-                f"{name}() is called to answer a service, and returns nothing: {NO_RESPONSE}.",
+                f"{name}() is called to answer a service, and returns nothing:"
+                " each call of the service fails.",
                 handler,
                 expected="return, with the response",
                 fix=_FIX,
@@ -55,7 +55,7 @@ class Responses(PythonRule):
                 f"{name}() answers a service, and can come to its end without a return: such a"
                 " call fails.",
                 last,
-                severity=WARNING,
+                certainty=HABIT,
                 expected="return, with the response, at the end of the function",
                 fix=_FIX,
             )
@@ -88,8 +88,8 @@ def falls_through(body: list[ast.stmt]) -> bool:
 
 RULE = Rule(
     stage="static",
-    order=26,
     needs=("facts",),
     findings=of_sources(Responses),
     also=("callbacks",),
+    sure=CERTAIN,
 )

@@ -289,7 +289,6 @@ def returns(function: ast.FunctionDef) -> bool:
 
 RULE = Rule(
     stage="static",
-    order=22,
     needs=("facts",),
     findings=of_sources(Calls),
     also=("python-names", "node-start", "type", "callbacks"),

@@ -11,7 +11,7 @@ from typing import Iterator
 
 from mrp_check.case import Case
 from mrp_check.confined.places import Kind, Place
-from mrp_check.contract.finding import NOTE, WARNING, Finding
+from mrp_check.contract.finding import HABIT, HINT, Finding
 from mrp_check.contract.requirements import ANY, Rule
 from mrp_check.contract.words import line_of
 from mrp_check.sources import uses
@@ -38,7 +38,7 @@ def _findings(case: Case) -> Iterator[Finding]:
                     " own names, the second one ends the first.",
                     place.file,
                     place.line,
-                    NOTE if is_twin else WARNING,
+                    HINT if is_twin else HABIT,
                     expected="a name that no other node has",
                     seen=case.package.line(place.file, place.line),
                     fix="Give it a name of its own.",
@@ -53,4 +53,4 @@ def _unread(case: Case, node: str) -> Iterator[Place]:
             yield Place(file, line_of(match), Kind.INIT, match[1])
 
 
-RULE = Rule("static", 95, ("facts",), _findings, also=("starts",), only=ANY)
+RULE = Rule("static", ("facts",), _findings, also=("starts",), only=ANY)

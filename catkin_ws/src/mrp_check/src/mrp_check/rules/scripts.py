@@ -13,7 +13,7 @@ from typing import Iterator
 from mrp_check import evidence
 from mrp_check.building.catkin import search_path
 from mrp_check.case import Case
-from mrp_check.contract.finding import ERROR, NOTE, WARNING, Finding
+from mrp_check.contract.finding import CERTAIN, HABIT, HINT, Finding
 from mrp_check.contract.requirements import Requirement, Rule
 from mrp_check.contract.words import last_part, nearest, perhaps
 from mrp_check.sources import executables, python_modules, uses
@@ -54,12 +54,12 @@ def _findings(case: Case) -> Iterator[Finding]:
             # What catkin_install_python() puts beside it starts it; once installed, nothing does.
             runs = path in relayed and not case.spec.is_contract
             for finding in _of(package, model, path, shebang, path in relayed):
-                is_less = runs and finding.severity == ERROR
-                yield dataclasses.replace(finding, severity=WARNING) if is_less else finding
+                is_less = runs and finding.certainty not in (HABIT, HINT)
+                yield dataclasses.replace(finding, certainty=HABIT) if is_less else finding
             yield from _shadowing(package, path)
         elif not case.spec.is_contract and executables.is_tool(package, path):
             for finding in _of(package, model, path, shebang, path in relayed):
-                yield dataclasses.replace(finding, severity=WARNING)
+                yield dataclasses.replace(finding, certainty=HABIT)
 
 
 def _shadowing(package: Package, path: str) -> Iterator[Finding]:
@@ -138,7 +138,7 @@ def _of(
             f"{path} is not executable{_MODE[0 if relayed else 1]}",
             path,
             1,
-            severity=NOTE if relayed else ERROR,
+            certainty=HINT if relayed else CERTAIN,
             expected="permission to execute it",
             seen=f"mode {(package.root / path).stat().st_mode & 0o777:o}",
             fix=f"chmod +x {path}",
@@ -223,7 +223,6 @@ def _other_program(path: str, plain: str, relayed: bool, absent: str | None) -> 
 
 RULE = Rule(
     stage="files",
-    order=70,
     needs=("model", "launch"),
     findings=_findings,
     requirements={

@@ -128,7 +128,6 @@ _asked = evidence.when(
 
 RULE = Rule(
     stage="run",
-    order=65,
     needs=("nodes",),
     findings=each_node(_of),
     requirements={

@@ -8,7 +8,7 @@ from typing import Iterator, Sequence
 
 from mrp_check import evidence
 from mrp_check.confined.places import Kind, Place
-from mrp_check.contract.finding import Finding
+from mrp_check.contract.finding import CERTAIN, READ, Finding
 from mrp_check.contract.requirements import Requirement, Rule
 from mrp_check.sources.node import Node, each_node
 
@@ -38,12 +38,18 @@ def _of(node: Node) -> Iterator[Finding]:
         yield _never(node, bool(waits))
 
 
+# rospy calls back in threads of its own; of roscpp, only a spinner calls.
+def _sure(node: Node) -> str:
+    return READ if node.is_python else CERTAIN
+
+
 def _only_once(node: Node, spin: Place) -> Finding:
     return node.finding(
         "spin",
         "ros::spinOnce() calls the callbacks of what has arrived, and returns at once:"
         " the program then comes to its end.",
         spin,
+        certainty=_sure(node),
         expected="ros::spin() at the end of main",
         fix="Write ros::spin() for ros::spinOnce().",
         change=("spinOnce", "spin"),
@@ -57,6 +63,7 @@ def _never(node: Node, loops: bool) -> Finding:
         f"{node.main} never calls {call}: "
         + ("no callback is ever called." if loops else "the program comes to its end at once."),
         node.facts.end_of_main(node.name) or (node.main, _last_line(node)),
+        certainty=_sure(node),
         expected=f"{call} at the end of main",
         seen="no such call",
         fix=f"Add {call}{'' if node.is_python else ';'} at the end of main.",
@@ -91,6 +98,7 @@ def _made_too_late(node: Node, spins: Sequence[Place]) -> Iterator[Finding]:
                     f"{call} returns only when the node is to end: what stands below it, in"
                     f" line {number}, is made too late.",
                     spin,
+                    certainty=_sure(node),
                     expected=f"{call} below all that the node is made of",
                     fix=f"Move it below line {number}.",
                 )
@@ -103,7 +111,6 @@ def _is_rate(node: Node, place: Place) -> bool:
 
 RULE = Rule(
     stage="static",
-    order=50,
     needs=("facts",),
     findings=each_node(_of),
     requirements={"spin": Requirement("Each node waits for callbacks", "publisher", evidence.read)},

@@ -8,14 +8,36 @@ from typing import Iterator
 
 from mrp_check import evidence
 from mrp_check.case import Case
-from mrp_check.contract.finding import Finding, Where
+from mrp_check.confined.launch_dump import Started
+from mrp_check.contract.finding import HABIT, HINT, Finding, Line, Where
 from mrp_check.contract.requirements import Requirement, Rule
 from mrp_check.contract.spec import Spec
+from mrp_check.contract.words import last_part
 from mrp_check.running.node import Node
 from mrp_check.running.observing import Observed
-from mrp_check.running.words import code_text
+from mrp_check.running.traces import ends
+from mrp_check.running.words import code_text, last_words
+from mrp_check.sources import asked, uses
 from mrp_check.student.package import Package
 
+_ARGUMENTS = "arguments on its command line"
+# What a node says that stands before an empty keyboard, screen or command line, what it waits for,
+# and what must stand in the line that raised, where anything else raises the same error, too.
+_WAITS = (
+    (r"(?i)^\s*\W*usage\b|\[ ?\w+\] \[[\d., ]+\]: usage\b", _ARGUMENTS, ""),
+    (r"EOFError: EOF when reading a line", "the keyboard", ""),
+    (r"termios\.error|Inappropriate ioctl for device", "the keyboard", ""),
+    (r"(?i)cannot open display|could not connect to display|no display name", "a screen", ""),
+    (r"(?i)can.t open camera|VIDEOIO|/dev/(video|tty|input)\w*", "a device", ""),
+    (r"KeyError: ", "a parameter", "param"),
+    (r"IndexError: list index|ValueError: ", "arguments", "sys.argv["),
+)
+# Beside the line at which a program ends, it misses some of the arguments that it counts.
+_COUNTS = re.compile(r"\bargc\s*[!<>=]|[<>=]\s*argc\b|\blen\(sys\.argv\)")
+_ENDS = re.compile(r"\bexit\s*\(|\bquit\s*\(|\breturn\s+(-?[1-9]|EXIT_FAILURE)")
+_WAITS_FOR_ARGUMENTS = f"waits for {_ARGUMENTS}"
+_FEW = 6  # lines
+_OF_ACTIONS = {"feedback", "result", "status"}
 _KILLS = r"\bkill(pg)?\s*\(|\b(pkill|killall)\b"
 
 
@@ -24,10 +46,22 @@ def findings(case: Case) -> Iterator[Finding]:
     yield from _launch_findings(case.package, case.spec, case.observed)
     yield from _killed(case.package, case.observed)
     for node in case.nodes.values():
-        if not node.has_executable:
+        if not node.has_executable and not _lacks_what_is_not_here(case, node):
             yield _no_executable(node)
     for node in case.nodes.values():
-        yield from node.not_up
+        for finding in node.not_up:
+            if not case.spec.is_contract:
+                weigh_start(case, node, finding)
+            yield finding
+
+
+def _lacks_what_is_not_here(case: Case, node: Node) -> bool:
+    """Return whether a node was not built only as this machine lacks what it needs."""
+    if case.spec.is_contract or case.built and case.built.ok:
+        return False
+    files = case.facts.sources.get(node.name, ())
+    headers = (one for file in files for one, _ in uses.includes(case.package, file))
+    return any(uses.absent_header(case.package, header) for header in headers)
 
 
 def _problems(case: Case) -> Iterator[Finding]:
@@ -99,9 +133,111 @@ def _no_executable(node: Node) -> Finding:
     )
 
 
+def weigh_start(case: Case, node: Node, finding: Finding) -> None:
+    """Lower the certainty of a finding about a node that ended, if it waited for what only its user
+    or its launch file gives; without a contract, nobody says that it must run by itself."""
+    own = rf"(No module named|cannot import name .* from) '{case.package.name}\b"
+    if case.built is None and re.search(own, finding.seen):
+        finding.certainty = HINT  # it is not made where CMake failed
+        return
+    waits = _of_start(case, node, finding)
+    started = _without_arguments(case, node)
+    if waits and started:
+        finding.message = f"{node.name} {_WAITS_FOR_ARGUMENTS}, and {started.file} gives none."
+        finding.certainty, finding.file, finding.line = HABIT, started.file, started.line
+
+
+def _without_arguments(case: Case, node: Node) -> Started | None:
+    """Return a <node> of a launch file that starts a node, and gives it no arguments."""
+    started = (one for launch in case.launches for one in launch.nodes)
+    own = (one for one in started if (one.package, one.type) == (case.package.name, node.name))
+    return next((one for one in own if not one.arguments.strip() and one.file), None)
+
+
+def _of_start(case: Case, node: Node, finding: Finding) -> bool:
+    """Do so; return whether it waits for arguments on its command line."""
+    lines = [text for _, _, text in node.direct.lines] if node.direct else []
+    for shape, what, reads in _WAITS:
+        said = next((text for text in lines if re.search(shape, text)), None)
+        if said:
+            if reads not in _source(node, finding):
+                continue
+            finding.certainty = HABIT if what == "a parameter" else HINT
+            finding.message = f"{node.name} waits for {what}: {said.strip()[:200]}"
+            return what == _ARGUMENTS
+    if not any("Error:" in line for line in lines) and misses_arguments(node, finding):
+        finding.certainty = HINT
+        finding.message = f"{node.name} {_WAITS_FOR_ARGUMENTS}."
+        return True
+    file = _works_under(case, node)
+    if file:
+        finding.certainty = HINT
+        finding.message = f"{node.name} works under {file}; started by itself, it ends."
+        return False
+    early = _early_call(node, lines)
+    if early:
+        finding.certainty, (finding.file, finding.line) = HABIT, early
+        finding.message += " It does not wait for the service that it calls."
+        return False
+    if node.direct and node.direct.code == 0 and not _is_left_alone(node):
+        finding.certainty = HINT
+        finding.message = f"{node.name} exits with code 0: {last_words(lines) or 'without a word'}"
+    return False
+
+
+def _works_under(case: Case, node: Node) -> str | None:
+    """Return a launch file under which a node came up, and did not end."""
+    for launched in case.observed.launches:
+        seen = launched.seen.seen
+        up = {one.node for one in [*seen.publications, *seen.subscriptions, *seen.services]}
+        died = {*ends(launched.seen.until_asked())}
+        paths = {path for path, name in launched.nodes.items() if name == node.name}
+        if launched.file and paths & up - died:
+            return launched.file
+    return None
+
+
+def _early_call(node: Node, lines: list[str]) -> Line | None:
+    """Return the call of a service, if the node ends as nobody offers it yet."""
+    raised = any("Traceback" in line for line in lines)
+    if not node.direct or (node.direct.code or 0) <= 0:
+        return None
+    if raised and not any("ServiceException" in line for line in lines):
+        return None
+    return asked.unwaited(node.package, node.places.sources(node.name))
+
+
+def misses_arguments(node: Node, finding: Finding) -> bool:
+    """Return whether a program counts its arguments beside where it ended; or, where that place
+    is not known, beside any line that ends it."""
+    if not finding.file or not finding.line:
+        return False
+    lines = node.package.lines(finding.file)
+    begin, end = max(finding.line - _FEW, 0), finding.line + _FEW
+    if any(map(_COUNTS.search, lines[begin:end])):
+        return True
+    code = node.direct.code if node.direct else 0
+    counting = [number for number, text in enumerate(lines) if _COUNTS.search(text)]
+    return bool(code) and any(any(map(_ENDS.search, lines[n : n + 2 * _FEW])) for n in counting)
+
+
+def _source(node: Node, finding: Finding) -> str:
+    lines = node.package.lines(finding.file) if finding.file else []
+    return lines[finding.line - 1] if finding.line and finding.line <= len(lines) else ""
+
+
+def _is_left_alone(node: Node) -> bool:
+    """Return whether a node ended that was to be called back."""
+    heard = {one.topic for one in node.seen_alone.subscriptions}
+    files = node.places.sources(node.name)
+    if node.package.first_match(files, r"\bSimpleActionClient\b"):
+        # Those of the client itself call nothing of the node's.
+        heard = {topic for topic in heard if last_part(topic) not in _OF_ACTIONS}
+    return bool(heard)
+
+
 RULE = Rule(
     stage="run",
-    order=10,
     needs=("nodes",),
     findings=findings,
     requirements={"starts": Requirement("Each node starts and stays up", "launching", evidence.up)},

@@ -45,4 +45,4 @@ def _launch(node: Node, other: specs.Node, place: Line) -> Finding:
     )
 
 
-RULE = Rule("static", 28, ("facts",), findings, also=("targets", "launch-nodes"), only=CONTRACT)
+RULE = Rule("static", ("facts",), findings, also=("targets", "launch-nodes"), only=CONTRACT)

@@ -9,7 +9,7 @@ from typing import Iterator
 
 from mrp_check import evidence
 from mrp_check.case import Case
-from mrp_check.contract.finding import NOTE, WARNING, Finding
+from mrp_check.contract.finding import HABIT, HINT, Finding
 from mrp_check.contract.requirements import Requirement, Rule
 from mrp_check.contract.words import last_part, nearest, perhaps
 from mrp_check.sources import uses
@@ -56,7 +56,7 @@ def _missing(
     package: Package, call: Call, name: str, message: str, expected: str, fix: str
 ) -> Finding:
     line = call.line_of(package.lines(call.file), name)
-    return Finding("targets", message, call.file, line, WARNING, expected, name, fix)
+    return Finding("targets", message, call.file, line, HABIT, expected, name, fix)
 
 
 def _no_dependencies(package: Package, model: Model) -> Iterator[Finding]:
@@ -150,7 +150,7 @@ def _no_folders(package: Package, model: Model) -> Iterator[Finding]:
                     "a folder of the package",
                     f"Take {name} out.",
                 )
-                finding.severity = NOTE
+                finding.certainty = HINT
                 yield finding
 
 
@@ -167,7 +167,7 @@ def _commented_out(case: Case) -> Iterator[Finding]:
                 "targets",
                 f"This line is a comment: nothing is made of {source}.",
                 *place,
-                WARNING,
+                HABIT,
                 expected=f"add_executable(... {source})",
                 seen=case.package.line(file, place[1]),
                 fix="Take the # out, there and before the lines that belong to it.",
@@ -190,7 +190,7 @@ def _never_built(case: Case) -> Iterator[Finding]:
                 f"No line of CMakeLists.txt names {source}: nothing is made of it.",
                 source,
                 1,
-                WARNING,
+                HABIT,
                 expected=f"add_executable(... {source})",
                 seen="no target that is made of it",
                 fix="Write add_executable() and target_link_libraries() for it; or delete it.",
@@ -220,7 +220,6 @@ def _no_launch_files(package: Package) -> Iterator[Finding]:
 
 RULE = Rule(
     stage="files",
-    order=50,
     needs=("model",),
     findings=_findings,
     requirements={

@@ -9,7 +9,7 @@ from typing import Iterator
 
 from mrp_check import evidence
 from mrp_check.case import Case
-from mrp_check.contract.finding import NOTE, WARNING, Finding
+from mrp_check.contract.finding import CERTAIN, HABIT, HINT, Finding
 from mrp_check.contract.requirements import Requirement, Rule
 from mrp_check.contract.words import printable
 from mrp_check.student.package import MAX_BYTES, Package
@@ -22,14 +22,14 @@ def _findings(case: Case) -> Iterator[Finding]:
     package = case.package
     for path in package.left_out:
         said = f"{path} has more than {MAX_BYTES // 10**6} MB: it is left out of the check."
-        yield Finding("text", said, path, severity=NOTE, fix="Hand in the package without it.")
+        yield Finding("text", said, path, certainty=HINT, fix="Hand in the package without it.")
     if package.not_utf8:
         names = ", ".join(map(printable, package.not_utf8))
         yield Finding(
             "text",
             "The check leaves out files whose names aren't UTF-8, because many programs can't read"
             f" such a name: {names}",
-            severity=WARNING,
+            certainty=HABIT,
             expected="names in UTF-8",
             seen="bytes of another encoding, shown as %FC, for example",
             fix="Rename them. Old zip programs make such names of letters like ü.",
@@ -76,7 +76,7 @@ def _windows_ends(data: bytes, path: str, kind: str, is_script: bool) -> Iterato
     fix = f"Convert the file: sed -i 's/\\r$//' {path}"
     if kind not in ("python", "message"):
         works = f"{path} has Windows line ends. It works all the same; scripts with them do not."
-        yield Finding("text", works, path, 1, NOTE, fix=fix)
+        yield Finding("text", works, path, 1, HINT, fix=fix)
     elif is_script and data.split(b"\n", 1)[0].endswith(b"\r"):
         yield Finding(
             "text",
@@ -118,7 +118,7 @@ def _encoding(data: bytes, path: str, kind: str, relayed: bool) -> Iterator[Find
         f"Line {line} of {path} has a byte that is not UTF-8. {what}.",
         path,
         line,
-        NOTE if harmless else "error",
+        HINT if harmless else CERTAIN,
         expected="text in UTF-8",
         seen=f"the byte {byte:02X}, perhaps of a letter such as ä or é in Latin-1",
         fix="Save the file with the encoding UTF-8.",
@@ -128,7 +128,6 @@ def _encoding(data: bytes, path: str, kind: str, relayed: bool) -> Iterator[Find
 
 RULE = Rule(
     stage="files",
-    order=80,
     needs=("model",),
     findings=_findings,
     requirements={

@@ -154,7 +154,6 @@ def _namespace_finding(node: Node, topic: Topic, verb: str, kind: Kind) -> Itera
 
 RULE = Rule(
     stage="run",
-    order=20,
     needs=("nodes",),
     findings=each_node(_of),
     requirements={
@@ -163,7 +162,7 @@ RULE = Rule(
         ),
         "type": Requirement("The messages have the right type", "publisher", evidence.meets),
         "namespace": Requirement(
-            "The nodes can be moved to another namespace", "namespaces", evidence.alone, shown=75
+            "The nodes can be moved to another namespace", "namespaces", evidence.alone
         ),
     },
     only=CONTRACT,

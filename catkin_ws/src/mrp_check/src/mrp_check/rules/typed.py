@@ -10,7 +10,7 @@ import ast
 import re
 from typing import Iterator
 
-from mrp_check.contract.finding import ERROR, NOTE, WARNING, Finding
+from mrp_check.contract.finding import HABIT, HINT, READ, Finding
 from mrp_check.contract.requirements import Rule
 from mrp_check.sources.python_rule import PythonRule, of_sources
 
@@ -39,7 +39,7 @@ class Typed(PythonRule):
                 f"{says(call)}, and line {node.lineno} {does}:"
                 f" {'they are never equal' if is_equality else follows}.",
                 call,
-                severity=WARNING if is_equality else ERROR,
+                certainty=HABIT if is_equality else READ,
                 expected=f"float({self.written(call)}), or int(...)",
                 fix=f"Write float(...) around {self.written(call)}; or int(...) for whole numbers.",
             )
@@ -48,7 +48,7 @@ class Typed(PythonRule):
         """Yield a note at the line that Python names in its error, if it is another one."""
         if node.lineno != call.lineno:
             said = f"{self.written(call)} of line {call.lineno} is a text, and this needs a number."
-            yield self.finding("python-names", said, node, severity=NOTE)
+            yield self.finding("python-names", said, node, certainty=HINT)
 
     def _uses(self) -> Iterator[tuple[ast.expr | ast.stmt, ast.expr, str]]:
         """Yield what needs a number: all of it, the part that is one, and what it does with it."""
@@ -151,4 +151,4 @@ def says(typed: ast.expr) -> str:
     return "In Python 3, input() returns a text" if is_input else "An argument is a text"
 
 
-RULE = Rule("static", 35, ("facts",), of_sources(Typed), also=("python-names",))
+RULE = Rule("static", ("facts",), of_sources(Typed), also=("python-names",))

@@ -6,7 +6,7 @@ from __future__ import annotations
 import ast
 from typing import Iterator, Sequence
 
-from mrp_check.contract.finding import WARNING, Finding
+from mrp_check.contract.finding import HABIT, Finding
 from mrp_check.contract.requirements import Rule
 from mrp_check.sources.python_rule import PythonRule, of_sources
 from mrp_check.sources.python_source import Variable
@@ -58,7 +58,7 @@ class Unbound(PythonRule):
                 f"{read.id} has no value if {why}: then Python ends with"
                 f" {'an UnboundLocalError' if in_function else 'a NameError'} when it comes here.",
                 read,
-                severity=WARNING,
+                certainty=HABIT,
                 expected=f"a value of {read.id} in each case",
                 fix=f"Give {read.id} a value before line {line}; or leave in that case.",
             )
@@ -153,4 +153,4 @@ def _is_of_end(handler: ast.ExceptHandler) -> bool:
     return bool(_OF_END & {getattr(n, "attr", getattr(n, "id", "")) for n in named})
 
 
-RULE = Rule("static", 36, ("facts",), of_sources(Unbound), also=("python-names",))
+RULE = Rule("static", ("facts",), of_sources(Unbound), also=("python-names",))

@@ -9,7 +9,7 @@ import sys
 from typing import Iterator
 
 from mrp_check.case import Case
-from mrp_check.contract.finding import WARNING, Finding
+from mrp_check.contract.finding import HABIT, Finding
 from mrp_check.contract.requirements import ANY, Rule
 from mrp_check.sources import uses
 from mrp_check.sources.python_modules import is_ros
@@ -48,7 +48,7 @@ def _findings(case: Case) -> Iterator[Finding]:
             " fails.",
             file,
             line,
-            WARNING,
+            HABIT,
             expected=f"<depend>{key}</depend> in package.xml",
             seen=package.line(file, line),
             fix=f"Add <depend>{key}</depend> to package.xml; or take the line out if nothing of it"
@@ -79,4 +79,4 @@ def _used(case: Case) -> Iterator[tuple[str, int, str]]:
                     yield file, line, module
 
 
-RULE = Rule("files", 45, ("manifest",), _findings, also=("dependencies",), only=ANY)
+RULE = Rule("files", ("manifest",), _findings, also=("dependencies",), only=ANY)

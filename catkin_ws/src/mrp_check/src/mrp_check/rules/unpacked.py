@@ -41,7 +41,6 @@ class Unpacked(PythonRule):
 
 RULE = Rule(
     stage="static",
-    order=27,
     needs=("facts",),
     findings=of_sources(Unpacked),
     also=("python-names",),

@@ -172,7 +172,6 @@ _sent = evidence.when(Node.sent, "was sent nothing", lambda wanted: wanted.relay
 
 RULE = Rule(
     stage="run",
-    order=30,
     needs=("nodes",),
     findings=each_node(_of, each_topic=True),
     requirements={

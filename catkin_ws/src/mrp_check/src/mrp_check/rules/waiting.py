@@ -8,7 +8,7 @@ from typing import Iterator, NamedTuple
 
 from mrp_check.case import Case
 from mrp_check.confined.places import Kind
-from mrp_check.contract.finding import NOTE, WARNING, Finding
+from mrp_check.contract.finding import HABIT, HINT, Finding
 from mrp_check.contract.requirements import ANY, Rule
 from mrp_check.contract.words import last_part, nearest
 from mrp_check.sources import asked, uses
@@ -90,7 +90,7 @@ def _unwaited(
         f"{node} calls a service, and does not wait until it is offered: if the node that offers it"
         " starts later, the call fails.",
         *place,
-        WARNING,
+        HABIT,
         expected=f"{wait} before the call",
         seen=case.package.line(place[0], place[1]),
         fix=f"Call {wait} first.",
@@ -136,13 +136,13 @@ def _lacking(
 def _finding(node: str, one: Said, near: str | None, words: _Words) -> Finding:
     head = f"{node} waits for the {words.what} {one.name}: "
     if near is None:
-        return Finding("starts", head + words.nobody, one.file, one.line, NOTE, node=node)
+        return Finding("starts", head + words.nobody, one.file, one.line, HINT, node=node)
     return Finding(
         "starts",
         head + words.other.format(near=near),
         one.file,
         one.line,
-        WARNING,
+        HABIT,
         expected=near,
         seen=one.name,
         fix="Give both one name.",
@@ -150,4 +150,4 @@ def _finding(node: str, one: Said, near: str | None, words: _Words) -> Finding:
     )
 
 
-RULE = Rule("run", 9, ("nodes",), _findings, also=("starts",), only=ANY)
+RULE = Rule("run", ("nodes",), _findings, also=("starts",), only=ANY)

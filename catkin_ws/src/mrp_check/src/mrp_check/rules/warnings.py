@@ -13,7 +13,7 @@ from mrp_check import evidence
 from mrp_check.case import Case
 from mrp_check.confined.places import Kind
 from mrp_check.confined.seen import Log
-from mrp_check.contract.finding import ERROR, NOTE, WARNING, Finding, Where
+from mrp_check.contract.finding import SEEN, HINT, HABIT, Finding, Where
 from mrp_check.contract.requirements import Requirement, Rule
 from mrp_check.running import logged
 from mrp_check.running.logged import Run
@@ -112,7 +112,7 @@ def _findings(case: Case) -> Iterator[Finding]:
                 f"{name} logs {len(lines)} warnings or errors of its own, such as:"
                 f" {lines[0].text.strip()[:200]}",
                 case.places.of_log(name, lines[0]),
-                NOTE,
+                HINT,
             )
 
 
@@ -142,7 +142,7 @@ def _of_libraries(node: Node, run: Run, lines: list[Log]) -> Iterator[Finding]:
             seen = f"{log.file}:{log.line}"
             place = _place(node, log, "")
             more = {"expected": "no such line", "seen": seen, "why": why}
-            yield node.finding("warnings", said, place, WARNING, **more)
+            yield node.finding("warnings", said, place, HABIT, **more)
 
 
 def _place(node: Node, log: Log, near: str) -> Where:
@@ -169,15 +169,15 @@ def _of_frames(node: Node, run: Run, failed: list[Log]) -> Iterator[Finding]:
     names = {*_FRAME.findall(text)}
     if names and names <= published:
         said = "though both are published. A new tf2 buffer is empty, and needs a listener"
-        severity, fix = ERROR, "Make one tf2 Buffer and one TransformListener, before the loop."
+        certainty, fix = SEEN, "Make one tf2 Buffer and one TransformListener, before the loop."
     else:
         said = f"to the end of the run. Published are: {', '.join(sorted(published))}"
-        severity, fix = WARNING, "Compare the names of the frames, and wait until they are there."
+        certainty, fix = HABIT, "Compare the names of the frames, and wait until they are there."
     yield node.finding(
         "warnings",
         f"{node.name} can't look up a transform, {run.where}, {said}: {text[:200]}",
         node.places.of_log(node.name, failed[-1]),
-        severity,
+        certainty,
         expected="a transform that is found after a moment",
         seen=f"{len(failed)} such lines",
         fix=fix,
@@ -201,7 +201,7 @@ def _illegal_name(node: Node) -> Iterator[Finding]:
                 f"{node.name} uses the name '{name}', which ROS warns of."
                 + (slashes if "//" in name else ""),
                 (file, line),
-                WARNING,
+                HABIT,
                 expected=name.replace("//", "/"),
                 seen=name,
                 why="e09-double-slash",
@@ -211,7 +211,6 @@ def _illegal_name(node: Node) -> Iterator[Finding]:
 
 RULE = Rule(
     stage="run",
-    order=80,
     needs=("nodes",),
     findings=_findings,
     requirements={

@@ -9,7 +9,7 @@ from mrp_check import evidence
 from mrp_check.confined.places import Kind
 from mrp_check.confined.plans import TOLD
 from mrp_check.confined.seen import Number
-from mrp_check.contract.finding import NOTE, Finding
+from mrp_check.contract.finding import HINT, Finding
 from mrp_check.contract.requirements import CONTRACT, Requirement, Rule
 from mrp_check.contract.spec import Values
 from mrp_check.running.node import Node, each_node
@@ -70,7 +70,7 @@ def _unchecked(node: Node, last: int, expected: str, why: str) -> Finding:
         "wrap",
         f"It could not be checked what {node.name} publishes after {last}: its counter {why}.",
         node.places.of(node.name, Kind.PUBLISH),
-        NOTE,
+        HINT,
         expected=expected,
     )
 
@@ -97,7 +97,6 @@ def _continues(after: Sequence[Number], rule: Values) -> bool:
 
 RULE = Rule(
     stage="run",
-    order=50,
     needs=("nodes",),
     findings=each_node(_of),
     requirements={
@@ -109,7 +108,6 @@ RULE = Rule(
                 Node.has_wrapped,
                 "has no counter that could be found",
             ),
-            shown=35,
         )
     },
     only=CONTRACT,

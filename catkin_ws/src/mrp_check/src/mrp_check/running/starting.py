@@ -8,7 +8,7 @@ from typing import Iterator
 
 from mrp_check.confined.places import Kind
 from mrp_check.confined.seen import Alone
-from mrp_check.contract.finding import ERROR, NOTE, Finding, Where
+from mrp_check.contract.finding import HINT, SEEN, Finding, Where
 from mrp_check.running.places import Traceback
 from mrp_check.running.traces import Traces
 from mrp_check.running.words import code_text, last_words
@@ -74,7 +74,7 @@ def _raised(node: Traces, place: Where, kind: str, text: str) -> Finding:
         f"{node.name} ends as soon as it is started: {kind}: {text}"
         + (f" {uses.absent(name, 'python')}" if apart else ""),
         place,
-        NOTE if is_known or apart else ERROR,
+        HINT if is_known or apart else SEEN,
         expected=_EXPECTED,
         seen=f"{kind}: {text}",
     )

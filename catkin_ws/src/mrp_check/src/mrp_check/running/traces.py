@@ -9,7 +9,7 @@ from typing import Any, Iterable
 from mrp_check.confined.places import Kind
 from mrp_check.confined.seen import Message, Number, Seen
 from mrp_check.contract import spec as specs
-from mrp_check.contract.finding import ERROR, Finding, Where
+from mrp_check.contract.finding import SEEN, Finding, Where
 from mrp_check.running.places import Places
 from mrp_check.running.planning import WRAP
 
@@ -88,10 +88,10 @@ class Traces:
         ]
 
     def finding(
-        self, id_: str, message: str, place: Where, severity: str = ERROR, **rest: Any
+        self, id_: str, message: str, place: Where, certainty: str = SEEN, **rest: Any
     ) -> Finding:
         file, line = place
-        return Finding(id_, message, file, line, severity, node=self.name, **rest)
+        return Finding(id_, message, file, line, certainty, node=self.name, **rest)
 
     def value(self, message: Message, topic: specs.Topic) -> Number | None:
         """Return the number in a message, or None."""

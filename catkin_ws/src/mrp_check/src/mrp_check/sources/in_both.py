@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from typing import Iterator, NamedTuple
 
-from mrp_check.contract.finding import WARNING, Finding
+from mrp_check.contract.finding import HABIT, Finding
 from mrp_check.sources import uses
 from mrp_check.sources.python_rule import HasFacts
 from mrp_check.sources.python_source import Source
@@ -25,11 +25,11 @@ class OfNode(NamedTuple):
     code: str
 
     def finding(
-        self, id_: str, message: str, line: int, expected: str, fix: str, severity: str = WARNING
+        self, id_: str, message: str, line: int, expected: str, fix: str, certainty: str = HABIT
     ) -> Finding:
         """Return the Finding about a line of it."""
         seen = self.package.line(self.file, line)
-        place = self.file, line, severity
+        place = self.file, line, certainty
         return Finding(id_, message, *place, expected, seen, fix, node=self.node)
 
 

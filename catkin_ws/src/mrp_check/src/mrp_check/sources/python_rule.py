@@ -6,7 +6,7 @@ from __future__ import annotations
 import ast
 from typing import Any, Callable, Iterator, Protocol
 
-from mrp_check.contract.finding import NOTE, Finding
+from mrp_check.contract.finding import HINT, Finding
 from mrp_check.sources.facts import Facts
 from mrp_check.sources.python_modules import is_ros, resolve
 from mrp_check.sources.python_source import Defined, Source
@@ -43,8 +43,8 @@ class PythonRule:
         more.setdefault("seen", self.package.line(self.file, line))
         finding = Finding(id_, message, self.file, line, **more)
         # Of several findings about one line, the first is the cause.
-        cause = self.source.told.setdefault((line, finding.severity), finding)
-        if cause is not finding and finding.severity != NOTE:
+        cause = self.source.told.setdefault((line, finding.certainty), finding)
+        if cause is not finding and finding.certainty != HINT:
             finding.consequence_of = cause.id
         return finding
 

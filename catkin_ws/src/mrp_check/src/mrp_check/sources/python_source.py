@@ -47,7 +47,7 @@ class Source:
     stars: modules of which it takes all names with `from ... import *`, and nobody knows which
     parents: each node's parent in the tree
     absent: module that it imports and this machine has not -> a sentence that says so
-    told: (line, severity) -> the first Finding about it
+    told: (line, certainty) -> the first Finding about it
 
     Raises SyntaxError (or ValueError) as Python itself does.
     """

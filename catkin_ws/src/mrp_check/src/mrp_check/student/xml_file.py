@@ -8,7 +8,7 @@ import re
 import xml.parsers.expat
 from typing import Iterable, Iterator, Sequence
 
-from mrp_check.contract.finding import WARNING, Finding
+from mrp_check.contract.finding import HABIT, Finding
 from mrp_check.contract.words import line_of
 from mrp_check.student.package import Package, declared_entity
 
@@ -69,7 +69,7 @@ def stray(
                 f"A text stands here between the tags, and nothing reads it: {text[:40]}",
                 file,
                 line,
-                WARNING,
+                HABIT,
                 expected="elements, and comments between <!-- and -->",
                 seen=package.line(file, line),
                 fix="Take it out, or make a comment of it.",

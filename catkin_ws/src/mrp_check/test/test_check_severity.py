@@ -1,0 +1,61 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""An error was seen, or a named rule of ROS, CMake or Python says so; nothing else is one."""
+
+import ast
+import pathlib
+
+import pytest
+from mrp_check import rules
+from mrp_check.contract.finding import CERTAIN, HABIT, HINT, READ, SEEN, Finding
+from mrp_check.contract.requirements import Rule
+from mrp_check.contract.severity import severity, weigh
+
+pytestmark = pytest.mark.quick
+
+SOURCES = pathlib.Path(rules.__file__).parents[1]
+FILES = sorted(pathlib.Path(rules.__file__).parent.rglob("[a-z]*.py"))
+
+
+@pytest.mark.parametrize(
+    ("certainty", "with_contract", "without"),
+    [
+        (SEEN, "error", "error"),
+        (CERTAIN, "error", "error"),
+        (READ, "error", "warning"),
+        (HABIT, "warning", "warning"),
+        (HINT, "note", "note"),
+    ],
+)
+def test_a_certainty_has_one_severity(certainty, with_contract, without):
+    assert [severity(certainty, has) for has in (True, False)] == [with_contract, without]
+
+
+@pytest.mark.parametrize("rule", rules.RULES, ids=lambda rule: rule.findings.__module__)
+@pytest.mark.parametrize("has_contract", [True, False])
+def test_a_habit_never_becomes_an_error(rule, has_contract):
+    """Not even beside the same fault that was seen, whatever the rule is."""
+    habits = [Finding(id_, "It works.", "a.py", 1, HABIT) for id_ in rule.ids]
+    seen = [Finding(id_, "It fails.", "a.py", 1, SEEN) for id_ in rule.ids]
+    habits = [*Rule(rule.stage, (), lambda case: habits, also=rule.ids).ask(None)]
+    weigh([*seen, *habits], has_contract)
+    assert {one.severity for one in habits} == {"warning"}
+
+
+def test_what_was_only_read_is_an_error_where_it_was_seen():
+    read = [Finding("spin", "It says so.", file, 1, READ) for file in ("a.py", "b.py")]
+    weigh([*read, Finding("spin", "It fails.", "a.py", 9, SEEN)], has_contract=False)
+    assert [one.severity for one in read] == ["error", "warning"]
+
+
+@pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
+def test_a_rule_sets_no_severity_and_imports_no_rule(path):
+    tree = ast.parse(path.read_text())
+    names = {alias.name for node in ast.walk(tree) for alias in getattr(node, "names", ())}
+    assert not names & {"ERROR", "WARNING", "NOTE"}
+    modules = [n.module for n in ast.walk(tree) if isinstance(n, ast.ImportFrom)]
+    assert not [module for module in modules if module.startswith("mrp_check.rules")]
+
+
+def test_each_file_is_a_rule_of_the_tuple():
+    assert sorted(rule.findings.__globals__["__name__"] for rule in rules.RULES) is not None
+    assert len(rules.RULES) == len({id(rule) for rule in rules.RULES}) == len(FILES)
