@@ -26,7 +26,11 @@ REPORT = Report(
     ODD,
     "An exercise",
     FINDINGS,
-    [Finding("spin", f"{ODD} never spins.", f"src/{ODD}.py", 3, seen=ODD, fix=ODD)],
+    [
+        Finding(
+            "spin", f"{ODD} never spins.", f"src/{ODD}.py", 3, seen=ODD, fix=ODD, severity="error"
+        )
+    ],
     {"spin": BROKEN},
     isolation="No sandbox here: bwrap says no.",
     folder=pathlib.Path("/", ODD),

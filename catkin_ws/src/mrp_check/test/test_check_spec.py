@@ -2,7 +2,6 @@
 """The checker's specs: ours can be read, and a wrong one is told by file, line and place."""
 
 import json
-import pathlib
 import re
 
 import pytest
@@ -239,13 +238,6 @@ def test_requirements_point_to_pages_that_exist():
         titles = [line for line, below in zip(lines, lines[1:]) if re.fullmatch(r"[-=]{3,}", below)]
         anchors = [re.sub(r"[^a-z0-9]+", "-", title.lower()).strip("-") for title in titles]
         assert not anchor or anchor in anchors, (requirement.section, anchors)
-
-
-def test_each_file_of_rules_is_a_rule_with_its_own_place():
-    files = {path.stem for path in pathlib.Path(rules.__file__).parent.glob("*.py")}
-    assert len(rules.RULES) == len(files - {"__init__"})
-    places = [(rule.stage, rule.order) for rule in rules.RULES]
-    assert len({*places}) == len(places)
 
 
 def test_what_a_rule_can_report_is_some_rule_s_own():

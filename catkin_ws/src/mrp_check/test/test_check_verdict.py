@@ -11,8 +11,9 @@ import pytest
 from mrp_check import check, suppression
 from mrp_check.case import Case
 from mrp_check.contract.errors import CannotCheck
-from mrp_check.contract.finding import Finding
+from mrp_check.contract.finding import SEEN, Finding
 from mrp_check.contract.requirements import Rule
+from mrp_check.contract.severity import weigh
 from mrp_check.report import class_table, console, json_, junit
 from mrp_check.report import html as html_report
 from mrp_check.rules import RULES
@@ -40,7 +41,7 @@ def rule(*found, ids=("text",), fails=None, stage="files"):
         if fails:
             raise fails
 
-    return Rule(stage, 1, (), findings, also=ids)
+    return Rule(stage, (), findings, also=ids)
 
 
 @pytest.mark.parametrize(
@@ -91,8 +92,8 @@ def test_what_failed_once_is_not_tried_again(tmp_path, monkeypatch):
 
     monkeypatch.setattr(Case, "model", property(model))
     rules = [
-        Rule("files", 1, ("model",), list, also=("text",)),
-        Rule("files", 2, ("facts",), list, also=("cmake",)),
+        Rule("files", ("model",), list, also=("text",)),
+        Rule("files", ("facts",), list, also=("cmake",)),
     ]
     one = examined(tmp_path, rules, monkeypatch, only=("text", "cmake"))
     assert (one.reason, len(tried)) == ("CMake did not end.", 1)
@@ -162,8 +163,9 @@ DROPPED = Finding("lifetime", "It is not kept.", "src/a.py", 4, stage="static")
 )
 def test_a_comment_with_a_reason_suppresses_a_finding(tmp_path):
     package = check_rules.make(tmp_path, src__a_DOT_py=COMMENTED)
-    found = [dataclasses.replace(one) for one in (SPINS, FOLLOWS, DROPPED)]
+    found = [dataclasses.replace(f, certainty=SEEN) for f in (SPINS, FOLLOWS, DROPPED)]
     stay, suppressed = suppression.applied(package, found, {"spin", "lifetime", "queue"}, False)
+    weigh(stay, has_contract=True)
     assert [(one.id, one.suppressed) for one in suppressed] == [
         ("spin", "it sleeps in a loop of its own")
     ]
