@@ -13,7 +13,7 @@ from mrp_check import evidence
 from mrp_check.case import Case
 from mrp_check.confined.places import Kind
 from mrp_check.confined.seen import Log
-from mrp_check.contract.finding import SEEN, HINT, HABIT, Finding, Where
+from mrp_check.contract.finding import HABIT, HINT, SEEN, Finding, Where
 from mrp_check.contract.requirements import Requirement, Rule
 from mrp_check.running import logged
 from mrp_check.running.logged import Run
