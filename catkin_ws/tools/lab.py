@@ -1,0 +1,226 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Run a lab, mark the lines that show what it claims, sum up, and end it; or list all labs.
+
+The claim is the first line of the lab's launch file. What to look for stands in mrp_labs/labs.yaml.
+"""
+
+import difflib
+import os
+import pathlib
+import queue
+import re
+import shlex
+import signal
+import socket
+import subprocess
+import sys
+import tempfile
+import textwrap
+import threading
+import time
+
+import yaml
+
+PACKAGE = pathlib.Path(__file__).resolve().parents[1] / "src" / "mrp_labs"
+DEADLINE = float(os.environ.get("MRP_TEST_DEADLINE", 60))  # seconds that a line may take
+MARK = "   <- here"
+
+# What roslaunch prints about itself, which hides what the nodes say.
+CHATTER = r"^process\[|^setting /run_id|^started core service|^auto-starting|^ROS_MASTER_URI"
+ESCAPES = re.compile(r"\x1b\[[0-9;]*m|\x1b\][^\x07]*\x07")  # colours, and the window's title
+
+
+class NotSeen(Exception):
+    """A lab did not show what it claims; the text is one sentence."""
+
+
+def read_labs():
+    """Return section -> name of a lab -> its entry of labs.yaml, in the order to learn them."""
+    return yaml.safe_load((PACKAGE / "labs.yaml").read_text())
+
+
+def launch_file(name):
+    """Return the path of a lab's launch file."""
+    return PACKAGE / "launch" / f"{name}.launch"
+
+
+def claim_of(name):
+    """Return the first line of a lab's launch file, without the signs of a comment."""
+    return launch_file(name).read_text().split("\n")[0].removeprefix("<!-- ").removesuffix(" -->")
+
+
+def steps_of(name, entry):
+    """Return the steps of a lab, the first of which starts its launch file."""
+    steps = entry.get("steps") or [{"look": entry["look"], "never": entry.get("never")}]
+    launches = any("roslaunch" in step.get("start", "") for step in steps)
+    return steps if launches else [{"start": f"roslaunch mrp_labs {name}.launch"}, *steps]
+
+
+def print_list():
+    for section, labs in read_labs().items():
+        print(f"{section}:\n")
+        for name in labs:
+            print(textwrap.fill(claim_of(name), 98, initial_indent="  ", subsequent_indent="  "))
+            print(f"    make lab NAME={name}\n")
+
+
+class Run:
+    """The programs of a lab that is running. Use it in a `with`, which ends them."""
+
+    def __init__(self, hide=None):
+        self.programs = []  # (command, Popen)
+        self.lines = queue.Queue()
+        self.pids = {}  # name of a node -> the number of its process
+        self.hide = re.compile("|".join(filter(None, [CHATTER, hide])))
+        self.colour = sys.stdout.isatty() and "NO_COLOR" not in os.environ
+
+    def __enter__(self):
+        self.folder = tempfile.TemporaryDirectory(prefix="mrp_lab_")
+        return self
+
+    def __exit__(self, *_):
+        while self.programs:
+            self.end(self.programs[-1][0])
+        self.folder.cleanup()
+
+    def start(self, command):
+        """Start a command, whose lines are read as they come; return its Popen and its reader."""
+        command = re.sub(r"\{(\S+)\}", lambda match: self.pids[match[1]], command)
+        command = os.path.expandvars(command)
+        self.say(f"\n$ {command}\n", "1")
+        program = subprocess.Popen(
+            shlex.split(command),
+            cwd=self.folder.name,
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+            errors="replace",
+            start_new_session=True,
+        )
+        self.programs.append((command, program))
+        reader = threading.Thread(target=self._read, args=(command, program), daemon=True)
+        reader.start()
+        return program, reader
+
+    def run(self, command):
+        """Run a command to its end."""
+        program, reader = self.start(command)
+        program.wait(DEADLINE)
+        reader.join(DEADLINE)
+
+    def _read(self, command, program):
+        hidden = command.startswith("roslaunch")  # until its summary has ended
+        for line in program.stdout:
+            text = ESCAPES.sub("", line).rstrip()
+            hidden = hidden and not re.match("ROS_MASTER_URI|RLException", text)
+            if text and not hidden:
+                self.lines.put(text)
+
+    def wait(self, patterns, mark="", never=None):
+        """Print lines until each pattern has been seen; put a mark behind the first line of each.
+
+        Raises NotSeen if one of them does not come, or a line comes that must not.
+        """
+        left = [patterns] if isinstance(patterns, str) else list(patterns)
+        end = time.monotonic() + DEADLINE
+        while left:
+            try:
+                line = self.lines.get(timeout=max(0.0, end - time.monotonic()))
+            except queue.Empty:
+                raise NotSeen(f"expected a line with {left[0]!r} within {DEADLINE:.0f} s") from None
+            started = re.match(r"process\[(\S+)-\d+\]: started with pid \[(\d+)\]", line)
+            if started:
+                self.pids[started[1]] = started[2]
+            if never and re.search(never, line):
+                raise NotSeen(f"expected no such line: {line}")
+            missing = [pattern for pattern in left if not re.search(pattern, line)]
+            if len(missing) < len(left) and mark:
+                self.say(line + mark, "1;32")
+            elif not self.hide.search(line):
+                self.say(line)
+            left = missing
+
+    def say(self, text, style=""):
+        print(f"\x1b[{style}m{text}\x1b[0m" if style and self.colour else text, flush=True)
+
+    def end(self, command):
+        """End the newest program of a command, as Ctrl-C does, and wait for it."""
+        number = max(n for n, (started, _) in enumerate(self.programs) if started.startswith(command))
+        _, program = self.programs.pop(number)
+        if program.poll() is None:
+            os.killpg(program.pid, signal.SIGINT)
+            try:
+                program.wait(DEADLINE)
+            except subprocess.TimeoutExpired:
+                os.killpg(program.pid, signal.SIGKILL)
+                program.wait()
+
+
+def use_free_master():
+    """Use the master's usual port if it is free; otherwise another one, and say so.
+
+    A lab brings its own master: some labs leave parameters on it that would stop other nodes.
+    """
+    with socket.socket() as probe:
+        probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        try:
+            probe.bind(("", 11311))
+        except OSError:
+            probe.bind(("", 0))
+            print("Another master is running, so this lab uses its own. To look at it from a second")
+            print(f"terminal, type: export ROS_MASTER_URI=http://localhost:{probe.getsockname()[1]}\n")
+        os.environ["PORT"] = str(probe.getsockname()[1])
+    # With these, a node prints each line at once also into a pipe.
+    os.environ.update(ROSCONSOLE_STDOUT_LINE_BUFFERED="1", PYTHONUNBUFFERED="1")
+    os.environ["ROS_MASTER_URI"] = f"http://localhost:{os.environ['PORT']}"
+
+
+def run(name, entry):
+    """Run a lab from its claim to its sum. Raises NotSeen if it does not show what it claims."""
+    print(f"{name}: {claim_of(name)}\n\nThe launch file: {launch_file(name)}")
+    use_free_master()
+    with Run(entry.get("hide")) as lab:
+        for step in steps_of(name, entry):
+            if "look" in step:
+                lab.wait(step["look"], MARK, step.get("never"))
+            elif "wait" in step:
+                lab.wait(step["wait"])
+            elif "run" in step:
+                lab.run(step["run"])
+            elif "stop" in step:
+                lab.end(step["stop"])
+            else:
+                lab.start(step["start"])
+        print("\nThat's it: ending the lab ...", flush=True)
+    print("\n" + textwrap.fill(f"What you saw: {entry['sum up']}", 98))
+
+
+def check_name(name):
+    """Return the lab's entry, or exit with a sentence that says which labs exist."""
+    labs = {name: entry for section in read_labs().values() for name, entry in section.items()}
+    if name in labs:
+        return labs[name]
+    near = difflib.get_close_matches(name, labs, 5, 0.5) or [n for n in labs if name and name in n]
+    found = f"there is no lab {name!r}" if name else "NAME is missing"
+    near = f" The nearest: {', '.join(near)}." if near else ""
+    sys.exit(f"error: expected make lab NAME=LAB; {found}.{near} All {len(labs)}: make labs")
+
+
+def main():
+    if sys.argv[1:] == ["--list"]:
+        return print_list()
+    entry = check_name(sys.argv[-1] if len(sys.argv) > 1 else "")
+    if "--check" in sys.argv:
+        return None
+    try:
+        return run(sys.argv[1], entry)
+    except NotSeen as error:
+        sys.exit(f"\nerror: {error}")
+    except KeyboardInterrupt:
+        sys.exit("\nStopped; all that the lab started has ended.")
+
+
+if __name__ == "__main__":
+    main()
