@@ -33,6 +33,7 @@ ALONE := unset ROS_IP ROS_NAMESPACE ROS_MASTER_URI; export ROS_HOSTNAME=localhos
 # The lists of Debian packages, in catkin_ws/apt, that each target installs when it is first called.
 PACKAGES_run := run tools
 PACKAGES_build := $(PACKAGES_run) build
+PACKAGES_lab := $(PACKAGES_run) labs
 PACKAGES_check := $(PACKAGES_run) check
 PACKAGES_learn := $(PACKAGES_check) learn
 PACKAGES_view := $(PACKAGES_build) view
@@ -45,15 +46,17 @@ PACKAGES_docs := docs
 PACKAGES_docs-book := docs book
 PACKAGES_lint := $(PACKAGES_test-all) lint
 
-# `make run` builds the tutorial alone. Once the whole workspace has been built, it stays whole. With -j,
+# `make run` builds only the tutorial, and `make lab` adds the labs. What has been built stays built. With -j,
 # catkin_make does not add -l: a machine that was busy a minute ago would build one file at a time.
 CATKIN_MAKE := catkin_make -j$(shell nproc) -DPYTHON_EXECUTABLE=/usr/bin/python3 \
   -DCMAKE_BUILD_TYPE=RelWithDebInfo -DCMAKE_EXPORT_COMPILE_COMMANDS=ON
 TUTORIAL := -DCATKIN_WHITELIST_PACKAGES=mrp -DCATKIN_ENABLE_TESTING=OFF
+LABS := "-DCATKIN_WHITELIST_PACKAGES=mrp;mrp_labs" -DCATKIN_ENABLE_TESTING=OFF
 WHOLE := -DCATKIN_WHITELIST_PACKAGES= -DCATKIN_ENABLE_TESTING=ON
 # What an editor reads: how each C++ file is compiled, and which fields each message has.
 FOR_EDITORS := ln -sf build/compile_commands.json .; source devel/setup.bash; tools/make_stubs.py build/stubs
 BUILT_TUTORIAL := catkin_ws/devel/.built_tutorial
+BUILT_LABS := catkin_ws/devel/.built_labs
 BUILT_WHOLE := catkin_ws/devel/.built_whole
 sources = $(shell find $(1) -type f -not -name '*.pyc' -not -path '*/doc/*' -not -path catkin_ws/src/CMakeLists.txt)
 
@@ -94,10 +97,15 @@ debug: packages-debug $(BUILT_TUTORIAL)  ## start one node, NODE=publisher_cpp_n
 
 $(BUILT_WHOLE): $(call sources,catkin_ws/src)
 	@$(IN_WORKSPACE) env $$($(CACHE)) $(CATKIN_MAKE) $(WHOLE); $(FOR_EDITORS)
+	@touch $@ $(BUILT_TUTORIAL) $(BUILT_LABS)
+
+$(BUILT_LABS): $(call sources,catkin_ws/src/mrp) $(call sources,catkin_ws/src/mrp_labs)
+	@$(IN_WORKSPACE) $(CATKIN_MAKE) $(if $(wildcard $(BUILT_WHOLE)),$(WHOLE),$(LABS)); $(FOR_EDITORS)
 	@touch $@ $(BUILT_TUTORIAL)
 
 $(BUILT_TUTORIAL): $(call sources,catkin_ws/src/mrp)
-	@$(IN_WORKSPACE) $(CATKIN_MAKE) $(if $(wildcard $(BUILT_WHOLE)),$(WHOLE),$(TUTORIAL)); \
+	@$(IN_WORKSPACE) $(CATKIN_MAKE) \
+	$(if $(wildcard $(BUILT_WHOLE)),$(WHOLE),$(if $(wildcard $(BUILT_LABS)),$(LABS),$(TUTORIAL))); \
 	$(FOR_EDITORS)
 	@touch $@
 
@@ -115,10 +123,17 @@ test-rest: packages-test-all $(BUILT_WHOLE)  ## run the tests that make test lea
 	@$(IN_WORKSPACE) $(ALONE) source devel/setup.bash; tools/run_tests.sh slow
 
 .PHONY: labs
-labs:  ## list the labs: each is a launch file that shows one claim
-	@for file in catkin_ws/src/mrp_labs/launch/*.launch; do \
-	  printf '  %-52s %s\n' "roslaunch mrp_labs $$(basename $$file)" \
-	    "$$(sed -n '1s/<!-- \(.*\) -->/\1/p' $$file)"; done
+labs: packages-lab  ## list the labs, small demos of one fact each, in an order to learn them
+	@/usr/bin/python3 catkin_ws/tools/lab.py --list
+
+# It looks up the name before it builds anything.
+.PHONY: lab
+lab: packages-lab known-lab $(BUILT_LABS)  ## run a lab, NAME=latch: it says what to look for, marks it, and ends
+	@$(IN_WORKSPACE) $(LOCAL) source devel/setup.bash; exec tools/lab.py "$(NAME)"
+
+.PHONY: known-lab
+known-lab:
+	@/usr/bin/python3 catkin_ws/tools/lab.py --check "$(NAME)"
 
 # It builds the package in a folder of its own, so nothing of this workspace need be built before.
 .PHONY: check

@@ -141,21 +141,3 @@ def test_scripts_are_executable():
     scripts = [path for path, line in first_lines.items() if line.startswith("#!")]
     assert len(scripts) >= 10
     assert [str(path) for path in scripts if not path.stat().st_mode & 0o111] == []
-
-
-@proves(
-    "Its first line says what, and stands under each heading here.",
-    "The command make labs, in the folder of the repository, lists all labs.",
-    'Its page "Labs" lists small launch files, and each one shows one claim: make labs prints '
-    "the list.",
-)
-@pytest.mark.quick
-def test_labs_lists_every_lab_with_its_claim():
-    folder = ROOT / "catkin_ws" / "src" / "mrp_labs"
-    listed = re.findall(r"^  roslaunch mrp_labs (\S+) +(.+)$", make("labs").stdout, re.MULTILINE)
-    labs = {path.name: path.read_text() for path in folder.glob("launch/*.launch")}
-    assert [name for name, _ in listed] == sorted(labs)
-    for name, claim in listed:
-        assert labs[name].startswith(f"<!-- {claim} -->\n")
-    tests = [path.read_text() for path in folder.glob("test/test_*.py")]
-    assert [name for name in labs if not any(f'"{name}"' in text for text in tests)] == []

@@ -5,6 +5,7 @@
 The claim is the first line of the lab's launch file. What to look for stands in mrp_labs/labs.yaml.
 """
 
+import argparse
 import difflib
 import os
 import pathlib
@@ -53,11 +54,13 @@ def claim_of(name):
 def steps_of(name, entry):
     """Return the steps of a lab, the first of which starts its launch file."""
     steps = entry.get("steps") or [{"look": entry["look"], "never": entry.get("never")}]
-    launches = any("roslaunch" in step.get("start", "") for step in steps)
-    return steps if launches else [{"start": f"roslaunch mrp_labs {name}.launch"}, *steps]
+    start = {"start": f"roslaunch mrp_labs {name}.launch"}
+    return steps if "start" in steps[0] else [start, *steps]
 
 
 def print_list():
+    """Print each lab's claim, and the command that runs it."""
+    signal.signal(signal.SIGPIPE, signal.SIG_DFL)  # as when `less` is closed
     for section, labs in read_labs().items():
         print(f"{section}:\n")
         for name in labs:
@@ -86,6 +89,8 @@ class Run:
 
     def start(self, command):
         """Start a command, whose lines are read as they come; return its Popen and its reader."""
+        while not self.lines.empty():  # of what ran before
+            self.show(*self.lines.get())
         command = re.sub(r"\{(\S+)\}", lambda match: self.pids[match[1]], command)
         command = os.path.expandvars(command)
         self.say(f"\n$ {command}\n", "1")
@@ -116,7 +121,7 @@ class Run:
             text = ESCAPES.sub("", line).rstrip()
             hidden = hidden and not re.match("ROS_MASTER_URI|RLException", text)
             if text and not hidden:
-                self.lines.put(text)
+                self.lines.put((program, text))
 
     def wait(self, patterns, mark="", never=None):
         """Print lines until each pattern has been seen; put a mark behind the first line of each.
@@ -127,7 +132,7 @@ class Run:
         end = time.monotonic() + DEADLINE
         while left:
             try:
-                line = self.lines.get(timeout=max(0.0, end - time.monotonic()))
+                program, line = self.lines.get(timeout=max(0.0, end - time.monotonic()))
             except queue.Empty:
                 raise NotSeen(f"expected a line with {left[0]!r} within {DEADLINE:.0f} s") from None
             started = re.match(r"process\[(\S+)-\d+\]: started with pid \[(\d+)\]", line)
@@ -138,9 +143,14 @@ class Run:
             missing = [pattern for pattern in left if not re.search(pattern, line)]
             if len(missing) < len(left) and mark:
                 self.say(line + mark, "1;32")
-            elif not self.hide.search(line):
-                self.say(line)
+            else:
+                self.show(program, line)
             left = missing
+
+    def show(self, program, line):
+        """Print a line, unless it is to be hidden, or its program has been ended."""
+        if not self.hide.search(line) and any(program is running for _, running in self.programs):
+            self.say(line)
 
     def say(self, text, style=""):
         print(f"\x1b[{style}m{text}\x1b[0m" if style and self.colour else text, flush=True)
@@ -197,25 +207,31 @@ def run(name, entry):
     print("\n" + textwrap.fill(f"What you saw: {entry['sum up']}", 98))
 
 
-def check_name(name):
+def find(name):
     """Return the lab's entry, or exit with a sentence that says which labs exist."""
     labs = {name: entry for section in read_labs().values() for name, entry in section.items()}
     if name in labs:
         return labs[name]
-    near = difflib.get_close_matches(name, labs, 5, 0.5) or [n for n in labs if name and name in n]
+    near = [lab for lab in labs if name and name in lab]
+    near += [lab for lab in difflib.get_close_matches(name, labs, 5, 0.6) if lab not in near]
     found = f"there is no lab {name!r}" if name else "NAME is missing"
     near = f" The nearest: {', '.join(near)}." if near else ""
     sys.exit(f"error: expected make lab NAME=LAB; {found}.{near} All {len(labs)}: make labs")
 
 
 def main():
-    if sys.argv[1:] == ["--list"]:
+    parser = argparse.ArgumentParser(description="Run a lab, and mark what shows its claim.")
+    parser.add_argument("name", nargs="?", default="", help="of the lab, such as latch")
+    parser.add_argument("--list", action="store_true", help="list all labs instead")
+    parser.add_argument("--check", action="store_true", help="only say whether there is such a lab")
+    options = parser.parse_args()
+    if options.list:
         return print_list()
-    entry = check_name(sys.argv[-1] if len(sys.argv) > 1 else "")
-    if "--check" in sys.argv:
+    entry = find(options.name)
+    if options.check:
         return None
     try:
-        return run(sys.argv[1], entry)
+        return run(options.name, entry)
     except NotSeen as error:
         sys.exit(f"\nerror: {error}")
     except KeyboardInterrupt:

@@ -51,9 +51,8 @@ class TestRemap(unittest.TestCase):
         "~great_topic, write it so in from.",
         "Nobody warns you: a remap of graet_topic, which no node asks for, prints nothing.",
         "A <remap> needs the name as the node asks for it, and a place above the node or in it.",
-        "A remap reaches the nodes that stand below it in its tag, and only the name as they ask "
-        "for it.",
-        "If it reaches nothing, it prints nothing.",
+        "A remap affects only nodes listed after it in its tag, and only the exact name they ask for.",
+        "If it affects nothing, it prints nothing.",
     )
     def test_remap_py(self):
         self.check()
@@ -67,9 +66,8 @@ class TestRemap(unittest.TestCase):
         'In C++, ~ stands for the names of a ros::NodeHandle("~").',
         "Nobody warns you: a remap of graet_topic, which no node asks for, prints nothing.",
         "A <remap> needs the name as the node asks for it, and a place above the node or in it.",
-        "A remap reaches the nodes that stand below it in its tag, and only the name as they ask "
-        "for it.",
-        "If it reaches nothing, it prints nothing.",
+        "A remap affects only nodes listed after it in its tag, and only the exact name they ask for.",
+        "If it affects nothing, it prints nothing.",
     )
     def test_remap_cpp(self):
         self.check("type:=lab_subscriber_cpp_node")

@@ -64,7 +64,7 @@ class Labs(Generated):
                 "",
                 ".. code-block:: bash",
                 "",
-                f"   roslaunch mrp_labs {launch.name}",
+                f"   make lab NAME={launch.stem}",
                 "",
                 f".. literalinclude:: /../../mrp_labs/launch/{launch.name}",
                 "   :language: xml",

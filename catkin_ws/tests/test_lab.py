@@ -1,0 +1,102 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""`make labs` and `make lab`: labs.yaml against the launch files, and labs as a reader runs them."""
+
+import re
+
+import pytest
+import yaml
+from front_door import make
+from mrp_testing.process import Process, processes_with
+from mrp_testing.proves import proves
+from mrp_testing.workspace import WORKSPACE
+
+FOLDER = WORKSPACE / "src" / "mrp_labs"
+SECTIONS = yaml.safe_load((FOLDER / "labs.yaml").read_text())
+LABS = {name: entry for labs in SECTIONS.values() for name, entry in labs.items()}
+STEPS = {"start", "stop", "run", "wait", "look", "never"}
+LAB = str(WORKSPACE / "tools" / "lab.py")
+
+
+@proves(
+    "make labs lists all of them in an order to learn them, ten to start with first.",
+    "The Labs page has 50 small demos of one fact each: make labs lists them.",
+)
+@pytest.mark.quick
+def test_list_has_every_lab_with_its_claim():
+    launch_files = {path.stem: path.read_text() for path in FOLDER.glob("launch/*.launch")}
+    assert len(launch_files) == 50
+    printed = make("labs").stdout
+    assert sorted(re.findall(r"^    make lab NAME=(\w+)$", printed, re.MULTILINE)) == sorted(
+        launch_files
+    )
+    assert printed.startswith("Ten to start with:\n\n")
+    assert len(SECTIONS["Ten to start with"]) == 10
+    words = " ".join(printed.split())
+    for name, text in launch_files.items():
+        claim = re.match(r"<!-- (.*) -->\n", text).group(1)
+        assert f"{claim} make lab NAME={name}" in words
+    tests = [path.read_text() for path in FOLDER.glob("test/test_*.py")]
+    assert [n for n in launch_files if not any(f'"{n}.launch"' in test for test in tests)] == []
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize("name", LABS)
+def test_entry_has_patterns_to_look_for_and_a_sum(name):
+    entry = LABS[name]
+    assert set(entry) <= {"look", "never", "hide", "steps", "sum up"}
+    assert ("look" in entry) != ("steps" in entry)
+    assert entry["sum up"].endswith(".")
+    steps = entry.get("steps", [entry])
+    assert any("look" in step for step in steps)
+    for step in steps:
+        assert step is entry or set(step) <= STEPS
+        for key in {"look", "wait", "never"} & set(step):
+            for pattern in [step[key]] if isinstance(step[key], str) else step[key]:
+                re.compile(pattern)
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize(
+    ("name", "found"),
+    [
+        ("lach", "there is no lab 'lach'. The nearest: latch, latch_end."),
+        ("", "NAME is missing."),
+        ("../x", "there is no lab '../x'."),
+    ],
+)
+def test_unknown_name_says_which_labs_exist(name, found):
+    with Process(LAB, name) as lab:
+        assert lab.wait() == 1
+    assert lab.lines == [
+        f"error: expected make lab NAME=LAB; {found} All {len(LABS)}: make labs"
+    ]
+
+
+@proves("It builds the labs, marks the line where you can see the fact, sums up, and ends.")
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["latch", "kill", "bags", "kill_master"])
+def test_lab_marks_its_line_sums_up_and_ends(name, tmp_path):
+    with Process(LAB, name, extra_env={"TMPDIR": str(tmp_path)}) as lab:
+        assert lab.wait() == 0, str(lab)
+    claim = (FOLDER / "launch" / f"{name}.launch").read_text().splitlines()[0]
+    assert f"<!-- {lab.lines[0].removeprefix(name + ': ')} -->" == claim
+    marked = [line.removesuffix("   <- here") for line in lab.lines if line.endswith("<- here")]
+    steps = LABS[name].get("steps", [LABS[name]])
+    for look in (step["look"] for step in steps if "look" in step):
+        for pattern in [look] if isinstance(look, str) else look:
+            assert any(re.search(pattern, line) for line in marked), pattern
+    text = " ".join(" ".join(lab.lines).split())
+    assert text.endswith("What you saw: " + LABS[name]["sum up"])
+    assert processes_with(str(tmp_path)) == {}
+    assert [*tmp_path.iterdir()] == []
+
+
+@pytest.mark.slow
+def test_lab_that_does_not_show_its_claim_fails(tmp_path):
+    """A deadline that no node meets stands for a lab whose line never comes."""
+    env = {"TMPDIR": str(tmp_path), "MRP_TEST_DEADLINE": "0.2"}
+    with Process(LAB, "latch", extra_env=env) as lab:
+        assert lab.wait() == 1
+    first = LABS["latch"]["look"][0]
+    assert lab.lines[-1] == f"error: expected a line with {first!r} within 0 s"
+    assert processes_with(str(tmp_path)) == {}
