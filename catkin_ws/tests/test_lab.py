@@ -6,6 +6,7 @@ import re
 import pytest
 import yaml
 from front_door import make
+from mrp_testing.ports import free_port
 from mrp_testing.process import Process, processes_with
 from mrp_testing.proves import proves
 from mrp_testing.workspace import WORKSPACE
@@ -15,6 +16,11 @@ SECTIONS = yaml.safe_load((FOLDER / "labs.yaml").read_text())
 LABS = {name: entry for labs in SECTIONS.values() for name, entry in labs.items()}
 STEPS = {"start", "stop", "run", "wait", "look", "never"}
 LAB = str(WORKSPACE / "tools" / "lab.py")
+
+
+def own(folder):
+    """Return variables of a lab's environment: a folder and a master's port of its own."""
+    return {"TMPDIR": str(folder), "ROS_MASTER_URI": f"http://localhost:{free_port()}"}
 
 
 @proves(
@@ -76,7 +82,7 @@ def test_unknown_name_says_which_labs_exist(name, found):
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ["latch", "kill", "bags", "kill_master"])
 def test_lab_marks_its_line_sums_up_and_ends(name, tmp_path):
-    with Process(LAB, name, extra_env={"TMPDIR": str(tmp_path)}) as lab:
+    with Process(LAB, name, extra_env=own(tmp_path)) as lab:
         assert lab.wait() == 0, str(lab)
     claim = (FOLDER / "launch" / f"{name}.launch").read_text().splitlines()[0]
     assert f"<!-- {lab.lines[0].removeprefix(name + ': ')} -->" == claim
@@ -94,7 +100,7 @@ def test_lab_marks_its_line_sums_up_and_ends(name, tmp_path):
 @pytest.mark.slow
 def test_lab_that_does_not_show_its_claim_fails(tmp_path):
     """A deadline that no node meets stands for a lab whose line never comes."""
-    env = {"TMPDIR": str(tmp_path), "MRP_TEST_DEADLINE": "0.2"}
+    env = {**own(tmp_path), "MRP_TEST_DEADLINE": "0.2"}
     with Process(LAB, "latch", extra_env=env) as lab:
         assert lab.wait() == 1
     first = LABS["latch"]["look"][0]

@@ -20,6 +20,7 @@ import tempfile
 import textwrap
 import threading
 import time
+import urllib.parse
 
 import yaml
 
@@ -169,14 +170,15 @@ class Run:
 
 
 def use_free_master():
-    """Use the master's usual port if it is free; otherwise another one, and say so.
+    """Use the master's port that the environment names if it is free; else another one, and say so.
 
     A lab brings its own master: some labs leave parameters on it that would stop other nodes.
     """
+    port = urllib.parse.urlsplit(os.environ.get("ROS_MASTER_URI", "")).port or 11311
     with socket.socket() as probe:
         probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         try:
-            probe.bind(("", 11311))
+            probe.bind(("", port))
         except OSError:
             probe.bind(("", 0))
             print("Another master is running, so this lab uses its own. To look at it from a second")
