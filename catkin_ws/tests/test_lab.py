@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""`make labs` and `make lab`: labs.yaml against the launch files, and labs as a reader runs them."""
+"""`make labs` and `make lab`: labs.yaml against the launch files, and some that run."""
 
 import re
 
@@ -73,9 +73,7 @@ def test_entry_has_patterns_to_look_for_and_a_sum(name):
 def test_unknown_name_says_which_labs_exist(name, found):
     with Process(LAB, name) as lab:
         assert lab.wait() == 1
-    assert lab.lines == [
-        f"error: expected make lab NAME=LAB; {found} All {len(LABS)}: make labs"
-    ]
+    assert lab.lines == [f"error: expected make lab NAME=LAB; {found} All {len(LABS)}: make labs"]
 
 
 @proves("It builds the labs, marks the line where you can see the fact, sums up, and ends.")

@@ -33,7 +33,7 @@ CHATTER = r"^process\[|^setting /run_id|^started core service|^auto-starting|^RO
 ESCAPES = re.compile(r"\x1b\[[0-9;]*m|\x1b\][^\x07]*\x07")  # colours, and the window's title
 
 
-class NotSeen(Exception):
+class NotSeenError(Exception):
     """A lab did not show what it claims; the text is one sentence."""
 
 
@@ -127,7 +127,7 @@ class Run:
     def wait(self, patterns, mark="", never=None):
         """Print lines until each pattern has been seen; put a mark behind the first line of each.
 
-        Raises NotSeen if one of them does not come, or a line comes that must not.
+        Raises NotSeenError if one of them does not come, or a line comes that must not.
         """
         left = [patterns] if isinstance(patterns, str) else list(patterns)
         end = time.monotonic() + DEADLINE
@@ -135,12 +135,14 @@ class Run:
             try:
                 program, line = self.lines.get(timeout=max(0.0, end - time.monotonic()))
             except queue.Empty:
-                raise NotSeen(f"expected a line with {left[0]!r} within {DEADLINE:.0f} s") from None
+                raise NotSeenError(
+                    f"expected a line with {left[0]!r} within {DEADLINE:.0f} s"
+                ) from None
             started = re.match(r"process\[(\S+)-\d+\]: started with pid \[(\d+)\]", line)
             if started:
                 self.pids[started[1]] = started[2]
             if never and re.search(never, line):
-                raise NotSeen(f"expected no such line: {line}")
+                raise NotSeenError(f"expected no such line: {line}")
             missing = [pattern for pattern in left if not re.search(pattern, line)]
             if len(missing) < len(left) and mark:
                 self.say(line + mark, "1;32")
@@ -158,7 +160,9 @@ class Run:
 
     def end(self, command):
         """End the newest program of a command, as Ctrl-C does, and wait for it."""
-        number = max(n for n, (started, _) in enumerate(self.programs) if started.startswith(command))
+        number = max(
+            n for n, (started, _) in enumerate(self.programs) if started.startswith(command)
+        )
         _, program = self.programs.pop(number)
         if program.poll() is None:
             os.killpg(program.pid, signal.SIGINT)
@@ -181,8 +185,12 @@ def use_free_master():
             probe.bind(("", port))
         except OSError:
             probe.bind(("", 0))
-            print("Another master is running, so this lab uses its own. To look at it from a second")
-            print(f"terminal, type: export ROS_MASTER_URI=http://localhost:{probe.getsockname()[1]}\n")
+            print(
+                "Another master is running, so this lab uses its own. To look at it from a second"
+            )
+            print(
+                f"terminal, type: export ROS_MASTER_URI=http://localhost:{probe.getsockname()[1]}\n"
+            )
         os.environ["PORT"] = str(probe.getsockname()[1])
     # With these, a node prints each line at once also into a pipe.
     os.environ.update(ROSCONSOLE_STDOUT_LINE_BUFFERED="1", PYTHONUNBUFFERED="1")
@@ -190,7 +198,7 @@ def use_free_master():
 
 
 def run(name, entry):
-    """Run a lab from its claim to its sum. Raises NotSeen if it does not show what it claims."""
+    """Run a lab from its claim to its sum. Raises NotSeenError if it does not show what it claims."""
     print(f"{name}: {claim_of(name)}\n\nThe launch file: {launch_file(name)}")
     use_free_master()
     with Run(entry.get("hide")) as lab:
@@ -234,7 +242,7 @@ def main():
         return None
     try:
         return run(options.name, entry)
-    except NotSeen as error:
+    except NotSeenError as error:
         sys.exit(f"\nerror: {error}")
     except KeyboardInterrupt:
         sys.exit("\nStopped; all that the lab started has ended.")

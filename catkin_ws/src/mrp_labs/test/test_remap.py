@@ -51,7 +51,8 @@ class TestRemap(unittest.TestCase):
         "~great_topic, write it so in from.",
         "Nobody warns you: a remap of graet_topic, which no node asks for, prints nothing.",
         "A <remap> needs the name as the node asks for it, and a place above the node or in it.",
-        "A remap affects only nodes listed after it in its tag, and only the exact name they ask for.",
+        "A remap affects only nodes listed after it in its tag, and only the exact name "
+        "they ask for.",
         "If it affects nothing, it prints nothing.",
     )
     def test_remap_py(self):
@@ -66,7 +67,8 @@ class TestRemap(unittest.TestCase):
         'In C++, ~ stands for the names of a ros::NodeHandle("~").',
         "Nobody warns you: a remap of graet_topic, which no node asks for, prints nothing.",
         "A <remap> needs the name as the node asks for it, and a place above the node or in it.",
-        "A remap affects only nodes listed after it in its tag, and only the exact name they ask for.",
+        "A remap affects only nodes listed after it in its tag, and only the exact name "
+        "they ask for.",
         "If it affects nothing, it prints nothing.",
     )
     def test_remap_cpp(self):

@@ -38,7 +38,9 @@ def path_of(launch_file):
 
 def looks_of(launch_file):
     """Return the patterns that `make lab` looks for in a lab's lines; none for one with steps."""
-    sections = yaml.safe_load((pathlib.Path(path_of(launch_file)).parents[1] / "labs.yaml").read_text())
+    sections = yaml.safe_load(
+        (pathlib.Path(path_of(launch_file)).parents[1] / "labs.yaml").read_text()
+    )
     labs = {name: entry for section in sections.values() for name, entry in section.items()}
     look = labs[pathlib.Path(launch_file).stem].get("look", [])
     return [look] if isinstance(look, str) else look
