@@ -61,8 +61,6 @@ NO_ERRORS = (
     "Uncaught TypeError: Cannot read properties of undefined (reading 'map')",
     "RuntimeError: There is no current event loop in thread 'MainThread'.",
     "The current process has finished.",
-    "An attempt has been made to start a new process before the\n"
-    "current process has finished its bootstrapping phase.",
 )
 PACKAGE_XML = """<package format="2">
 <name>a</name><version>0.1.0</version><description>a</description>

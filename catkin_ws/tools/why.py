@@ -478,6 +478,8 @@ def _passages(text):
         warns = bool(_WARNING.search(line)) or (warns and line.startswith(" "))
         if line.strip() and not _EVERYWHERE.fullmatch(line):
             lines.append((line.strip(), warns))
+    if not lines:  # roslaunch stands still, and printed nothing else
+        lines = [(line.strip(), False) for line in text.splitlines() if "disk usage" in line]
     seen = set()
     for length in range(1, _TOGETHER + 1):
         for begin in range(max(len(lines) - length, 0) + 1):
