@@ -189,15 +189,6 @@ docs: packages-docs  ## build the tutorial's pages
 	@$(IN_WORKSPACE) /usr/bin/python3 -m sphinx -q -E -W --keep-going -d build/doctrees src/mrp/doc $(SITE)
 	@echo "Open file://$(SITE)/index.html"
 
-# WRITE=1 writes quotes into tests, and sentences into lists: look at what it prints, and at git diff.
-.PHONY: claims
-claims: packages-docs  ## show which sentences no test quotes and no list has; WRITE=1: write them
-	@$(IN_WORKSPACE) tools/quote_claims.py $(if $(WRITE),write,show)
-
-.PHONY: prose-score
-prose-score: packages-docs  ## change words of the pages, count which changes the build finds; RECORD=1: keep it
-	@$(IN_WORKSPACE) $(WITH_TESTING) tools/mutate_prose.py $(if $(RECORD),record,check)
-
 .PHONY: docs-serve
 docs-serve: docs  ## build the pages, and serve them to this machine's browsers
 	@exec /usr/bin/python3 catkin_ws/tools/serve.py $(SITE)

@@ -20,7 +20,7 @@ FILES = {
     "A rule of the checker": 3,
     "An exercise": 1,
     "A lab": 3,
-    "A section of a page": 2,
+    "A sentence of a page": 1,
     "A case of the benchmark": 3,
 }
 

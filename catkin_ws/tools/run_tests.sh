@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # Usage: run_tests.sh quick|slow
 # Runs the rostests that tests/rostests.txt calls so, several at once, and the tests of pytest that are
-# marked so; then prints a summary of all results. After the slow ones, each proof that the pages name
-# must have passed. The workspace is built, and sourced.
+# marked so; then prints a summary of all results. After the slow ones, each test that the ledgers of
+# the pages name must have passed. The workspace is built, and sourced.
 #
 # A rostest waits more than it works, and each has a master of its own: so several run at once, beside
 # pytest. ROS's tools report success over failures: so the result files decide.
@@ -37,6 +37,6 @@ if [ -n "$rostests" ]; then
   cat build/rostests.log
 fi
 catkin_test_results "$results" > /dev/null || status=1
-[ "$level" = quick ] || tools/quote_claims.py ran || status=1
+[ "$level" = quick ] || tools/check_proofs.py || status=1
 tools/test_summary.py "$results" || status=1
 exit $status

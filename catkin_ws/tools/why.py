@@ -19,7 +19,6 @@ in defects/. Its fields:
 
 There may be several fields Shows and Also. A line of Shows that begins with "12| " or "13| " is
 that of one Debian release. tests/test_why.py runs Try, and holds Shows against what is printed.
-`make claims WRITE=1` puts Why and Fix into the list of the page's sentences.
 """
 
 import codecs

@@ -69,7 +69,7 @@ def proofs(browser):
     return browser.run(
         """
         const small = (box) => box.width < 24 || box.height < 24;
-        const says = (one) => /^Proof by the test \\w+: ./.test(one.getAttribute("aria-label"));
+        const says = (one) => /^Proved: ./.test(one.getAttribute("aria-label"));
         return [...document.querySelectorAll("a.proof")]
           .filter((one) => one.checkVisibility())
           .filter((one) => small(one.getBoundingClientRect()) || !says(one))

@@ -45,7 +45,7 @@ FAULTS = {
         "pictures axe",
     ),
     "an empty label": ('<svg role="img" aria-label=""></svg>', "pictures axe"),
-    "a mark that is too small": (PROOF.format("Proof by the test test_a: It is.", 8), "proofs"),
+    "a mark that is too small": (PROOF.format("Proved: It is.", 8), "proofs"),
     "a mark without a label": (PROOF.format("", 24), "proofs"),
     "grey on white": (TEXT.format("#777", "#fff"), "contrast"),
     "white on a light blue": (TEXT.format("#fff", "#2980b9"), "contrast"),
@@ -69,7 +69,7 @@ FAULTS = {
 HARMLESS = {
     "nothing else": "",
     "code that scrolls in itself": SCROLLS.format('tabindex="0"'),
-    "a mark of a proof": PROOF.format("Proof by the test test_a: It is.", 24),
+    "a mark of a proof": PROOF.format("Proved: It is.", 24),
     "black on white": TEXT.format("#000", "#fff"),
     "the least contrast": TEXT.format("#767676", "#fff"),
     "faint text that is hidden": '<p style="color: #eee; display: none">Text</p>',

@@ -12,7 +12,6 @@ import pytest
 from mrp_check.contract import defects
 from mrp_check.rules import REQUIREMENTS
 from mrp_testing import errata
-from mrp_testing.proves import proves
 
 pytestmark = pytest.mark.quick
 
@@ -41,7 +40,6 @@ def contents(folder):
     return {path.relative_to(folder): (path.stat().st_mode, path.read_bytes()) for path in files}
 
 
-@proves("Behind that may stand its number in the errata:")
 @pytest.mark.parametrize("defect", ALL, ids=lambda one: one.name)
 def test_head_names_what_is_there(defect):
     assert defect.base in check_sets.STYLES
@@ -59,12 +57,6 @@ def test_there_are_as_many_as_were_asked_for():
     assert len(check_sets.STYLES) >= 12
 
 
-@proves(
-    "There are forty: you read what a tool prints, fix a mistake, complete a part, or write a "
-    "file.",
-    "As many are in Python as in C++; the others are in a launch file, CMakeLists.txt or "
-    "package.xml.",
-)
 def test_exercises_are_a_path():
     exercises = defects.exercises()
     assert [one.order for one in exercises] == [*range(1, 41)]
@@ -80,7 +72,6 @@ def changed(defect):
     return re.findall(r"^\+\+\+ b/(\S+)", defect.path.read_text(), re.MULTILINE)
 
 
-@proves("Behind the title stands the page that you need.")
 @pytest.mark.parametrize("exercise", defects.exercises(), ids=lambda one: one.name)
 def test_exercise_has_a_page_and_a_short_hint(exercise):
     assert (check_sets.TUTORIAL / "doc" / "pages" / f"{exercise.page}.rst").exists()
@@ -95,9 +86,6 @@ Breaks: a colon
 Erratum: E5
 Fails: stop.test test_end
 Says: != 0
-Proves: One.
-Proves: Another
-    one.
 Finds: python-syntax
 In: src/a.py: def
 In: src/b.py: x
@@ -131,7 +119,6 @@ def test_head_is_read(tmp_path):
             erratum="E5",
             fails=("stop.test", "test_end"),
             says="!= 0",
-            proves=("One.", "Another\none."),
             finds="python-syntax",
             places=(("src/a.py", "def"), ("src/b.py", "x")),
             tells="colon",
@@ -151,15 +138,9 @@ def test_head_is_read(tmp_path):
         ("Breaks: a colon", "Breaks:", "expected a value, in the field Breaks; found ''"),
         ("Tells:", "Tells: a\nTells:", "expected the field Tells once; found it 2 times"),
         (
-            "Fails: stop.test test_end\nSays: != 0\nProves: One.\nProves: Another\n    one.\n"
-            "Finds: python-syntax\n",
+            "Fails: stop.test test_end\nSays: != 0\nFinds: python-syntax\n",
             "",
             "nobody would find",
-        ),
-        (
-            "Fails: stop.test test_end\nSays: != 0\n",
-            "",
-            "the field Fails is missing: only a defect",
         ),
         ("Says: != 0\n", "", "the field Says is missing, as one of Fails, Says is there"),
         ("Tells: colon\n", "", "the field Tells is missing, as one of Finds, In, Tells is"),

@@ -11,7 +11,7 @@ import pathlib
 import sys
 
 from docutils import nodes
-from evidence import WORKSPACE
+from cases import WORKSPACE
 from picture import Picture
 from sphinx.util.docutils import SphinxDirective
 
@@ -34,7 +34,7 @@ def paragraph(text, **more):
 
 class Machine(SphinxDirective):
     def run(self):
-        return [paragraph(text, generated=True) for text in tables.machine(results(self.env))]
+        return [paragraph(text) for text in tables.machine(results(self.env))]
 
 
 class Tables(SphinxDirective):
@@ -45,7 +45,7 @@ class Tables(SphinxDirective):
         if name not in tables.TABLES:
             raise self.error(f"expected one of {', '.join(tables.TABLES)}, found {name}")
         parts = [part for one in tables.TABLES[name](results(self.env)) for part in self.parts(one)]
-        return [nodes.container("", *parts, is_div=True, generated=True)]
+        return [nodes.container("", *parts, is_div=True)]
 
     def parts(self, one):
         """Return the nodes of a tables.Table."""

@@ -12,7 +12,7 @@ import re
 import subprocess
 
 from docutils import nodes
-from listing import ListOfTests
+from proofs import ListOfTests
 from sphinx_inline_tabs._impl import TabContainer
 
 BUILDERS = ("epub", "latex")
@@ -75,6 +75,6 @@ def _make_book(app, doctree):
 
 
 def setup(app):
-    # After the marks of proof are drawn (proof.py).
+    # After the marks of proof are drawn (proofs.py).
     app.connect("doctree-read", _make_book, priority=600)
     return {"parallel_read_safe": False}

@@ -4,11 +4,11 @@
 import json
 import re
 
-import evidence
+import cases
 from listing import Generated
 from mrp_check.contract.schema import words
 
-SCHEMA = evidence.WORKSPACE / "src" / "mrp_check" / "schema" / "spec.json"
+SCHEMA = cases.WORKSPACE / "src" / "mrp_check" / "schema" / "spec.json"
 
 
 class ContractKeys(Generated):

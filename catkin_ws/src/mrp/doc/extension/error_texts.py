@@ -9,16 +9,14 @@ import itertools
 import re
 import sys
 
-import evidence
+import cases
 from listing import Generated
 
-sys.path.append(str(evidence.WORKSPACE / "tools"))
+sys.path.append(str(cases.WORKSPACE / "tools"))
 import why as tool
 
 
 class Why(Generated):
-    claims = "(Why|Fix): "
-
     def text(self):
         parts = []
         for theme, entries in itertools.groupby(tool.entries(), lambda one: one.theme):

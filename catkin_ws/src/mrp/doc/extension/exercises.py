@@ -5,7 +5,7 @@ Each is named as its task is, with what is to be done, the page that explains it
 that it is made of.
 """
 
-from evidence import defects
+from cases import defects
 from listing import Generated
 
 

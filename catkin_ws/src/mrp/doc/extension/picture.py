@@ -44,8 +44,7 @@ class Picture(SphinxDirective):
                 "</svg></div>",
             ]
         )
-        placed = f"{self.name} {self.arguments[0]}"
-        return nodes.raw(text, text, format="html", alt=alt, placed=placed, generated=True)
+        return nodes.raw(text, text, format="html", alt=alt)
 
 
 class Graph(Picture):

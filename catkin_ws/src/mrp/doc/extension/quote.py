@@ -33,7 +33,6 @@ class Quote(SphinxDirective):
         line = lines[0]
         if path.name == "prose.txt":
             quote = nodes.block_quote("", nodes.paragraph(line, line), classes=["quote", self.name])
-            quote["generated"] = True
         else:
             language = (
                 "cmake" if path.name == "CMakeLists.txt" else LANGUAGES.get(path.suffix, "text")

@@ -68,7 +68,7 @@ class Terminal(SphinxDirective):
             result.append(container_wrapper(self, block, f"Terminal {self.arguments[0]}"))
         if "stop" in options:
             text = f"In terminal {self.arguments[0]}, press Ctrl-C."
-            result.append(nodes.paragraph(text, text, generated=True))
+            result.append(nodes.paragraph(text, text))
         if "output" in options:
             lines = recorded(self, "outputs.json", options["output"])
             if lines is not None:
@@ -76,7 +76,7 @@ class Terminal(SphinxDirective):
                 result.append(self.block("\n".join(lines), "text", "output"))
         if "until" in options and "keep" not in options:
             text = "Ctrl-C ends it."
-            result.append(nodes.paragraph(text, text, generated=True))
+            result.append(nodes.paragraph(text, text))
         return result
 
     def hold(self, lines):

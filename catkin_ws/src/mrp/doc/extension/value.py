@@ -7,7 +7,7 @@
 :value:`results.machine.cores`                  a recording: recorded/results.json
 
 The text is an expression in Python, such as `contract.QUEUE_SIZE + 1` or `len(latch.nodes)`. There
-`word(...)` writes a number as a word. The sentence that a test quotes has what the reader sees.
+`word(...)` writes a number as a word.
 """
 
 import difflib
@@ -18,12 +18,11 @@ import sys
 import xml.etree.ElementTree as ElementTree
 
 from docutils import nodes
-from evidence import WORKSPACE
-from sentences import TAKEN
+from cases import WORKSPACE
 from sphinx.util.docutils import SphinxRole
-from typed_numbers import WORDS
 
 ROS = ("rospy", "rosmaster")
+WORDS = "zero one two three four five six seven eight nine ten eleven twelve".split()
 FILES = ("mrp/launch/*.launch", "mrp_labs/launch/*.*", "mrp/doc/recorded/*.json")
 
 
@@ -132,7 +131,7 @@ class ValueRole(SphinxRole):
             return [self.inliner.problematic(self.rawtext, self.rawtext, message)], [message]
         for file in sources.used:
             self.env.note_dependency(file)
-        return [nodes.inline(self.rawtext, text, classes=[TAKEN])], []
+        return [nodes.inline(self.rawtext, text)], []
 
 
 def setup(app):

@@ -12,7 +12,6 @@ The head of a patch says what it breaks, and who must find that:
     In: src/a.py: def .*        the file and its line of the finding (a regular expression),
     Tells: colon                and what the finding says (a regular expression)
     Severity: warning           of the finding, if it is only a warning
-    Proves: A sentence.         a sentence of the pages that this proves
     Missed: WHY                 the checker is known not to find it
     Order: 7                    its number, if it is an exercise,
     Kind: fix                   what the student does: see KINDS,
@@ -21,7 +20,7 @@ The head of a patch says what it breaks, and who must find that:
     Shows: error: ...           a text that it makes a tool print, and more: see tools/why.py
 
 The value of a field goes on in the lines below it that are indented. There may be several lines In:
-each names a place that is right; and several lines Proves. The head ends where the diff begins.
+each names a place that is right. The head ends where the diff begins.
 
 An exercise is the broken package. Its solution is the patch reversed.
 """
@@ -45,11 +44,11 @@ _FIELD = re.compile(r"([A-Z][\w-]*):(?: (.*))?")
 _GROUPS = (("Fails", "Says"), ("Finds", "In", "Tells"), ("Order", "Kind", "Task", "Hint"))
 _WHY = ("Shows", "Also", "Why", "Fix", "Page", "General", "Try", "Needs")
 _FIELDS = (
-    *("Base", "Breaks", "Erratum", "Missed", "Proves", "Severity"),
+    *("Base", "Breaks", "Erratum", "Missed", "Severity"),
     *(field for group in _GROUPS for field in group),
     *_WHY,
 )
-_SEVERAL = ("In", "Proves", "Shows", "Also")
+_SEVERAL = ("In", "Shows", "Also")
 _FORMS = {
     "Erratum": (r"[EP][1-9]\d*", "the number of an erratum, such as E5"),
     "Fails": (r"\w+\.test \w+", "a rostest and a test case of it"),
@@ -79,7 +78,6 @@ class Defect:
     erratum: str = ""
     fails: tuple[str, ...] = ()  # the rostest, the test case
     says: str = ""
-    proves: tuple[str, ...] = ()
     finds: str = ""
     places: tuple[tuple[str, str], ...] = ()  # each a file, and a pattern of a line in it
     tells: str = ""
@@ -146,13 +144,11 @@ def read(path: pathlib.Path) -> Defect:
     for fault in _faults(found):
         raise DefectError(f"{path.name}: {fault}.")
     pairs = (value.partition(": ") for value in found.pop("In", ()))
-    proves = tuple(found.pop("Proves", ()))
     why = {field: found.pop(field) for field in _WHY if field in found}
     values = {field.lower(): value for field, (value,) in found.items()}
     return Defect(
         path=path,
         places=tuple((file, pattern) for file, _, pattern in pairs),
-        proves=proves,
         why=why,
         fails=tuple(values.pop("fails", "").split()),
         order=int(values.pop("order", 0)),
@@ -173,8 +169,6 @@ def _faults(found: Mapping[str, Sequence[str]]) -> Iterator[str]:
         yield "the field Breaks is missing"
     if "Fails" not in found and "Finds" not in found:
         yield "one of the fields Fails and Finds is missing: nobody would find the defect"
-    if "Proves" in found and "Fails" not in found:
-        yield "the field Fails is missing: only a defect that a rostest finds proves a sentence"
     for group in _GROUPS:
         if not set(group) & set(found):
             continue

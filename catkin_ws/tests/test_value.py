@@ -1,0 +1,88 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What a page takes from where it is defined: the role `value`, and what a picture says in words."""
+
+import sys
+
+import pytest
+from mrp_testing.workspace import WORKSPACE
+
+sys.path.insert(0, str(WORKSPACE / "src" / "mrp" / "doc" / "extension"))
+
+# The extension needs Sphinx, which `make test` does not install: so each test imports it.
+pytestmark = pytest.mark.slow
+
+
+@pytest.mark.parametrize(
+    ("expression", "expected"),
+    [
+        ("contract.QUEUE_SIZE + 1", "11"),
+        ("contract.TOPIC", "great_topic"),
+        ("one.talker.period", "0.5"),
+        ("one.talker.queue_size", "4"),
+        ("one.queue_size", "4"),
+        ("one.talker.latch", "true"),
+        ("word(len(one.nodes))", "two"),
+        ("rosmaster.DEFAULT_MASTER_PORT", "11311"),
+        ("times.rows[0].size", "8"),
+    ],
+)
+def test_value_is_taken_from_where_it_is_defined(tmp_path, expression, expected):
+    import value
+
+    assert value.value_of(expression, sources(tmp_path)) == expected
+
+
+@pytest.mark.parametrize(
+    ("expression", "expected"),
+    [
+        ("contract.QUEUE", "such as QUEUE_SIZE; found QUEUE"),
+        ("contrac.QUEUE_SIZE", "such as contract; found contrac"),
+        ("one.talker.perod", "such as period; found perod"),
+        ("one.listner", "such as listener; found listner"),
+        ("one.talker", "expected a number or a text, found"),
+        ("1 +", "expected an expression, found '1 \\+'"),
+    ],
+)
+def test_an_unknown_value_is_an_error_with_the_nearest_names(tmp_path, expression, expected):
+    import value
+
+    with pytest.raises(value.UnknownError, match=expected):
+        value.value_of(expression, sources(tmp_path))
+
+
+def sources(folder):
+    """Return value.Sources of a folder with a launch file and a recording."""
+    import value
+
+    launch = folder / "mrp_labs" / "launch" / "one.launch"
+    recording = folder / "mrp" / "doc" / "recorded" / "times.json"
+    for path in (launch, recording):
+        path.parent.mkdir(parents=True)
+    launch.write_text(
+        '<launch><arg name="queue_size" default="4"/><group ns="a">'
+        '<param name="~queue_size" value="$(arg queue_size)"/>'
+        '<node name="talker"><param name="period" value="0.5"/>'
+        '<param name="latch" value="true"/></node></group><node name="listener"/></launch>'
+    )
+    recording.write_text('{"rows": [{"size": 8}]}')
+    return value.Sources(folder)
+
+
+def test_a_picture_says_in_words_what_it_draws():
+    import picture
+
+    of = object.__new__
+    graph = {
+        "topics": {"/a": "std_msgs/UInt32", "/b": "std_msgs/String"},
+        "publishers": [["/one", "/a"], ["/two", "/a"]],
+        "subscribers": [["/two", "/b"]],
+    }
+    assert of(picture.Graph).alt(graph) == (
+        "Topic /a, type std_msgs/UInt32: published by /one, /two; subscribed to by no node. "
+        "Topic /b, type std_msgs/String: published by no node; subscribed to by /two."
+    )
+    assert of(picture.Queue).alt(9, {"one": {1, 2, 3, 9}, "two": {4}}) == (
+        "Messages 1 to 9. one received 1 to 3, 9. two received 4."
+    )
+    events = [{"node": "/one", "what": "published", "value": value} for value in "21"]
+    assert of(picture.Timeline).alt(events) == "/one published 2, 1."
