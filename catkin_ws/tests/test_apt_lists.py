@@ -5,7 +5,6 @@ import os
 import subprocess
 
 import pytest
-from mrp_testing.proves import proves
 from mrp_testing.workspace import WORKSPACE
 
 pytestmark = pytest.mark.quick
@@ -44,7 +43,6 @@ def resolved(dependency_type, folder="src"):
 
 # They are run by one worker of pytest: what rosdep reads is in one folder for all of them.
 @pytest.mark.slow
-@proves("make deps has installed ROS, and all that building needs, from Debian's packages.")
 @pytest.mark.xdist_group("rosdep")
 @pytest.mark.parametrize(
     ("dependency_type", "stages"), [("buildtool", BUILD), ("build", BUILD), ("test", TEST)]
@@ -64,7 +62,6 @@ def test_lists_have_what_running_needs():
 
 
 @pytest.mark.slow
-@proves("From these lines, tools know which Debian packages to install.")
 @pytest.mark.xdist_group("rosdep")
 def test_make_run_installs_what_the_tutorial_needs():
     for dependency_type in ("build", "exec"):
@@ -82,10 +79,6 @@ def test_list_says_first_what_it_is_for(stage):
     assert LISTS[stage].read_text().startswith("# to ")
 
 
-@proves(
-    "It does nothing if all packages are there.",
-    "The second call installs nothing, and builds nothing if nothing has changed.",
-)
 @pytest.mark.place
 def test_installer_has_nothing_to_do_where_the_tests_run(tmp_path):
     """As nothing is missing, neither apt-get nor sudo is called: the guard would refuse them."""
@@ -101,10 +94,6 @@ def test_installer_takes_any_alternative(tmp_path):
     assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
 
 
-@proves(
-    "make deps says what it installs, what for, and how much it is.",
-    "Before a target installs packages, it says what for, how many, and how much.",
-)
 @pytest.mark.place
 @pytest.mark.parametrize("user", ["root", "other"])
 def test_installer_says_what_it_installs_what_for_and_how_much(tmp_path, user):

@@ -7,7 +7,6 @@ import re
 import class_scale
 import pytest
 from mrp_check.contract import packages
-from mrp_testing.proves import proves
 from mrp_testing.workspace import WORKSPACE
 
 pytestmark = pytest.mark.quick
@@ -19,10 +18,6 @@ def contents(folder):
     return {path.name: path.read_bytes() for path in folder.rglob("*") if path.is_file()}
 
 
-@proves(
-    "catkin_ws/tools/class_scale.py measures a class in which every third package is correct, and "
-    "each other one has one defect."
-)
 def test_class_has_correct_packages_and_broken_ones(tmp_path, monkeypatch):
     """And a smaller class is the beginning of a larger one."""
     laid_out, broken = [], []
@@ -38,7 +33,6 @@ def test_class_has_correct_packages_and_broken_ones(tmp_path, monkeypatch):
     assert contents(tmp_path / "large" / "00001") != contents(tmp_path / "large" / "00002")
 
 
-@proves("This is what it took on a machine with two processors, with the same marks each time:")
 def test_recorded_marks_are_the_same():
     rows = list(csv.DictReader(RECORDED.read_text().splitlines()))
     assert [row["workers"] for row in rows] == ["1", "2", "4"]
@@ -46,10 +40,6 @@ def test_recorded_marks_are_the_same():
     assert rows[0]["efficiency"] == "1.00"
 
 
-@proves(
-    "With 10 000 submissions, the scheduler and the command would have less than 1000 MB each: "
-    "what is short first is time."
-)
 def test_memory_is_not_what_is_short_first():
     for row in csv.DictReader(RECORDED.read_text().splitlines()):
         then = [float(value) for name, value in row.items() if re.match("MB of .* then", name)]

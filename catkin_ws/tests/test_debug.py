@@ -11,7 +11,6 @@ from mrp_testing.graph import Graph
 from mrp_testing.master import master, uri_of
 from mrp_testing.ports import free_port
 from mrp_testing.process import processes_with
-from mrp_testing.proves import proves
 from mrp_testing.waiting import DEADLINE
 from mrp_testing.workspace import ROOT, WORKSPACE
 
@@ -47,7 +46,6 @@ def debug(node, port, *dialogue):
     return said
 
 
-@proves("A node in C++ starts under gdb, and a node in Python under pdb.")
 def test_gdb_stops_in_the_callback(port):
     commands = ("break PublisherCppNode::timerCallback", "run", "print counter_", "continue")
     _, stopped, value, _ = debug("publisher_cpp_node", port, *commands)
@@ -56,7 +54,6 @@ def test_gdb_stops_in_the_callback(port):
     assert "$1 = 2" in value
 
 
-@proves("A node in C++ starts under gdb, and a node in Python under pdb.")
 def test_pdb_stops_in_the_callback(port):
     lines = (WORKSPACE / "src/mrp/src/publisher_py_node.py").read_text().splitlines()
     number = 1 + next(i for i, line in enumerate(lines) if "msg.data =" in line)
@@ -67,7 +64,6 @@ def test_pdb_stops_in_the_callback(port):
     assert [re.findall(r"^\d+", said, re.MULTILINE) for said in (first, second)] == [["1"], ["3"]]
 
 
-@proves("The nodes and their master do not run yet: make run starts them.")
 def test_without_a_master_or_a_node_it_says_what_to_do():
     said = make("debug", "NODE=publisher_py_node").stdout
     assert re.search("^error: no master answers at .*: start the nodes .*: make run$", said, re.M)

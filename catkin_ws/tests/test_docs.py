@@ -6,7 +6,6 @@ import re
 import urllib.parse
 
 import pytest
-from mrp_testing.proves import proves
 from mrp_testing.workspace import ROOT, WORKSPACE
 from mrp_view import findings
 
@@ -49,7 +48,6 @@ def broken_links(folder):
     return broken
 
 
-@proves("Here a test fails if a link within these pages leads nowhere.")
 def test_every_link_within_the_site_leads_somewhere(site):
     assert broken_links(site) == []
 
@@ -83,7 +81,6 @@ SOURCES = ("catkin_ws/src", "catkin_ws/defects", "catkin_ws/tests", "docker", "R
 _CODE = re.compile(r"^ *\.\. (excerpt|file|literalinclude|code-block|original|ours):: (\S+)", re.M)
 
 
-@proves("Every line of code comes from a file that is built or tested.")
 @pytest.mark.quick
 def test_every_line_of_code_comes_from_a_file():
     """What is typed into a page is a command. The directives check that the files are there."""

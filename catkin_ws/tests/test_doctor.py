@@ -8,17 +8,11 @@ import subprocess
 
 import pytest
 from doctor_patient import NEEDING_PACKAGES, PYTHON, REAL_PATH, TAKE_OUT, WELL, Check
-from mrp_testing.proves import proves
 from mrp_testing.waiting import DEADLINE
 
 pytestmark = pytest.mark.slow
 
 
-@proves(
-    "make doctor, in the folder of the repository, looks at this machine and this terminal: at "
-    "packages, Python, names, the master, scripts and the workspace.",
-    "Fix: make doctor checks this machine.",
-)
 @pytest.mark.quick
 def test_all_well(patient):
     patient.env["PATH"] = REAL_PATH
@@ -40,11 +34,6 @@ def test_every_failure_is_counted(patient):
 # packages
 
 
-@proves(
-    "Where something is wrong, it prints what it expected, what it found, and the command that "
-    "fixes it.",
-    "Below a [FAIL] line stands the command that fixes it.",
-)
 @pytest.mark.quick
 def test_package_missing(patient):
     patient.write("apt/run.txt", "no-such-package\nbash\n")
@@ -94,13 +83,6 @@ def test_packages_do_not_matter_with_noetic(patient):
 # python3
 
 
-@proves(
-    "If another Python, which does not find ROS, is the first on your PATH, make doctor reports "
-    "it.",
-    "Cause: another Python comes first on PATH, such as one of pyenv, conda or a virtual "
-    "environment: make doctor finds it.",
-    "Below a [FAIL] line stands the command that fixes it.",
-)
 @pytest.mark.parametrize(
     "script, says",
     [
@@ -273,10 +255,6 @@ def test_other_workspace_without_mrp(patient):
 # scripts
 
 
-@proves(
-    "Where something is wrong, it prints what it expected, what it found, and the command that "
-    "fixes it.",
-)
 @pytest.mark.parametrize(
     "name", ["src/mrp/test/a.py", "src/other/scripts/a.py", "src/mrp/src/b.py"]
 )

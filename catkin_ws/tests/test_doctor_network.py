@@ -10,7 +10,6 @@ import xmlrpc.server
 
 import pytest
 from mrp_testing.process import Process
-from mrp_testing.proves import proves
 
 pytestmark = pytest.mark.slow
 
@@ -27,10 +26,6 @@ def test_host_name_that_does_not_resolve(patient):
     )
 
 
-@proves(
-    "Where something is wrong, it prints what it expected, what it found, and the command that "
-    "fixes it.",
-)
 def test_host_name_of_another_machine(patient):
     del patient.env["ROS_HOSTNAME"]
     patient.examine(host_name="192.0.2.1").assert_only_failure(
@@ -51,7 +46,6 @@ def test_host_name_in_use(patient):
 # ROS_HOSTNAME and ROS_IP
 
 
-@proves("make doctor finds it, and a wrong ROS_IP, too.")
 @pytest.mark.parametrize(
     "name, value, problem",
     [
@@ -86,7 +80,6 @@ def test_ros_ip(patient):
     assert report.code == 0
 
 
-@proves("make doctor reports that both are set.")
 def test_ros_hostname_beside_ros_ip(patient):
     patient.env["ROS_IP"] = "192.0.2.1"
     report = patient.examine()
@@ -98,7 +91,6 @@ def test_ros_hostname_beside_ros_ip(patient):
 # ROS_MASTER_URI
 
 
-@proves("Or ROS_MASTER_URI names a machine on which no master answers: make doctor finds it.")
 @pytest.mark.parametrize(
     "uri, expected, found",
     [

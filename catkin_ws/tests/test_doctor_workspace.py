@@ -3,7 +3,6 @@
 
 import pytest
 from doctor_patient import Check
-from mrp_testing.proves import proves
 
 pytestmark = pytest.mark.slow
 
@@ -34,7 +33,6 @@ def check_spaces(patient, found):
     )
 
 
-@proves("make doctor does.")
 def test_workspace_that_is_gone_is_remembered(patient):
     gone = patient.folder / "gone_ws/devel"
     line = f"            CMAKE_PREFIX_PATH = r'{patient.folder};{gone}'.split(';')\n"
@@ -44,7 +42,6 @@ def test_workspace_that_is_gone_is_remembered(patient):
     assert patient.examine().code == 0
 
 
-@proves("make doctor reports such a mixture.")
 @pytest.mark.parametrize("space", ["build", "devel"])
 def test_catkin_build_and_catkin_make_mixed(patient, space):
     patient.write(f"{space}/.built_by", "catkin build")
@@ -56,7 +53,6 @@ def test_catkin_build_and_catkin_make_mixed(patient, space):
 # log files
 
 
-@proves("make doctor reports a log folder of more than 1 GB.")
 @pytest.mark.parametrize("place", ["", "ROS_LOG_DIR", "ROS_HOME"])
 def test_log_files_fill_the_disk(patient, place):
     folder = patient.folder / ".ros/log"
@@ -76,7 +72,6 @@ def test_log_files_fill_the_disk(patient, place):
 # shell
 
 
-@proves("make doctor reports a workspace whose packages hide yours.")
 def test_other_workspace_sourced_after_this_one(patient):
     other = patient.folder / "other_ws/src"
     for src in (other, patient.workspace / "src"):

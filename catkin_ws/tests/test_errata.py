@@ -12,7 +12,6 @@ import subprocess
 import pytest
 from mrp_testing import contract, scratch
 from mrp_testing.errata import NUMBERS, ORIGINAL, PACKAGE, line_of, mend
-from mrp_testing.proves import proves
 from mrp_testing.workspace import WORKSPACE
 
 pytestmark = pytest.mark.slow
@@ -20,11 +19,6 @@ pytestmark = pytest.mark.slow
 PAGE = WORKSPACE / "src" / "mrp" / "doc" / "pages" / "errata.rst"
 
 
-@proves(
-    "Each mistake has a heading of its own, so you can link to it.",
-    "A machine has run the original, and this is what was wrong: 21 things in the code, and 20 in "
-    "the text.",
-)
 @pytest.mark.quick
 def test_page_has_every_defect():
     """Each has a heading, to which a link can lead by its number alone."""
@@ -48,15 +42,6 @@ def syntax_error(path):
     return error.value.text.strip(), error.value.msg
 
 
-@proves(
-    "In short: as printed, both C++ nodes build, and neither Python node starts.",
-    "Python stops at this line: SyntaxError: invalid syntax.",
-    "Both Python nodes have it, so neither starts.",
-    "As printed, no Python node starts; both C++ nodes build, and one of them does the wrong "
-    "thing.",
-    "E1, E3 and E12: an assignment in a global statement, a parenthesis that is never closed, and "
-    "an interpreter that Debian does not have.",
-)
 @pytest.mark.quick
 def test_e01_global_with_an_assignment():
     line, message = syntax_error(ORIGINAL / "src" / "publisher_py_node.py")
@@ -64,7 +49,6 @@ def test_e01_global_with_an_assignment():
     assert message == "invalid syntax"
 
 
-@proves("Python refuses it, too: SyntaxError: invalid syntax.")
 @pytest.mark.quick
 def test_e02_global_with_an_assignment_of_a_constant():
     line, message = syntax_error(ORIGINAL / "snippets" / "hard_coded_namespace.py")
@@ -72,16 +56,6 @@ def test_e02_global_with_an_assignment_of_a_constant():
     assert message == "invalid syntax"
 
 
-@proves(
-    "In short: as printed, both C++ nodes build, and neither Python node starts.",
-    "Both Python nodes have it, so neither starts.",
-    "Python stops at this line: SyntaxError: '(' was never closed.",
-    "Only when it is fixed does Python report E1 in the same file.",
-    "As printed, no Python node starts; both C++ nodes build, and one of them does the wrong "
-    "thing.",
-    "E1, E3 and E12: an assignment in a global statement, a parenthesis that is never closed, and "
-    "an interpreter that Debian does not have.",
-)
 @pytest.mark.quick
 def test_e03_parenthesis_never_closed(package):
     subscriber = package / "src" / "subscriber_py_node.py"
@@ -94,7 +68,6 @@ def test_e03_parenthesis_never_closed(package):
     assert syntax_error(subscriber)[0].startswith("global this_nodes_namespace =")
 
 
-@proves("Python stops at this line: SyntaxError: invalid syntax.")
 @pytest.mark.quick
 def test_e04_comment_of_another_language():
     line, message = syntax_error(ORIGINAL / "snippets" / "timer_callback.py")
@@ -102,7 +75,6 @@ def test_e04_comment_of_another_language():
     assert message == "invalid syntax"
 
 
-@proves("Only the step by step part has it, and not the listing at the original's top.")
 @pytest.mark.quick
 def test_e01_e03_nothing_else_keeps_python_from_reading_them(package):
     mend(package, "e01_global", "e03_parenthesis")
@@ -113,7 +85,6 @@ def test_e01_e03_nothing_else_keeps_python_from_reading_them(package):
 # What makes no difference when run, and what does only elsewhere.
 
 
-@proves("It changes nothing when it runs, because nothing reads that name.")
 @pytest.mark.quick
 def test_e06_instance_is_named_after_another_class():
     text = (ORIGINAL / "src" / "subscriber_py_node.py").read_text()
@@ -121,10 +92,6 @@ def test_e06_instance_is_named_after_another_class():
     assert text.count("publisher_py_node") == 1  # nothing reads that name
 
 
-@proves(
-    "It changes nothing when it runs: Python reads the same program with and without the "
-    "semicolons.",
-)
 @pytest.mark.quick
 def test_e11_semicolon_changes_nothing(package):
     mend(package, "e01_global")
@@ -133,11 +100,6 @@ def test_e11_semicolon_changes_nothing(package):
     assert ast.dump(ast.parse(text)) == ast.dump(ast.parse(text.replace(";\n", "\n")))
 
 
-@proves(
-    "Without it, an executable file with this line ends with exit code 127.",
-    "E1, E3 and E12: an assignment in a global statement, a parenthesis that is never closed, and "
-    "an interpreter that Debian does not have.",
-)
 @pytest.mark.quick
 def test_e12_interpreter_that_debian_has_not(tmp_path):
     """PATH has no program named python here, as Debian has none."""
@@ -163,7 +125,6 @@ def gxx(source, *options):
     ).stderr
 
 
-@proves("Both C++ nodes compile without it.")
 @pytest.mark.parametrize("node", ["publisher_cpp_node", "subscriber_cpp_node"])
 def test_e13_include_is_not_used(node):
     source = (ORIGINAL / "src" / (node + ".cpp")).read_text()
@@ -172,20 +133,12 @@ def test_e13_include_is_not_used(node):
     assert gxx(without) == ""
 
 
-@proves(
-    "<cstdint> has uint32_t, a whole number of 32 bits without a sign.",
-    "uint is not a type of C++: with <cstdint> alone, the line does not compile.",
-)
 def test_e14_uint_is_not_standard():
     line = line_of(ORIGINAL / "src" / "publisher_cpp_node.cpp", "uint counter") + "\n"
     assert "'uint' does not name a type" in gxx("#include <cstdint>\n" + line)
     assert gxx("#include <cstdint>\n" + line.replace("uint", "uint32_t")) == ""
 
 
-@proves(
-    "It changes nothing when it runs: a float holds 0.5 exactly, but not 0.1. ros::Duration takes "
-    "a double.",
-)
 def test_e14_float_holds_half_a_second_but_not_a_tenth():
     line = line_of(ORIGINAL / "src" / "publisher_cpp_node.cpp", "float timer_delta")
     line = "constexpr " + line + '\nstatic_assert(timer_delta_t_in_seconds == {}, "differs");\n'
@@ -194,10 +147,6 @@ def test_e14_float_holds_half_a_second_but_not_a_tenth():
     assert gxx(line.replace("0.5", "0.1").replace("float", "double").format(0.1)) == ""
 
 
-@proves(
-    "The original has no line for a node after this one. catkin_lint reports two errors and four "
-    "warnings.",
-)
 def test_e15_catkin_lint_finds_what_is_missing(package, tmp_path):
     done = subprocess.run(
         ["catkin_lint", "--offline", "-W2", str(package)],
@@ -237,10 +186,6 @@ def dropped(path):
     return [name for name in called if name != "rospy.on_shutdown"]
 
 
-@proves(
-    "The constructors drop what these calls return, so no code can stop the timer, or ask the "
-    "subscriber anything.",
-)
 def test_e16_timer_and_subscriber_are_not_kept(package):
     mend(package, "e01_global", "e03_parenthesis")
     assert dropped(package / "src" / "publisher_py_node.py") == ["rospy.Timer"]
@@ -249,7 +194,6 @@ def test_e16_timer_and_subscriber_are_not_kept(package):
         assert dropped(WORKSPACE / "src" / contract.PACKAGE / "src" / name) == []
 
 
-@proves("Here a level is 4 spaces in Python and 2 in C++.")
 @pytest.mark.quick
 def test_e17_indentation_here_is_of_one_width():
     """Python: the lines that begin a statement, as others may stand further in. C++: all lines."""
@@ -272,30 +216,15 @@ def with_type(name):
     return (ORIGINAL / "src" / "subscriber_cpp_node.cpp").read_text().replace("UInt32", name)
 
 
-@proves(
-    "To use another type, it is not enough to replace the word UInt32 in the tutorial's nodes.",
-    "Empty and ColorRGBA have no field data.",
-    "Some types have no field of that name, such as Empty and ColorRGBA.",
-)
 @pytest.mark.parametrize("name", ["ColorRGBA", "Empty"])
 def test_p06_some_types_have_no_data(name):
     assert "has no member named 'data'" in gxx(with_type(name))
 
 
-@proves(
-    "To use another type, it is not enough to replace the word UInt32 in the tutorial's nodes.",
-    "A String takes no number: you must make a text of it first.",
-    "A String is not a number, so the line with uint32_t does not compile.",
-)
 def test_p06_a_string_is_no_number():
     assert "cannot convert" in gxx(with_type("String"))
 
 
-@proves(
-    "In C++, a Float64 loses its fraction in a variable for whole numbers, and the compiler does "
-    "not warn.",
-    "With Float64 that line compiles, but it cuts off the fraction.",
-)
 def test_p06_a_fraction_is_cut_off_without_a_word():
     assert gxx(with_type("Float64"), "-Wall", "-Wextra") == ""
     assert "may change value" in gxx(with_type("Float64"), "-Wfloat-conversion")
@@ -318,13 +247,11 @@ def listings():
     }
 
 
-@proves("This is only a word: the character printed right beside it is a forward slash.")
 @pytest.mark.quick
 def test_p09_the_character_is_a_forward_slash():
     assert quoted("backslach").endswith("backslach character, i.e., with /")
 
 
-@proves("The listings at the original's top have that code.")
 @pytest.mark.quick
 def test_p13_the_listings_have_the_timer():
     for name, timer in (
@@ -334,10 +261,6 @@ def test_p13_the_listings_have_the_timer():
         assert line_of(ORIGINAL / "src" / name, timer)
 
 
-@proves(
-    "Only the sentence is wrong: it is about the subscriber, and the subscriber's listings have "
-    "no timer.",
-)
 @pytest.mark.quick
 def test_p14_the_subscriber_has_no_timer():
     subscribers = [text for path, text in listings().items() if path.stem.startswith("subscriber")]
@@ -345,7 +268,6 @@ def test_p14_the_subscriber_has_no_timer():
     assert not any("timer" in text.lower() for text in subscribers)
 
 
-@proves("These slips stand in the text and not in the code.")
 @pytest.mark.quick
 def test_p17_slips_are_not_in_the_code():
     for slip in ("PULISHER", "use will inevitably"):
@@ -353,10 +275,6 @@ def test_p17_slips_are_not_in_the_code():
         assert not [path for path, text in listings().items() if slip in text]
 
 
-@proves(
-    "The original marks CMake's lines as bash, and the launch file as HTML.",
-    "Here each excerpt is marked as what it is.",
-)
 @pytest.mark.quick
 def test_p18_excerpts_here_are_marked_as_what_they_are():
     assert quoted("code-block:: bash add_executable(")

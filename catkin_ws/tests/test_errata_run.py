@@ -13,7 +13,6 @@ from mrp_testing.graph import Graph
 from mrp_testing.master import master, uri_of
 from mrp_testing.ports import free_port
 from mrp_testing.process import LIVE, Process
-from mrp_testing.proves import proves
 from mrp_testing.waiting import wait_until
 
 # One worker of pytest builds for all of these tests.
@@ -87,12 +86,6 @@ def published(topics):
     return set(Graph().publishers) - {"/rosout"}
 
 
-@proves(
-    "No two nodes can have the same name: if you start a second one, the master ends the first.",
-    "No two nodes of a graph have the same name.",
-    "When this node starts, it ends a node that already has the name, such as the real "
-    "plain_py_node of an earlier tutorial.",
-)
 def test_e05_two_nodes_of_one_name(package, master):
     """The name that the Python subscriber gives itself is another node's: it ends that one."""
     node = package / "src" / "subscriber_py_node.py"
@@ -103,24 +96,11 @@ def test_e05_two_nodes_of_one_name(package, master):
     assert any("new node registered with same name" in line for line in first.lines), str(first)
 
 
-@proves(
-    "A subscriber_cpp_node that is built from the publisher's file builds without an error, and "
-    "does not subscribe.",
-    "In short: as printed, both C++ nodes build, and neither Python node starts.",
-    "Then the C++ subscriber publishes (E7), and the C++ publisher aborts at Ctrl-C (E8).",
-    "It builds, but the node subscriber_cpp_node publishes, and does not subscribe.",
-    "As printed, no Python node starts; both C++ nodes build, and one of them does the wrong "
-    "thing.",
-)
 def test_e07_the_subscriber_publishes(launched):
     assert SUBSCRIBER_CPP in launched.graph.publishers[TOPIC]
     assert SUBSCRIBER_CPP not in launched.graph.subscribers[TOPIC]
 
 
-@proves(
-    "Then the C++ subscriber publishes (E7), and the C++ publisher aborts at Ctrl-C (E8).",
-    "The timer outlives main, so the node aborts at Ctrl-C with a lock_error.",
-)
 def test_e08_ctrl_c_aborts_the_publisher(built, master):
     node = built / "devel" / "lib" / PACKAGE / "publisher_cpp_node"
     with run(node) as process:
@@ -129,17 +109,12 @@ def test_e08_ctrl_c_aborts_the_publisher(built, master):
     assert any("lock_error" in line for line in process.errors), str(process)
 
 
-@proves("Log lines that wait in a buffer are lost, and roslaunch still exits with 0.")
 def test_e08_its_lines_are_lost_and_roslaunch_says_nothing(launched):
     assert any("lock_error" in line for line in launched.lines)
     assert not any("CPP NODE" in line for line in launched.lines), str(launched)
     assert launched.code == 0
 
 
-@proves(
-    "The namespace ends with a slash already, so the name becomes /mrp//great_topic.",
-    "ROS takes the two slashes for one, but each of the two Python nodes prints a UserWarning.",
-)
 def test_e09_two_slashes_are_warned_of(launched):
     text = f"'{contract.GROUP}//{contract.TOPIC}' is not a legal ROS graph resource name"
     warnings = [line for line in launched.errors if text in line]
@@ -147,26 +122,17 @@ def test_e09_two_slashes_are_warned_of(launched):
     assert all("UserWarning" in line for line in warnings)
 
 
-@proves(
-    "The node prints the line without the bracket, so a search for [PUBLISHER PY NODE] does not "
-    "find it.",
-)
 def test_e10_opening_bracket_is_missing(launched):
     texts = list(map(contract.logged_text, launched.lines))
     assert "PUBLISHER PY NODE] namespace of node = /mrp/" in texts, str(launched)
 
 
-@proves("catkin_make install installs neither a node nor the launch file.")
 def test_e15_no_node_is_installed(built):
     assert (built / "install" / "share" / PACKAGE / "package.xml").exists()
     assert not (built / "install" / "lib" / PACKAGE).exists()
     assert not (built / "install" / "share" / PACKAGE / "launch").exists()
 
 
-@proves(
-    "In Python, a plain name leads into the group's namespace, and a name with a tilde, "
-    "~great_topic, into the node's own.",
-)
 @pytest.mark.parametrize(
     ("name", "topic"),
     [
@@ -182,19 +148,6 @@ def test_e19_what_is_relative_to_the_node(package, master, name, topic):
         assert published([topic]) == {topic}
 
 
-@proves(
-    "The error would end the timer, and the node would stay up and publish nothing.",
-    "The timer is a thread of its own.",
-    "Each rospy.Timer is a thread, too: an exception in its callback ends that thread, and the "
-    "node goes on.",
-    "rospy: one thread for each connection, one for each timer.",
-    "In Python the timer and the connection have different threads.",
-    "The timer fires and the subscriber receives all the same, because rospy itself keeps both.",
-    "Python counts on, but a larger number does not fit the message: the exception ends the "
-    "timer's thread, and the node stays up and publishes nothing.",
-    "Each timer has one, too: so a timer can die alone (E20). rospy.spin only waits.",
-    "In rospy it lives on even when its object is gone.",
-)
 def test_e20_a_counter_too_large_ends_the_timer_alone(package, master):
     node = package / "src" / "publisher_py_node.py"
     replace(node, "self.counter = 1", "self.counter = 2**32 - 5")
@@ -217,13 +170,6 @@ SHOWN = (ORIGINAL / "console.txt").read_text().splitlines()
 STARTED = re.compile(r"process\[(\S+)-(\d+)\]: started")
 
 
-@proves(
-    "Then it starts rosout, and then the four nodes.",
-    "Once E1, E3 and E12 are fixed, all four nodes start.",
-    "roslaunch numbers its processes from 2 on, because number 1 is rosout.",
-    "E1, E3 and E12: an assignment in a global statement, a parenthesis that is never closed, and "
-    "an interpreter that Debian does not have.",
-)
 def test_p01_numbers_of_the_processes(launched):
     assert {number for _, number in STARTED.findall("\n".join(SHOWN))} == {"1"}
     assert STARTED.findall("\n".join(launched.lines)) == [
@@ -235,11 +181,6 @@ def test_p01_numbers_of_the_processes(launched):
     ]
 
 
-@proves(
-    "A line begins with its level and the time.",
-    "A Python node prints six digits of a second.",
-    'rospy prints [INFO] without the space, and no Python line says "namespace of nh".',
-)
 def test_p01_what_python_prints(launched):
     shown = [line for line in SHOWN if "PY NODE" in line]
     printed = [line for line in launched.lines if "PY NODE" in line]
@@ -249,11 +190,6 @@ def test_p01_what_python_prints(launched):
     assert not any("namespace of nh" in line for line in printed)
 
 
-@proves(
-    "A line begins with its level and the time.",
-    "A C++ node prints nine, and a space before INFO.",
-    "The times of roscpp have nine decimals.",
-)
 def test_p01_what_cpp_prints(built, master):
     shown = [line for line in SHOWN if "CPP NODE" in line]
     assert all(re.match(r"\[ INFO\] \[\d+\.\d{6}\]: ", line) for line in shown)
@@ -262,7 +198,6 @@ def test_p01_what_cpp_prints(built, master):
         assert re.match(r"\[ INFO\] \[\d+\.\d{9}\]: \[PUBLISHER CPP NODE\]", process.lines[0])
 
 
-@proves('No node is called "publishder".')
 def test_p01_misspelt_names(launched):
     assert sum("publishder" in line for line in SHOWN) == 2
     assert not any("publishder" in line for line in launched.lines)

@@ -6,7 +6,6 @@ import shutil
 import pytest
 from mrp_testing import contract, scratch
 from mrp_testing.console import check_console
-from mrp_testing.proves import proves
 
 # One worker of pytest builds for all of these tests.
 pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("install_space")]
@@ -30,21 +29,6 @@ def launch(install, *target):
     check_console(contract.GROUP, *command, env=env)
 
 
-@proves(
-    "install says what catkin_make install copies: the programs, the scripts and the launch files.",
-    "The nodes run from this copy even when the source files are gone.",
-    "roslaunch starts a master if no master runs.",
-    "roslaunch starts a master and all nodes of a launch file.",
-    "Ctrl-C in terminal 1 ends everything that roslaunch has started there.",
-    "A master that roslaunch has started ends with it.",
-    "roslaunch starts a master if no master runs, and stops it when it ends itself.",
-    "Cause: no master runs: it ends with the roslaunch that started it.",
-    "roslaunch starts them, and a master if no master runs.",
-    "The nodes run from the install space alone.",
-    "Here the nodes run from the install space alone.",
-    "roslaunch starts a master by itself.",
-    "To be built and run, it needs nothing else from this repository.",
-)
 def test_by_package_and_file(install):
     launch(install, contract.PACKAGE, contract.LAUNCH_FILE)
 

@@ -8,7 +8,6 @@ import yaml
 from front_door import make
 from mrp_testing.ports import free_port
 from mrp_testing.process import Process, processes_with
-from mrp_testing.proves import proves
 from mrp_testing.workspace import WORKSPACE
 
 FOLDER = WORKSPACE / "src" / "mrp_labs"
@@ -23,10 +22,6 @@ def own(folder):
     return {"TMPDIR": str(folder), "ROS_MASTER_URI": f"http://localhost:{free_port()}"}
 
 
-@proves(
-    "make labs lists all of them in an order to learn them, ten to start with first.",
-    "The Labs page has 50 small demos of one fact each: make labs lists them.",
-)
 @pytest.mark.quick
 def test_list_has_every_lab_with_its_claim():
     launch_files = {path.stem: path.read_text() for path in FOLDER.glob("launch/*.launch")}
@@ -76,7 +71,6 @@ def test_unknown_name_says_which_labs_exist(name, found):
     assert lab.lines == [f"error: expected make lab NAME=LAB; {found} All {len(LABS)}: make labs"]
 
 
-@proves("It builds the labs, marks the line where you can see the fact, sums up, and ends.")
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ["latch", "kill", "bags", "kill_master"])
 def test_lab_marks_its_line_sums_up_and_ends(name, tmp_path):

@@ -9,7 +9,6 @@ import shutil
 import pytest
 from front_door import make, with_other_python
 from mrp_testing import compiler_cache
-from mrp_testing.proves import proves
 from mrp_testing.workspace import ROOT, copy_repository
 
 # One worker of pytest builds for all of these tests.
@@ -27,13 +26,6 @@ def copy(tmp_path_factory):
     return root
 
 
-@proves(
-    "Its first line names the Python with which catkin was configured.",
-    "After a change in a Python file you need not build again.",
-    "Its first line names the right Python, and it runs your file.",
-    "Here the line is the same, but CMake knows the script, so catkin writes the right "
-    "interpreter into its copy of the script.",
-)
 def test_other_python_first_on_path_does_no_harm(copy):
     script = copy / "catkin_ws/devel/lib/mrp/publisher_py_node.py"
     assert script.read_text().startswith("#!/usr/bin/python3\n")
@@ -41,16 +33,11 @@ def test_other_python_first_on_path_does_no_harm(copy):
     assert f"'{copy}/catkin_ws/src/mrp/src/publisher_py_node.py'" in script.read_text()
 
 
-@proves("The second call installs nothing, and builds nothing if nothing has changed.")
 def test_second_build_does_nothing(copy):
     done = make("build", root=copy)
     assert (done.returncode, done.stdout) == (0, "")
 
 
-@proves(
-    "make build writes catkin_ws/compile_commands.json, from which clangd knows how each file is "
-    "compiled.",
-)
 def test_build_tells_editors_how_each_file_is_compiled(copy):
     commands = json.loads((copy / "catkin_ws/compile_commands.json").read_text())
     sources = (copy / "catkin_ws/src/mrp/src").glob("*.cpp")
@@ -104,10 +91,6 @@ def test_a_passing_test_passes_make_test(copy):
     assert "1 passed, 0 failed\n" in done.stdout
 
 
-@proves(
-    "The container can only read the package, has no network, and has limits of its own.",
-    "The checker is root in it, so the package's programs run as another user.",
-)
 @pytest.mark.quick
 def test_docker_check_is_in_bounds():
     """It only says what it would do: where there is Docker, `make docker-harm` tests the bounds."""
@@ -118,10 +101,6 @@ def test_docker_check_is_in_bounds():
     assert "--user" not in command
 
 
-@proves(
-    "make check PKG=PATH, in the folder of the repository, installs what is missing and does the "
-    "same.",
-)
 @pytest.mark.quick
 def test_check_installs_what_is_missing_and_checks():
     said = make("check", "--dry-run", "PKG=a_package").stdout

@@ -11,7 +11,6 @@ import subprocess
 import pytest
 from catkin_pkg.package import parse_package
 from mrp_testing import compiler_cache, scratch
-from mrp_testing.proves import proves
 from mrp_testing.workspace import WORKSPACE
 
 # One worker of pytest builds for all of these tests.
@@ -44,13 +43,6 @@ def check_user(folder):
     assert py == cpp
 
 
-@proves(
-    "This matters when a package of the same workspace has message types of its own: they are "
-    "generated before the node is compiled.",
-    "From this file, CMake generates a Python class and a C++ header.",
-    "A package that uses this type depends on mrp_labs, and on nothing else for it.",
-    "Outside of this package, ${catkin_EXPORTED_TARGETS} alone is enough.",
-)
 def test_beside_mrp_labs(tmp_path):
     scratch.make(tmp_path, LABS, USER)
     # Of mrp_labs nothing but the message is built: what the second package says that it needs.

@@ -6,7 +6,6 @@ import json
 import pytest
 import record_pages
 import run_page
-from mrp_testing.proves import proves
 
 # One worker of pytest builds for all of these tests.
 pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("page")]
@@ -18,81 +17,6 @@ def shown(site, tmp_path_factory):
     return run_page.read(run_page.steps(site), tmp_path_factory.mktemp("home"))
 
 
-@proves(
-    "A test types the commands of each box that names a terminal, and compares what they print "
-    "with what the box shows.",
-    "mkdir -p creates both folders at once.",
-    "Two new folders now stand beside src:",
-    "devel holds the result, and a file named setup.bash.",
-    "This file tells a terminal where your workspace is:",
-    "It has an effect on that one terminal only.",
-    "This command creates one.",
-    "A workspace is a folder with src, build and devel; catkin_make builds it.",
-    "Each new terminal needs the line source ~/catkin_ws/devel/setup.bash.",
-    "To type source ~/catkin_ws/devel/setup.bash in this terminal.",
-    "UInt32 belongs to the package std_msgs, which has types for single values: message_types "
-    "lists them.",
-    "UInt32() makes a message, and msg.data is its only field.",
-    "std_msgs::UInt32 msg; makes a message, and msg.data is its only field.",
-    "catkin_create_pkg has made both.",
-    "Programs that later lines make go into devel/lib/mrp.",
-    "The first line of your own file names python, a program that Debian does not install by "
-    "itself.",
-    "Your copy has no tests, and it is built without mrp_testing.",
-    "ROS does not need it here.",
-    "source makes the new package known to this terminal, which you opened before the package was "
-    "there.",
-    "__name:= gives it another name, because a node called /mrp/subscriber_cpp_node is running "
-    "already:",
-    "rostopic echo and hz watch messages, rostopic pub sends them, and rosmsg show describes "
-    "their type.",
-    "rosmsg package lists all types of a package:",
-    "Two more subscribers expect a String.",
-    "The first messages were already on their way.",
-    "Cause: the master is still the same.",
-    "The package counts has a message, a C++ program, a script and a module.",
-    "Cause: nothing says that the header must be generated before the program is compiled.",
-    "Fix: add_dependencies, as above.",
-    "Cause: the module src/counts/numbers.py is in no folder in which Python looks.",
-    "Fix: the file setup.py, and catkin_python_setup() above generate_messages:",
-    "Cause: Python looks into the script's own folder first, and takes the script for the package.",
-    "ROS compares these numbers, and not the names alone.",
-    "A node with the first definition publishes, and rostopic echo has the second one.",
-    "Cause: the two workspaces have different copies of the message.",
-    "catkin remembers which workspaces were sourced when CMake last ran for a workspace.",
-    "A new terminal that sources only over_ws knows the first workspace, too:",
-    "Cause: devel remembers a folder that does not exist.",
-    "source says nothing about it.",
-    "A setup.bash replaces what an earlier one has set: it brings its own workspace, and those "
-    "over which it was built.",
-    "add_dependencies for each C++ program that uses a message.",
-    "catkin_python_setup() and setup.py for a module; no script with the package's name.",
-    "rosmsg md5 with the type, in both terminals.",
-    "Cause: each line ends in a carriage return, so the program's name does, too.",
-    "Cause: print is a statement in Python 2, and a function in Python 3.",
-    "Cause: one line begins with a tab, and its neighbour with spaces.",
-    "Cause: Debian has no python2.",
-    "Cause: CMake announces that it gives up old versions.",
-    "A name with \\r behind it means Windows line ends.",
-    "print, except and tabs stop a Python 2 program before it begins.",
-    "What you see: seq is not what was set, and nobody has set stamp.",
-    "Cause: this terminal does not know where your workspace is.",
-    "Cause: Debian has a program python3, and no program python.",
-    "Its first line names the right Python, and it runs your file.",
-    "Cause: the file has no permission to run.",
-    "rosrun works even without it: it starts the script in devel.",
-    "Cause: the name in ROS_HOSTNAME does not lead to this machine.",
-    "This package meets all of them.",
-    "Below the list stands each finding: its file and line, what was expected, what was seen, and "
-    "how to fix it.",
-    "Where the fix is certain, the report shows it as a diff.",
-    "A finding that follows from another one says so, and breaks no requirement by itself.",
-    "rosrun mrp_check check PATH checks one package; --class checks a folder of them.",
-    "One: the three could not be checked, mostly because the first mistake kept a node from "
-    "running.",
-    "A test compares the console below with what make run prints, and another one does what the "
-    "tutorial's pages say, and compares what that prints.",
-)
 def test_reader_sees_what_the_pages_show(shown):
     recorded = json.loads((run_page.RECORDED / "outputs.json").read_text())
     assert sorted(shown.outputs) == sorted(recorded), "run make docs-record"

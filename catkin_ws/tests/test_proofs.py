@@ -186,7 +186,7 @@ def test_what_is_wrong_in_a_ledger_fails_the_build(root, name):
 def test_a_ledger_without_a_page_fails_the_build(root):
     (root / LEDGER).rename(root / PAGES / "proofs" / "two.txt")
     code, said = build(root)
-    assert code != 0 and "two.txt: WARNING: there is no page two" in said
+    assert code != 0 and "two.txt:1: WARNING: there is no page two" in said
 
 
 @pytest.mark.parametrize(
@@ -258,9 +258,9 @@ def test_a_test_that_has_not_passed_is_named_with_its_line(tmp_path):
     path.write_text("\n".join(lines))
     file = tmp_path / "test_it.py"
     file.write_text("pytestmark = pytest.mark.slow\n")
-    case = cases.Case(file, 1, "", "", "")
-    tests = dict.fromkeys([good, failed, skipped, "docker/test_it/test_a"], case)
-    tests[sets] = case._replace(source="@pytest.mark.sets")
+    names = [good, failed, skipped, "docker/test_it/test_a"]
+    tests = dict.fromkeys(names, cases.Case(file, 1, "", "", ""))
+    tests[sets] = cases.Case(file, 1, "", "", "@pytest.mark.sets")
     found = list(check_proofs.faults(tmp_path, tests, {good: "passed", skipped: "skipped"}))
     assert [fault.partition(" python3")[0] for fault in found] == [
         f"{path}:5: not run: {failed}:",

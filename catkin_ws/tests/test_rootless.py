@@ -6,7 +6,6 @@ import subprocess
 
 import pytest
 from front_door import make
-from mrp_testing.proves import proves
 from mrp_testing.workspace import WORKSPACE
 
 pytestmark = pytest.mark.quick
@@ -39,7 +38,6 @@ def test_make_calls_it_with_the_lists_and_does_not_install():
     assert "install_packages" not in said
 
 
-@proves("If Docker or podman answers, the nodes run in a container.")
 @pytest.mark.parametrize("engine", ["docker", "podman"])
 def test_an_engine_that_answers_is_used_as_docker(tmp_path, engine):
     script = f'[ "$1" = info ] || echo "{engine}: $*"\n'
@@ -55,10 +53,6 @@ done
 """
 
 
-@proves(
-    "Otherwise this fetches the packages that are missing into the folder "
-    "catkin_ws/build/rootless, which make clean deletes."
-)
 def test_packages_are_unpacked_in_the_folder_that_is_built_in(tmp_path):
     """The last program of all is the one that lays what was unpacked over the system."""
     (tmp_path / "list").write_text("# to run\nroslaunch\npython3 | python\n")
@@ -77,7 +71,6 @@ def test_packages_are_unpacked_in_the_folder_that_is_built_in(tmp_path):
     assert "rm -rf catkin_ws/build " in make("clean", "--dry-run").stdout
 
 
-@proves("If neither works, it says why.")
 @pytest.mark.parametrize(
     ("programs", "reason"),
     [

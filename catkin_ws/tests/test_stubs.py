@@ -6,7 +6,6 @@ import re
 import subprocess
 
 import pytest
-from mrp_testing.proves import proves
 from mrp_testing.workspace import ROOT, WORKSPACE
 
 pytestmark = pytest.mark.quick
@@ -59,7 +58,6 @@ class Add: ...
 """
 
 
-@proves("It also writes a stub for each message, from which an editor completes msg..")
 def test_stubs_have_each_field_with_its_type(tmp_path):
     package = tmp_path / "one"
     for kind in ("msg", "srv"):

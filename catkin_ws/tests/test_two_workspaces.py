@@ -5,7 +5,6 @@ import subprocess
 
 import pytest
 from mrp_testing import scratch
-from mrp_testing.proves import proves
 
 # One worker of pytest builds for all of these tests.
 pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("two_workspaces")]
@@ -41,13 +40,6 @@ def workspaces(tmp_path_factory):
     return folder
 
 
-@proves(
-    "A terminal uses that of the workspace whose setup.bash it has sourced last.",
-    "A setup.bash replaces what an earlier one has set: it brings its own workspace, and those "
-    "over which it was built.",
-    "If two workspaces have a package of the same name, the terminal uses that of the one sourced "
-    "last.",
-)
 @pytest.mark.parametrize("order", [NAMES, NAMES[::-1]], ids=lambda order: f"{order[-1]}_is_last")
 def test_the_one_whose_setup_was_sourced_last_is_used(workspaces, order):
     sources = " && ".join(f"source {workspaces / name}/devel/setup.bash" for name in order)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What a page takes from where it is defined: the role `value`, and what a picture says in words."""
+"""The role `value`, which takes what a page says from where it is defined; a picture in words."""
 
 import sys
 

@@ -27,7 +27,6 @@ from mrp_check.sources import python_read
 from mrp_testing.master import uri_of
 from mrp_testing.ports import free_port
 from mrp_testing.process import LIVE, Process
-from mrp_testing.proves import proves
 from mrp_testing.waiting import wait_until, within
 from mrp_testing.workspace import ROOT, WORKSPACE
 
@@ -173,13 +172,6 @@ def lay_out(entry, folder):
     return folder
 
 
-@proves(
-    "If a launch file itself has the same name more than once, roslaunch starts nothing: contains "
-    "multiple nodes named.",
-    "roslaunch says escalating to SIGTERM, and ends it after a while.",
-    "Symptom: catkin_make does not find catkin_pkg, or a node does not find rospy.",
-    "Each heading is a text that a tool prints: a test runs the tool and compares.",
-)
 @pytest.mark.parametrize("entry", parameters())
 def test_text_is_printed(entry, tmp_path, env):
     folder = lay_out(entry, tmp_path / "here")
@@ -220,17 +212,12 @@ def test_each_text_leads_to_its_entry(entry, index):
             assert entry.name == names(index, text + LAST_LINES)[0], text
 
 
-@proves("Names, paths and numbers do not count: yours may differ from those here.")
 @pytest.mark.parametrize(("expected", "text"), THREADS, ids=[text[:60] for _, text in THREADS])
 def test_names_paths_and_numbers_do_not_count(expected, text, index):
     found = set(names(index, text))
     assert not found if expected == ["outside"] else found & set(expected)
 
 
-@proves(
-    "It prints up to three entries, the nearest one first.",
-    'make why TEXT="..." says what an error text means.',
-)
 def test_make_why_answers_a_text():
     text = "RLException: [a.launch] requires the '$(arg x)' arg to be \"set\""
     done = make("why", f"TEXT={text}")
@@ -240,9 +227,6 @@ def test_make_why_answers_a_text():
     assert "/pages/launching.html" in done.stdout
 
 
-@proves(
-    "If none is near, it says so.",
-)
 @pytest.mark.parametrize("text", NO_ERRORS)
 def test_nothing_is_near_what_is_no_error(text, index):
     assert names(index, text) == []
@@ -288,7 +272,6 @@ IndexError: list index out of range"""
     )
 
 
-@proves("It reads a whole log from a pipe, too, and finds the lines that matter:")
 def test_make_why_reads_a_log(tmp_path):
     log = tmp_path / "log"
     lines = ["... logging to /root/.ros/log/x.log", "[INFO] [1.2]: data = 3"] * 500
@@ -326,7 +309,6 @@ def test_an_error_counts_more_than_a_warning(name, index):
     assert name in names(index, LOGS[name])
 
 
-@proves("The checker's findings and make doctor name the entry of what a tool prints then.")
 def test_what_the_checker_and_the_doctor_name_is_there():
     checker = WORKSPACE / "src" / "mrp_check" / "src"
     text = "".join(path.read_text() for path in checker.rglob("*.py"))

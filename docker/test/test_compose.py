@@ -6,7 +6,6 @@ import re
 import pytest
 from containers import Composition, compose_commands, docker, inspect, log, run
 from mrp_testing import contract
-from mrp_testing.proves import proves
 
 SERVICES = ["master", *(node.name for node in contract.NODES)]
 
@@ -34,7 +33,6 @@ def test_each_node_is_in_the_group(nodes):
         assert line in map(contract.logged_text, log(nodes.name(node.name)))
 
 
-@proves("They share a network of their own and publish no port.")
 def test_network_is_its_own_and_no_port_is_published(nodes):
     for service in SERVICES:
         state = inspect(nodes.name(service))
@@ -67,7 +65,6 @@ def test_health_check_says_if_the_master_answers(nodes):
     assert run("docker", "exec", elsewhere, master, *check, check=False).returncode == 1
 
 
-@proves("A node starts when the master's health check succeeds.")
 def test_nodes_wait_for_a_healthy_master(compose, tmp_path):
     (tmp_path / "never.yaml").write_text(NEVER_HEALTHY)
     files = ("compose.yaml", tmp_path / "never.yaml")
@@ -80,10 +77,6 @@ def test_nodes_wait_for_a_healthy_master(compose, tmp_path):
         assert len(running.split()) == 1, "only the master"
 
 
-@proves(
-    "docker/compose.yaml has one container for the master and one for each node.",
-    "docker stop sends SIGINT, and each container ends with exit code 0.",
-)
 def test_stop_and_down_are_clean(compose):
     with Composition(compose, "compose.yaml") as composition:
         for subscriber in contract.SUBSCRIBERS:
@@ -97,11 +90,6 @@ def test_stop_and_down_are_clean(compose):
         assert composition.existing() == []
 
 
-@proves(
-    "docker/two_robots.yaml starts two robots on one master, in the namespaces /robot1 and "
-    "/robot2.",
-    "They never hear each other:",
-)
 def test_two_robots_never_mix():
     """Each subscriber hears one sequence of each parity: another robot's values would break it."""
     with Composition(compose_commands()[0], "two_robots.yaml", services=["robot1"]) as robots:

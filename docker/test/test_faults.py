@@ -15,7 +15,6 @@ from containers import (
     wait_for_log,
 )
 from mrp_testing import contract
-from mrp_testing.proves import proves
 from mrp_testing.waiting import wait_until
 
 CPP, PY = contract.SUBSCRIBERS
@@ -62,13 +61,6 @@ def wait_until_back(nodes, service, pid):
     wait_until(back, f"{service} is back")
 
 
-@proves(
-    "Docker starts a container again when it ends with another exit code.",
-    "Docker starts the node again, and the other nodes miss nothing.",
-    "Subscribers connect to it by themselves.",
-    "Docker restarts a node that dies.",
-    "Subscribers then connect to it again.",
-)
 @pytest.mark.parametrize("node", contract.NODES, ids=lambda node: node.name)
 def test_killed_node_comes_back_and_the_others_miss_nothing(nodes, node):
     before = {s: counts(nodes, s) for s in contract.SUBSCRIBERS}
@@ -102,13 +94,6 @@ def flows_again(received, heard):
     )
 
 
-@proves(
-    "A publisher has one such queue for each of its subscribers, so a subscriber that cannot be "
-    "reached does not hold up the others.",
-    "When the network comes back after a short cut, the connections go on by themselves.",
-    "Some of the values that were sent meanwhile are lost.",
-    "That subscriber loses values of each publisher, and the other subscriber loses none.",
-)
 @pytest.mark.parametrize("subscriber", contract.SUBSCRIBERS, ids=lambda node: node.name)
 def test_cut_network_loses_values_only_where_and_while_it_is_cut(nodes, subscriber):
     other = CPP if subscriber is PY else PY
@@ -130,13 +115,6 @@ def test_cut_network_loses_values_only_where_and_while_it_is_cut(nodes, subscrib
         assert contract.first_fault(values) is None, f"{publisher.name}: {values}"
 
 
-@proves(
-    "Where no queue is full, such as with rostopic echo, none is lost.",
-    "When the network is back, TCP delivers everything at once.",
-    "rostopic echo loses nothing here, because its own queue has no limit.",
-    "TCP delivers all values at once when the network is back.",
-    "The node's queue keeps 10 of them, and rostopic echo has a queue without a limit.",
-)
 def test_cut_network_loses_nothing_where_the_queue_has_no_bound(nodes, image):
     echo = ("rostopic", "echo", f"{contract.GROUP}/{contract.TOPIC}/data")
     options = (f"--network={nodes.project}_default", "--env=ROS_MASTER_URI=http://master:11311")
@@ -155,12 +133,6 @@ def test_cut_network_loses_nothing_where_the_queue_has_no_bound(nodes, image):
             assert contract.first_fault(values) is None, f"{publisher.name}: {values}"
 
 
-@proves(
-    "Running nodes go on, but a node that starts later finds no other node.",
-    "The master keeps registrations in memory, and a node registers a publisher or a subscriber "
-    "once, when it makes it.",
-    "A restarted master knows no node until that node restarts, too.",
-)
 def test_restarted_master_knows_nobody_but_the_flow_goes_on(nodes):
     before = {s: counts(nodes, s) for s in contract.SUBSCRIBERS}
     nodes.compose("restart", "master")

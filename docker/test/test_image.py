@@ -8,7 +8,6 @@ import tarfile
 
 import pytest
 from containers import ROOT, docker, inspect
-from mrp_testing.proves import proves
 
 # The sizes that the page "In containers" shows.
 RECORDED = ROOT / "catkin_ws" / "src" / "mrp" / "doc" / "recorded" / "image.csv"
@@ -105,11 +104,6 @@ def sources(image):
     return result
 
 
-@proves(
-    "DEBIAN=bookworm builds from Debian 12's packages instead of Debian 13's.",
-    "These are the sizes of the image's files in MB, uncompressed.",
-    "It builds an image from Debian 13's packages, or from Debian 12's with DEBIAN=bookworm.",
-)
 def test_page_says_what_is_in_it(image, image_layers):
     owners = sources(image)
     measured = {DEBIAN: size(image_layers[0]), **dict.fromkeys(PARTS, 0)}
@@ -142,10 +136,6 @@ def test_opt_mrp_is_the_install_space(files):
         assert "opt/mrp/" + name in files
 
 
-@proves(
-    "It runs on Debian's own ROS 1 packages: you add no other package source.",
-    "Debian 13 and 12 have ROS 1 as ordinary packages.",
-)
 def test_ros_is_debians_own(image):
     lines = dpkg_query(image, "${source:Package}\t${Maintainer}\n").splitlines()
     makers = {line.split("\t")[1] for line in lines if re.match(r"ros2?-", line)}

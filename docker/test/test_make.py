@@ -14,7 +14,6 @@ import pytest
 from containers import ROOT, docker, enough, run
 from mrp_testing import contract
 from mrp_testing.process import Process
-from mrp_testing.proves import proves
 
 ADDRESS = "http://127.0.0.1:8765/"
 
@@ -52,10 +51,6 @@ def built():
     run("make", "-C", ROOT, "docker-build")
 
 
-@proves(
-    "This builds the image mrp:trixie and runs the launch file in one container.",
-    "make docker-run runs the tutorial in Docker.",
-)
 def test_docker_run_ends_on_ctrl_c_and_leaves_no_container(built):
     with Process("make", "-C", str(ROOT), "docker-run") as process:
         process.wait_for(lambda: enough(process.lines), "values at both subscribers")

@@ -21,13 +21,11 @@ from containers import (
 from mrp_testing import contract
 from mrp_testing.console import ROSLAUNCH_LINE, check_live
 from mrp_testing.process import Process
-from mrp_testing.proves import proves
 
 HARDENED = ("--read-only", "--tmpfs=/tmp", "--cap-drop=ALL", "--network=none")
 ENTRYPOINT = "/ros_entrypoint.sh"
 
 
-@proves("It prints the same lines.")
 @pytest.mark.parametrize("options", [(), HARDENED], ids=["plain", "hardened"])
 def test_console_is_live_and_ends_on_ctrl_c(image, options):
     with removed(new_name()) as name:

@@ -6,7 +6,6 @@ import re
 import pytest
 from containers import FOLDER, Composition, compose_commands, docker, log, run, wait_for_log
 from mrp_testing import contract
-from mrp_testing.proves import proves
 from mrp_testing.waiting import wait_until
 
 README = (FOLDER / "several_hosts" / "README.md").read_text()
@@ -34,12 +33,6 @@ def listed_publishers(hosts):
     return sorted(re.findall(r"^ \* (\S+)", info, re.MULTILINE))
 
 
-@proves(
-    "One graph may spread over several machines, and its nodes and their code are the same.",
-    "The laptop has the master and both subscribers, and the robot has both publishers.",
-    "With these settings, both subscribers on the laptop receive every value of both publishers "
-    "on the robot.",
-)
 def test_right_settings():
     with hosts() as two:
         assert_laptop_hears_robot(two)
@@ -47,16 +40,6 @@ def test_right_settings():
         assert "publisher" not in docker("top", two.name("laptop"))
 
 
-@proves(
-    "Nothing looks wrong: rostopic info lists both publishers, but no value arrives on the laptop.",
-    "rosnode ping shows that it cannot connect.",
-    "rosnode ping fails for a node that this machine cannot reach.",
-    "The list comes from the master, so it proves nothing about the path between the nodes.",
-    "rosnode ping tests that path.",
-    "If the other machine cannot reach the name, no node logs an error, and no value arrives.",
-    "Or the publisher's machine has a ROS_HOSTNAME that leads elsewhere: then no node logs an "
-    "error.",
-)
 def test_robot_called_localhost_is_silent_until_mended(monkeypatch):
     monkeypatch.setenv("ROBOT_HOSTNAME", "localhost")
     message = f"connection to [{PUBLISHERS[0]}] failed"
@@ -76,10 +59,6 @@ def test_robot_called_localhost_is_silent_until_mended(monkeypatch):
         assert_laptop_hears_robot(two)
 
 
-@proves(
-    'roslaunch prints "Unable to contact my own server".',
-    "With --wait, the robot's roslaunch waits for a master that never comes.",
-)
 @pytest.mark.parametrize(
     ("setting", "host", "message"),
     [
@@ -107,9 +86,6 @@ def test_wrong_setting_says(monkeypatch, setting, host, message):
         wait_for_log(two.name(host), lambda lines: any(message in line for line in lines))
 
 
-@proves(
-    "roslaunch can also start the robot's half from the laptop, over ssh, by a <machine> tag:",
-)
 def test_roslaunch_starts_the_robots_half_over_ssh():
     with hosts("remote.yaml") as two:
         assert_laptop_hears_robot(two)

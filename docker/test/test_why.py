@@ -8,7 +8,6 @@ import sys
 
 import pytest
 from containers import PREFIX
-from mrp_testing.proves import proves
 
 TOOLS = pathlib.Path(__file__).resolve().parents[2] / "catkin_ws" / "tools"
 sys.path.insert(0, str(TOOLS))
@@ -18,7 +17,6 @@ import why  # noqa: E402
 ENTRIES = [one for one in why.entries() if one.needs == "docker"]
 
 
-@proves("Each heading is a text that a tool prints: a test runs the tool and compares.")
 @pytest.mark.parametrize("entry", ENTRIES, ids=lambda entry: entry.name)
 def test_text_is_printed(entry, image):
     done = subprocess.run(

@@ -9,7 +9,6 @@ import rostest
 from mrp_testing import contract
 from mrp_testing.graph import Graph
 from mrp_testing.nodes import rosrun, run
-from mrp_testing.proves import proves
 
 
 class TestNames(unittest.TestCase):
@@ -46,43 +45,12 @@ class TestNames(unittest.TestCase):
         values = [contract.received_value(subscriber, text) for text in texts if text]
         return {contract.publisher_of(value) for value in values if value is not None}
 
-    @proves(
-        "rospy.init_node gives the node its name, and connects it to the master.",
-        "rospy.loginfo logs a line.",
-        "rospy.get_name() is the node's full name.",
-        "ros::init reads in them what is meant for ROS, such as __ns:=robot1, and gives the node "
-        "its name.",
-        "ROS_INFO_STREAM logs a line; the parts are joined with <<.",
-        "The first line that each node logs ends with its full name.",
-        "This node has no group, so it stands in the root namespace, and its topic is "
-        "/great_topic.",
-        "The publishers are on /mrp/great_topic, so it prints no number.",
-        "On /great_topic, because it has no group.",
-        "Without a group, all of them meet on /great_topic.",
-    )
     def test_bare_rosrun_is_in_the_root_namespace(self):
         self.check(rosrun, [], "/", "/" + contract.TOPIC)
 
-    @proves(
-        "ROS puts the namespace in which the node is started in front of it. namespaces shows the "
-        "other kinds of names.",
-        "ros::init reads in them what is meant for ROS, such as __ns:=robot1, and gives the node "
-        "its name.",
-        "Each node logs its full name first.",
-        "The argument __ns:=mrp starts a node and its topic in the namespace /mrp.",
-        "What you write in the code becomes a full name when the node starts.",
-        "The tutorial's nodes use relative names.",
-        "ROS puts the namespace in which the node is started in front of it.",
-        "Here no such variable is needed: a relative name is in the group's namespace by itself.",
-        "A relative name needs no slash (E1).",
-    )
     def test_ns_moves_the_nodes_and_their_topic(self):
         self.check(run, ["__ns:=/robot1"], "/robot1/", "/robot1/" + contract.TOPIC)
 
-    @proves(
-        "A publisher names no subscriber, and a subscriber no publisher: each names the topic "
-        "alone, so several of both can meet on it.",
-    )
     def test_remap_moves_the_topic_only(self):
         remap = contract.TOPIC + ":=/elsewhere/small_topic"
         self.check(run, [remap], "/", "/elsewhere/small_topic")

@@ -24,12 +24,6 @@ int contractQueueSize()
   return size;
 }
 
-// Proves: To create a publisher you name its topic, its type and a queue size.
-// Proves: A publisher is created with a topic, a type and a queue size.
-// Proves: advertise makes the publisher: the type stands in angle brackets, then follow the topic
-//   and the queue size.
-// Proves: The queues of these publishers hold 10 messages.
-// Proves: A publisher needs a topic, a type and a queue size.
 TEST(QueueSize, publisherCpp)
 {
   PublisherCppNode node;
@@ -38,8 +32,6 @@ TEST(QueueSize, publisherCpp)
   EXPECT_EQ(contractQueueSize(), publication->getMaxQueue());
 }
 
-// Proves: To create a subscriber you name its topic, its type, a queue size and a callback.
-// Proves: A subscriber is created with a topic, a type, a queue size and a callback.
 TEST(QueueSize, subscriberCpp)
 {
   SubscriberCppNode node;

@@ -17,7 +17,6 @@ from mrp_testing.nodes import run
 from std_msgs.msg import UInt32
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), os.pardir, "src"))
-from mrp_testing.proves import proves
 from publisher_py_node import PublisherPyNode
 from subscriber_py_node import SubscriberPyNode
 
@@ -57,49 +56,18 @@ class TestQueue(unittest.TestCase):
     # What a burst cannot show, a larger queue than 10, rospy itself knows; test_queue.cpp asks
     # roscpp.
 
-    @proves(
-        "To create a publisher you name its topic, its type and a queue size.",
-        "A publisher is created with a topic, a type and a queue size.",
-        "rospy.Publisher takes the topic, the type and the queue size.",
-        "The queues of these publishers hold 10 messages.",
-        "A publisher needs a topic, a type and a queue size.",
-    )
     def test_size_publisher_py(self):
         node = PublisherPyNode()
         self.addCleanup(node.timer.shutdown)
         self.assertEqual(node.publisher.impl.queue_size, contract.QUEUE_SIZE)
 
-    @proves(
-        "To create a subscriber you name its topic, its type, a queue size and a callback.",
-        "A subscriber is created with a topic, a type, a queue size and a callback.",
-    )
     def test_size_subscriber_py(self):
         node = SubscriberPyNode()
         self.assertEqual(node.subscriber.impl.queue_size, contract.QUEUE_SIZE)
 
-    @proves(
-        "With a queue of 10, each of these subscribers receives ten messages that come all at "
-        "once.",
-        "ROS_INFO_STREAM logs the text and msg.data.",
-        "None: all ten find room in the queue.",
-        "The callback gets them one after the other, in the order in which they were sent.",
-        "You can publish by hand, too: a subscriber prints what anybody publishes on its topic.",
-        "With a queue of 10, ten values that come together all arrive.",
-    )
     def test_subscriber_cpp(self):
         self.check(contract.SUBSCRIBER_CPP)
 
-    @proves(
-        "You may call publish in any function: in another callback, in a loop, or once in main.",
-        "In Python, publish also takes the value alone, and makes the message from it.",
-        "So self.publisher.publish(self.counter) does what three lines do above.",
-        "With a queue of 10, each of these subscribers receives ten messages that come all at "
-        "once.",
-        "rospy.loginfo logs the text, with msg.data in the place of %d.",
-        "None: all ten find room in the queue.",
-        "The callback gets them one after the other, in the order in which they were sent.",
-        "You can publish by hand, too: a subscriber prints what anybody publishes on its topic.",
-    )
     def test_subscriber_py(self):
         self.check(contract.SUBSCRIBER_PY)
 

@@ -12,7 +12,6 @@ from mrp_testing import contract
 from mrp_testing.graph import Graph
 from mrp_testing.nodes import program, run
 from mrp_testing.process import LIVE, Process
-from mrp_testing.proves import proves
 from std_msgs.msg import UInt32
 
 SLOW_END = str(pathlib.Path(__file__).with_name("slow_end.py"))
@@ -52,48 +51,18 @@ class TestStop(unittest.TestCase):
     def check_sigint(self, node):
         self.assertEqual(self.stop(node, signal.SIGINT), (0, [], False))
 
-    @proves(
-        "ros::spin calls the callbacks, one after the other, until something ends the node, such "
-        "as the keys Ctrl-C. return 0 then says that all is well.",
-        "On this signal a node ends with the exit code 0.",
-        "Ctrl-C ends a node properly.",
-        "Here an object in main owns the timer, and the node ends with exit code 0.",
-        "Here the timer is a member of a class, and the node ends with exit code 0.",
-        "At Ctrl-C each node ends with exit code 0, and the master forgets it.",
-    )
     def test_sigint_publisher_cpp(self):
         self.check_sigint(contract.PUBLISHER_CPP)
 
-    @proves(
-        "rospy.spin waits until something ends the node, such as the keys Ctrl-C: the callbacks "
-        "run in other threads.",
-        "On this signal a node ends with the exit code 0.",
-        "Ctrl-C ends a node properly.",
-        "At Ctrl-C each node ends with exit code 0, and the master forgets it.",
-    )
     def test_sigint_publisher_py(self):
         self.check_sigint(contract.PUBLISHER_PY)
 
-    @proves(
-        "On this signal a node ends with the exit code 0.",
-        "Ctrl-C ends a node properly.",
-        "At Ctrl-C each node ends with exit code 0, and the master forgets it.",
-    )
     def test_sigint_subscriber_cpp(self):
         self.check_sigint(contract.SUBSCRIBER_CPP)
 
-    @proves(
-        "On this signal a node ends with the exit code 0.",
-        "Ctrl-C ends a node properly.",
-        "At Ctrl-C each node ends with exit code 0, and the master forgets it.",
-    )
     def test_sigint_subscriber_py(self):
         self.check_sigint(contract.SUBSCRIBER_PY)
 
-    @proves(
-        "rospy.on_shutdown takes a function that rospy calls when the node is to end, before it "
-        "closes the publisher.",
-    )
     def test_sigint_while_the_timer_of_publisher_py_fires(self):
         def start(node):
             node_path = program(contract.PACKAGE, node.executable)
@@ -111,19 +80,15 @@ class TestStop(unittest.TestCase):
     def check_sigterm_py(self, node):
         self.assertEqual(self.stop(node, signal.SIGTERM), (0, [], False))
 
-    @proves("A C++ node dies at once and stays on the master's list.")
     def test_sigterm_publisher_cpp(self):
         self.check_sigterm_cpp(contract.PUBLISHER_CPP)
 
-    @proves("A Python node ends properly on it, too.")
     def test_sigterm_publisher_py(self):
         self.check_sigterm_py(contract.PUBLISHER_PY)
 
-    @proves("A C++ node dies at once and stays on the master's list.")
     def test_sigterm_subscriber_cpp(self):
         self.check_sigterm_cpp(contract.SUBSCRIBER_CPP)
 
-    @proves("A Python node ends properly on it, too.")
     def test_sigterm_subscriber_py(self):
         self.check_sigterm_py(contract.SUBSCRIBER_PY)
 

@@ -12,7 +12,6 @@ import rospy
 import rostest
 from mrp_testing import contract
 from mrp_testing.nodes import connections_of, run
-from mrp_testing.proves import proves
 from mrp_testing.waiting import within
 from rosgraph_msgs.msg import Clock
 from std_msgs.msg import UInt32
@@ -87,44 +86,9 @@ class TestValues(unittest.TestCase):
         process.wait_for(lambda: late, "the late subscriber hears a value")
         return late[0]
 
-    @proves(
-        "The C++ publisher sends 2, 4, 6 and so on, one number every 0.5 seconds.",
-        "counter_ begins with 2, and publisher_ and timer_ keep what the constructor has made.",
-        "These two are not, so a late subscriber begins with the next number. latch says when to "
-        "use it.",
-        "A timer calls this function.",
-        "The last line increases the counter.",
-        "createTimer takes the time between two calls, in seconds, and the function to call.",
-        "The timer makes the node publish once every 0.5 seconds.",
-        "Neither changes what is sent.",
-        "The tutorial's publishers send one number in each period.",
-        "A publisher begins again with its first value.",
-        "Two messages a second come from each publisher, and the callback has time for one of "
-        "them: so about half are lost.",
-        "A timer's callback is called at the end of each period.",
-    )
     def test_publisher_cpp(self):
         self.check(contract.PUBLISHER_CPP)
 
-    @proves(
-        "The Python publisher sends 1, 3, 5 and so on, one number every 0.5 seconds.",
-        "These two are not, so a late subscriber begins with the next number. latch says when to "
-        "use it.",
-        "A timer calls this function.",
-        "The function must take it, because rospy passes it, although the node does not use it.",
-        "The last line increases the counter.",
-        "rospy.Timer takes the time between two calls, in seconds, and the function to call.",
-        "The timer makes the node publish once every 0.5 seconds.",
-        "Neither changes what is sent.",
-        "The tutorial's publishers send one number in each period.",
-        "A publisher begins again with its first value.",
-        "It prints about 12: the Python publisher still sends two messages a second, and rostopic "
-        "hz counts both publishers.",
-        "Two messages a second come from each publisher, and the callback has time for one of "
-        "them: so about half are lost.",
-        "A timer's callback is called at the end of each period.",
-        "Here the first value is 1.",
-    )
     def test_publisher_py(self):
         self.check(contract.PUBLISHER_PY)
 

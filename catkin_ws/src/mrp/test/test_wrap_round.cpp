@@ -12,16 +12,6 @@
 #include <gtest/gtest.h>
 #include <ros/callback_queue.h>
 
-// Proves: A publisher need not have a timer: publish-from-any-function.
-// Proves: <cstdint> has uint32_t, a whole number of 32 bits without a sign.
-// Proves: The class keeps together what belongs to the node.
-// Proves: counter_ begins with 2, and publisher_ and timer_ keep what the constructor has made.
-// Proves: The node does not use it, so it has no name here.
-// Proves: In C++, an unsigned number begins again at 0 when it grows past its largest value.
-// Proves: After 4294967294 the C++ publisher sends 0 and then 2.
-// Proves: PublisherCppNode node; makes the object, and with it the publisher and the timer.
-// Proves: A publisher need not have a timer: here it only makes the example go on by itself.
-// Proves: In C++ an unsigned number wraps round by itself.
 TEST(WrapRound, publisherCpp)
 {
   ros::NodeHandle nh;

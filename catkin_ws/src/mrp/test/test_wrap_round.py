@@ -13,24 +13,12 @@ from mrp_testing.waiting import wait_until
 from std_msgs.msg import UInt32
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), os.pardir, "src"))
-from mrp_testing.proves import proves
 from publisher_py_node import PublisherPyNode
 
 LAST = 2**32 - 1  # the largest odd number that a UInt32 holds
 
 
 class TestWrapRound(unittest.TestCase):
-    @proves(
-        "A publisher need not have a timer: publish-from-any-function.",
-        "The class keeps together what belongs to the node: a counter, a publisher and a timer.",
-        "The function must take it, because rospy passes it, although the node does not use it.",
-        "After 4294967295 the Python publisher sends 1 and then 3.",
-        "node = PublisherPyNode() makes the object, and with it the publisher and the timer.",
-        "When another file imports it, as a test does, main is not called.",
-        "A publisher need not have a timer: here it only makes the example go on by itself.",
-        "Here both are members, so a test can stop the timer.",
-        "Here the Python counter begins again at 1.",
-    )
     def test_publisher_py(self):
         rospy.init_node("test_wrap_round")
         values = []

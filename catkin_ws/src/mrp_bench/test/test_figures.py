@@ -16,7 +16,6 @@ from mrp_bench import (
     tables,
 )
 from mrp_bench.programs import Measurement
-from mrp_testing.proves import proves
 
 pytestmark = pytest.mark.quick
 
@@ -92,9 +91,6 @@ def test_table_says_what_was_measured(measurements):
     assert "| " + " | ".join(cells) + " | 0.50 |\n" in text
 
 
-@proves(
-    "On a machine on which others take the processors, the tables say so instead of figures.",
-)
 def test_table_has_no_figures_of_a_noisy_machine(measurements):
     text = report.markdown(content_of(measurements, verdict=noise.verdict([0.5])))
     assert "**This machine is too noisy: others took 50% of the processors' time" in text
@@ -103,10 +99,6 @@ def test_table_has_no_figures_of_a_noisy_machine(measurements):
     assert "25.0" not in text
 
 
-@proves(
-    "make bench makes the tables and plots of this page on your machine.",
-    "Tables, plots and all samples are in catkin_ws/build/bench.",
-)
 @pytest.mark.slow
 def test_report_is_in_all_files(measurements, tmp_path):
     results = rounds.Results(tmp_path)
@@ -149,7 +141,6 @@ def start(robots, up):
 
 
 @pytest.mark.slow
-@proves("How the costs grow shows how many robots the machine can hold.")
 def test_growth_with_the_robots():
     starts = [start(robots, up * robots) for robots in (1, 2, 4) for up in (1, 2, 9)]
     figures = launch_figures.medians(starts)

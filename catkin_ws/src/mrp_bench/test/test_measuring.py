@@ -18,7 +18,6 @@ from mrp_bench.processes import cpu
 from mrp_bench.programs import ProgramError, Running
 from mrp_bench.ways import LIMITS, WAYS, Way
 from mrp_testing.process import Process, processes_with
-from mrp_testing.proves import proves
 from mrp_testing.waiting import wait_until
 from rospy.impl import tcpros_pubsub
 
@@ -36,7 +35,6 @@ def test_every_way_is_measured_beside_its_limit(plan):
     )
 
 
-@proves("make bench QUICK=1 measures less.")
 def test_full_plan_has_every_way():
     assert {step.way for step in plans.FULL} == set(WAYS)
     assert len(plans.QUICK) < len(plans.FULL)
@@ -49,7 +47,6 @@ def master(tmp_path, monkeypatch):
         yield
 
 
-@proves("Every way delivers every message in order, as long as the queues are unlimited.")
 @pytest.mark.slow
 def test_every_way_delivers_every_message_in_order(master, tmp_path):
     plan = rounds.steps(WAYS, (8, 200, 10))
@@ -68,12 +65,6 @@ def test_every_way_delivers_every_message_in_order(master, tmp_path):
         assert WAYS[one["way"]].receiver is None or one["receiver_cpu"] > 0
 
 
-@proves(
-    "It also prints how long it will still take.",
-    "It measures all ways in turns, round after round, so that background load affects all of "
-    "them equally.",
-    "If you stop a run, make bench RESUME=1 continues it.",
-)
 @pytest.mark.slow
 def test_a_run_goes_on_where_it_ended(tmp_path):
     plan = rounds.steps(LIMITS, (8, 200, 10), (70000, 0, 3))
@@ -130,7 +121,6 @@ def test_program_that_ends_is_an_error(tmp_path, monkeypatch):
         rounds.run(rounds.steps(["ends"], (8, 0, 1)), 1, results, print)
 
 
-@proves("The same with nodelets, which one manager loads.")
 @pytest.mark.slow
 def test_nodelets_are_loaded_by_one_manager(master, tmp_path):
     with Running(WAYS["cpp_nodelet"], tmp_path / "log") as running:
@@ -152,7 +142,6 @@ def test_comparison_has_ways_that_exist(name):
     assert set(ways) <= set(WAYS) and len(ways) >= 2
 
 
-@proves("compare.py compares one way with the tutorial's plain code, and prints a table.")
 @pytest.mark.slow
 def test_comparison_prints_a_table():
     with Process("rosrun", "mrp_bench", "compare.py", "direct_queue") as comparing:
@@ -177,10 +166,6 @@ def test_compare_says_what_it_expects(arguments):
     assert "Traceback" not in done.stderr
 
 
-@proves(
-    "make bench starts the tutorial's launch file for up to fifty robots at once, and beside them "
-    "it sends from one node to another.",
-)
 @pytest.mark.slow
 def test_robots_start_and_stop(master, tmp_path):
     results = rounds.Results(tmp_path)
@@ -216,12 +201,6 @@ def mark(monkeypatch):
         os.kill(pid, signal.SIGKILL)
 
 
-@proves(
-    "When a C++ node ends, ros::spin asks the node's queue for callbacks until the master knows "
-    "that the node has gone.",
-    "By then the queue is disabled and answers at once, so each node takes a whole core.",
-    "A node with this function in place of ros::spin waits without work:",
-)
 @pytest.mark.slow
 def test_ros_spin_takes_a_core_while_its_node_ends(master):
     """And mrp_bench's spin() does not. A master that stands still keeps both from ending."""
@@ -274,10 +253,6 @@ def test_nothing_outlives_a_bench_that_is_killed(mark, tmp_path):
         wait_until(lambda: not processes_with(mark), "all have ended")
 
 
-@proves(
-    "A Python publisher with a queue calls time.sleep(0) after each message, so that its sending "
-    "thread gets its turn.",
-)
 def test_rospy_sleeps_after_each_message_that_it_queues(monkeypatch):
     """What the page says of time.sleep(0)."""
 

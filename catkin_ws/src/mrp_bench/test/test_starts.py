@@ -7,7 +7,6 @@ import xml.etree.ElementTree as ElementTree
 import pytest
 from mrp_bench import plots, rounds, start_figures, starts, tables
 from mrp_bench.launched import Console, exits
-from mrp_testing.proves import proves
 
 pytestmark = pytest.mark.quick
 
@@ -140,7 +139,6 @@ def test_timeline_says_what_its_colours_are(tmp_path):
     assert [path.name for path in tmp_path.iterdir()] == ["start_and_stop.svg"]
 
 
-@proves("make bench also starts the four nodes with roslaunch, and ends them with Ctrl-C.")
 @pytest.mark.slow
 def test_tutorial_starts_and_stops(tmp_path):
     results = rounds.Results(tmp_path)

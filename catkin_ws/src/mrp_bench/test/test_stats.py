@@ -4,7 +4,6 @@
 import numpy
 import pytest
 from mrp_bench import noise, stats, tables
-from mrp_testing.proves import proves
 
 pytestmark = pytest.mark.quick
 
@@ -59,10 +58,6 @@ def test_ratio_of_known_distributions():
     assert stats.ratio(ours, limit) == found
 
 
-@proves(
-    '"x" is the ratio to raw TCP in the same rounds, and in brackets the interval in which the '
-    "true ratio lies in 95 of 100 cases.",
-)
 @pytest.mark.slow
 def test_interval_of_ratio_has_the_true_value_as_often_as_it_says():
     """In 95 of 100, or about; the rounds are six, and each is slower or faster as a whole."""

@@ -13,7 +13,6 @@ from mrp_check.cli import check as check_command
 from mrp_check.cli import classroom
 from mrp_check.contract import packages, spec
 from mrp_check.report import alike, class_table
-from mrp_testing.proves import proves
 from test_check_class import Tags
 
 pytestmark = pytest.mark.slow
@@ -153,10 +152,6 @@ def pairs_of(room, *templates, names=""):
     return alike.pairs_in(chosen, "", templates)
 
 
-@proves(
-    "Names, texts, numbers, comments, layout, and the order of functions do not count.",
-    "What you gave to all, --template PATH leaves out.",
-)
 def test_a_disguise_is_found_and_nobody_else(room):
     """The package scale is made of relay: they are alike."""
     assert groups(pairs_of(room, room / "given")) == [
@@ -182,7 +177,6 @@ def test_too_little_of_its_own_is_like_nobody(room, tmp_path):
     assert len(alike.pairs_in([windows, tmp_path / "zoe"], "", [])) == 1
 
 
-@proves("The page shows which lines of both are alike, and says: look at both.")
 def test_the_lines_of_both_are_shown(room):
     pairs = pairs_of(room, room / "given", names=[ORIGINAL, "disguised.zip"])
     (row,) = csv.DictReader(alike.csv_text(pairs).splitlines())

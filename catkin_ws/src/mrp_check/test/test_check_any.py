@@ -20,7 +20,6 @@ from mrp_check.running import observing
 from mrp_check.sources import executables
 from mrp_check.student.package import Package
 from mrp_testing import scratch
-from mrp_testing.proves import proves
 
 pytestmark = pytest.mark.slow
 
@@ -75,7 +74,6 @@ def shown(findings):
     return "\n".join(f"{f.severity} {f.id} {f.file}:{f.line} {f.message}" for f in findings)
 
 
-@proves("The last lines name what only a contract can say.")
 def test_what_beginners_write_has_no_error(tmp_path, report_schema):
     report = checked(any_packages.correct(tmp_path / "some_pkg"))
     found = {(one.severity, one.id, one.file) for one in report.findings if one.severity != NOTE}
@@ -93,15 +91,6 @@ def test_what_beginners_write_has_no_error(tmp_path, report_schema):
     jsonschema.validate(json.loads(json_.text(report)), report_schema)
 
 
-@proves(
-    "With --any, the checker takes any ROS 1 package of nodes: it builds the package, runs each "
-    "node by itself and under each launch file, and reports what fails.",
-    "An error was seen to fail, or breaks a rule without which nothing starts; all else is a "
-    "warning or a note.",
-    "Each launch file that needs no arguments is run, and all nodes run together if one of them "
-    "is in no launch file.",
-    "A node that needs a service, a parameter or arguments waits for them: that is no error.",
-)
 def test_each_defect_is_found_at_its_place(tmp_path):
     folder = any_packages.faulty(tmp_path / "some_pkg")
     report = checked(folder)
@@ -114,10 +103,6 @@ def test_each_defect_is_found_at_its_place(tmp_path):
     assert "asking.py" not in {f.node for f in report.findings}, shown(report.findings)
 
 
-@proves(
-    "What works here and may fail elsewhere is a warning: a path in somebody's home folder, or a "
-    "target or a library that CMakeLists.txt names and nothing makes."
-)
 def test_what_another_machine_may_have_is_no_error(tmp_path):
     folder = any_packages.doubtful(tmp_path / "some_pkg")
     report = checked(folder)
@@ -128,7 +113,6 @@ def test_what_another_machine_may_have_is_no_error(tmp_path):
     assert "nowhere_msgs is not on this machine" in report.reason
 
 
-@proves("If the package does not build or run, no contract is written.")
 @pytest.mark.parametrize(
     ("has_cmake", "says"),
     [
@@ -153,13 +137,6 @@ def test_no_contract_is_written_from_a_package_that_does_not_work(
     assert [path.name for path in tmp_path.iterdir()] == ["some_pkg"]
 
 
-@proves(
-    "catkin_make run_tests checks a package whose CMakeLists.txt has find_package(mrp_check "
-    "REQUIRED) and mrp_check_add_test() in if(CATKIN_ENABLE_TESTING).",
-    "catkin_test_results fails if the package does.",
-    "In a package without a contract, a comment with a reason suppresses a finding of its line or "
-    "of the next one.",
-)
 def test_run_tests_checks_a_package(tmp_path):
     scratch.make(tmp_path, "src/mrp_check")
     script = any_packages.tested(tmp_path / "src" / "some_pkg") / "scripts" / "ends.py"
@@ -184,7 +161,6 @@ def test_a_client_of_a_service_is_a_node_without_init_node(tmp_path):
     assert not executables.is_script(Package(tmp_path), "client.py")
 
 
-@proves("The check builds the package alone: it finds no other package of your workspace.")
 def test_another_package_of_the_workspace_is_not_found(tmp_path):
     check_rules.hand_in(tmp_path, "sibling")
     folder = any_packages.tested(tmp_path / "some_pkg")
@@ -232,7 +208,6 @@ INIT = '#include <ros/ros.h>\nint main(int argc, char** argv)\n{\n  ros::init(ar
 STAYS = f"{INIT}  ros::NodeHandle n;\n  while (true)\n    ros::Duration(0.1).sleep();\n}}\n"
 
 
-@proves("What does not need it is built and run all the same.")
 def test_what_needs_nothing_that_is_missing_is_built_and_run(tmp_path):
     package = check_rules.make(
         tmp_path / "some_pkg",

@@ -11,7 +11,6 @@ from mrp_check.building import compiler, configuring, cpp_words, stubs
 from mrp_check.rules import cmake as cmake_rule
 from mrp_check.rules import compile as compile_rule
 from mrp_check.student.package import Package
-from mrp_testing.proves import proves
 
 pytestmark = pytest.mark.quick
 
@@ -100,10 +99,6 @@ def test_a_function_that_returns_nothing_is_found_though_it_compiles(tmp_path):
     assert (finding.certainty, finding.file, finding.line) == ("", "src/a.cpp", 4)  # seen
 
 
-@proves(
-    "Where the compiler warns that a line does something else than it seems to do, so does the "
-    "checker."
-)
 def test_what_compiles_and_does_something_else(tmp_path):
     lines = (
         "#include <cstdio>\nint half(int a)\n{\n  if (a) return a / 2;\n}\n"

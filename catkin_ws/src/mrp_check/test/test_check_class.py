@@ -18,7 +18,6 @@ from mrp_check.contract import errors, spec
 from mrp_check.contract.verdict import unchecked
 from mrp_check.report import class_table, json_
 from mrp_check.student import package
-from mrp_testing.proves import proves
 from mrp_testing.waiting import DEADLINE
 
 pytestmark = pytest.mark.quick
@@ -84,7 +83,6 @@ def test_each_folder_is_a_submission(tmp_path):
     assert [begun, *(part for _, *part in ended)] == [[0, 2], [1, 2], [2, 2]]
 
 
-@proves("Several are checked at a time: --jobs says how many.")
 @pytest.mark.parametrize("jobs", [1, 3])
 def test_jobs_says_how_many_are_checked_at_a_time(tmp_path, jobs):
     """Each check waits until there are so many, and none is one too many."""
@@ -106,9 +104,6 @@ def test_jobs_says_how_many_are_checked_at_a_time(tmp_path, jobs):
     }
 
 
-@proves(
-    "As each check ends, a line says which others run, and about how many minutes are left.",
-)
 def test_progress_says_what_runs_and_how_long_it_takes(tmp_path):
     """The check of anna ends while that of berta runs."""
     for name in ("anna", "berta"):
@@ -173,7 +168,6 @@ BROKEN = {
 }
 
 
-@proves("A submission that cannot be checked does not stop the others.")
 @pytest.mark.parametrize("kind", BROKEN)
 def test_a_broken_submission_does_not_stop_the_rest(tmp_path, kind):
     make, reason = BROKEN[kind]
@@ -198,11 +192,6 @@ def test_links_within_a_submission_lead_nowhere(tmp_path):
     assert package.Package(made).files == ["CMakeLists.txt", "package.xml"]
 
 
-@proves(
-    "A second call does not check a submission again that has not changed, so after Ctrl-C the "
-    "same command goes on where it stopped.",
-    "The reports are in ~/submissions.checked.",
-)
 def test_what_has_not_changed_is_not_checked_again(tmp_path):
     made = hand_in(tmp_path / "class", "anna")
     hand_in(tmp_path / "class", "berta")
@@ -227,7 +216,6 @@ def run_of(tmp_path):
     return room.checked
 
 
-@proves("A change of points, hidden or late costs no check: the points are counted again.")
 @pytest.mark.parametrize(
     ("old", "new", "checked"),
     [
@@ -284,10 +272,6 @@ def results(tmp_path):
     return Room(tmp_path / "class").check()
 
 
-@proves(
-    "The points come from the spec.",
-    "A spec file says what a package must do, and how many points each requirement is worth.",
-)
 def test_points_come_from_the_spec(results):
     contract = spec.read(SPEC_FILE)
     all_ids = len(ASKED)
@@ -311,10 +295,6 @@ def test_what_is_not_asked_earns_no_points_and_has_no_column(results, tmp_path):
     assert page.tags.count("td") == len(results) * (3 + len(asked))
 
 
-@proves(
-    "The table has a column for each requirement.",
-    "Its line gives the reason.",
-)
 def test_csv(results):
     rows = list(csv.DictReader(class_table.csv_text(results, spec.read(SPEC_FILE)).splitlines()))
     assert [row["submission"] for row in rows] == ["<b>anna", "'=1+1", "empty"]
@@ -339,10 +319,6 @@ class Tags(html.parser.HTMLParser):
         self.texts.append(data)
 
 
-@proves(
-    "The table has a column for each requirement.",
-    "The page marks.html shows how often each requirement is not met, and by whom.",
-)
 def test_html(results, tmp_path):
     page = Tags(class_table.html_text(results, spec.read(SPEC_FILE), tmp_path))
     assert page.tags.count("tr") == 1 + len(results)

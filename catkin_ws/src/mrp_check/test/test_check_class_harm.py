@@ -15,7 +15,6 @@ from check_sets import DEFECTS, break_, lay_out
 from mrp_check import sandbox
 from mrp_testing.cluster import cluster, worker
 from mrp_testing.process import processes_with
-from mrp_testing.proves import proves
 from mrp_testing.waiting import wait_until
 from test_check_class import BROKEN
 from test_check_cluster import SPEC, checked, headers, quick  # noqa: F401
@@ -219,9 +218,6 @@ def port(tmp_path):
                 one.accept()
 
 
-@proves(
-    "A class in which many mean harm has the right marks for all others, and nothing of it is left."
-)
 @pytest.mark.usefixtures("open_folders")
 @pytest.mark.skipif(
     sandbox.isolation() is not sandbox.Isolation.NAMESPACES, reason="so much they alone promise"
@@ -274,7 +270,6 @@ def make_one(folder, name, kind):
         break_(folder / name, next(one for one in DEFECTS if one.base == PAIR))
 
 
-@proves("In a class of 100, workers are killed at random: each mark is that of a quiet run.")
 def test_workers_killed_at_random_change_no_mark(tmp_path, monkeypatch):
     """How often Dask gives a submission to another worker is another test's matter."""
     monkeypatch.setenv("DASK_DISTRIBUTED__SCHEDULER__ALLOWED_FAILURES", "99")

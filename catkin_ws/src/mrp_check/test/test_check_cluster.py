@@ -21,7 +21,6 @@ from mrp_check.contract.packages import lay_out
 from mrp_check.student.package import MAX_BYTES
 from mrp_testing.cluster import cluster, worker
 from mrp_testing.process import Process, processes_with
-from mrp_testing.proves import proves
 from mrp_testing.waiting import wait_until
 from test_check_stopped import command, hanging
 
@@ -83,7 +82,6 @@ def kept(folder):
     return {path.name: path.read_bytes() for path in folder.iterdir()}
 
 
-@proves("The marks and the students' pages are the same as on one machine.")
 def test_marks_are_those_of_one_machine(tmp_path):
     for where in ("here", "there"):
         anna = hand_in(tmp_path / where / "class", "anna")
@@ -109,7 +107,6 @@ def test_marks_are_those_of_one_machine(tmp_path):
     assert b"video.mp4" in found[0]["anna.json"]
 
 
-@proves("If a worker dies or hangs, another one checks its submission.")
 def test_a_worker_that_dies_or_hangs_takes_no_marks(tmp_path, monkeypatch, second):
     """Of three workers, one is killed while it checks, and another stopped."""
     hand_in(tmp_path / "class", "anna", hanging(second))
@@ -132,7 +129,6 @@ def test_a_worker_that_dies_or_hangs_takes_no_marks(tmp_path, monkeypatch, secon
     wait_until(lambda: not processes_with(second), "what the killed worker ran has ended")
 
 
-@proves("If all workers are gone, the command says so and waits for another one.")
 def test_when_all_workers_are_gone_it_says_so_and_waits(tmp_path, second):
     """Two die and are one loss; a third one checks what is left."""
     hand_in(tmp_path / "class", "anna", hanging(second))
@@ -177,10 +173,6 @@ def without_checks(folder):
     return {"DASK_DISTRIBUTED__WORKER__PRELOAD": f"[{str(folder / 'no_check.py')!r}]"}
 
 
-@proves(
-    "Dask gives a submission to three more workers; if all die, its line says so, and the others "
-    "have their marks.",
-)
 def test_a_submission_that_kills_its_workers_is_named(tmp_path, monkeypatch):
     """Two may die here, so that it does not take long; Dask's own default is three more."""
     import dask  # here: the quick tests read this file where Dask is not installed
@@ -198,7 +190,6 @@ def test_a_submission_that_kills_its_workers_is_named(tmp_path, monkeypatch):
     assert rows[1]["why"].startswith("Each worker to which it was given died or was lost.")
 
 
-@proves("If the scheduler dies, the same command goes on later with what was checked.")
 def test_a_scheduler_that_dies_loses_nothing(tmp_path, second):
     hand_in(tmp_path / "class", "anna")
     hand_in(tmp_path / "class", "berta", hanging(second))
@@ -220,7 +211,6 @@ def test_a_scheduler_that_dies_loses_nothing(tmp_path, second):
     assert [row["verdict"] for row in rows] == ["findings", "findings"]
 
 
-@proves("Ctrl-C ends the checks on the workers, too.")
 def test_a_signal_ends_what_runs_on_the_workers(tmp_path, second):
     hand_in(tmp_path / "class", "anna", hanging(f"1000{second}"))
     with cluster(tmp_path, workers=1) as (_, address, workers):
@@ -235,7 +225,6 @@ def test_a_signal_ends_what_runs_on_the_workers(tmp_path, second):
     assert said.splitlines()[-1] == "check: stopped before its end; what it ran has ended, too."
 
 
-@proves("A worker with another version of the checker refuses.")
 @pytest.mark.parametrize("what", ["another", "none"])
 def test_a_worker_with_another_checker_refuses(tmp_path, what):
     hand_in(tmp_path / "class", "anna")
@@ -307,7 +296,6 @@ def certificates(folder):
     return str(folder / "tls.yaml")
 
 
-@proves("Only those who have the certificate can send work then.")
 def test_with_tls_only_who_has_the_certificate_sends_work(tmp_path, monkeypatch):
     hand_in(tmp_path / "class", "anna")
     own, another = (certificates(tmp_path / who) for who in ("instructor", "stranger"))

@@ -8,7 +8,6 @@ import subprocess
 
 import pytest
 from mrp_testing import scratch
-from mrp_testing.proves import proves
 from mrp_testing.workspace import WORKSPACE
 
 pytestmark = pytest.mark.quick
@@ -27,11 +26,6 @@ def run(*arguments, cwd=None, **variables):
     )
 
 
-@proves(
-    "The exit code is 0 if all requirements are met, 1 if one is not, and 2 if the package could "
-    "not be checked.",
-    "It then runs nothing, and ends with exit code 2.",
-)
 @pytest.mark.parametrize(
     ("arguments", "says"),
     [
@@ -49,7 +43,6 @@ def test_what_cannot_be_checked_is_exit_code_2(arguments, says):
     assert done.stderr.count("\n") == 1
 
 
-@proves("--json, --junit and --html write the report into a file.")
 def test_folder_without_manifest_names_the_package_in_it(tmp_path):
     (tmp_path / "src" / "a").mkdir(parents=True)
     (tmp_path / "src" / "a" / "package.xml").write_text("<package/>")
@@ -65,7 +58,6 @@ def test_folder_without_manifest_names_the_package_in_it(tmp_path):
     assert (data["verdict"], data["findings"]) == ("unchecked", [])
 
 
-@proves("--timing shows after how many seconds each part of the check begins.")
 def test_timing_shows_when_each_part_began():
     done = run(WORKSPACE / "src" / "mrp", "--only", "manifest", "--timing")
     shown = re.findall(r"check: +(\d+\.\d) s  (.+)\n", done.stderr)
@@ -74,7 +66,6 @@ def test_timing_shows_when_each_part_began():
     assert seconds == sorted(seconds)
 
 
-@proves("The new file replaces no other one.")
 def test_a_contract_replaces_no_file(tmp_path):
     contract = tmp_path / "mrp.yaml"
     contract.write_text("mine")
@@ -115,7 +106,6 @@ def test_what_cannot_be_done_with_a_class_is_exit_code_2(arguments, said):
         ("relay", "takes SPEC alone; found: relay"),
     ],
 )
-@proves("mrp_check_add_test(SPEC FILE) names a contract.")
 def test_the_macro_s_contract_is_the_command_s(arguments, said, tmp_path):
     """In a catkin that does no more than print."""
     (tmp_path / "a.cmake").write_text(

@@ -20,7 +20,6 @@ from mrp_check import confine, sandbox
 from mrp_check.building.catkin import Catkin
 from mrp_check.confined import variables
 from mrp_testing.process import processes_with
-from mrp_testing.proves import proves
 from mrp_testing.waiting import wait_until
 
 pytestmark = [pytest.mark.slow, pytest.mark.usefixtures("open_folders")]
@@ -47,14 +46,12 @@ def test_command_that_does_not_exist(tmp_path):
     assert "/no/such/program could not be started" in result.errors
 
 
-@proves("Their time is limited.")
 def test_sleeps_for_ever(confined):
     result = confined(f"import time; time.sleep({FOR_EVER})", time=FEW_SECONDS)
     assert (result.code, result.ended_by) == (None, "time")
     assert result.limit_text(confine.Limits(time=3)) == "it did not end within 3 s"
 
 
-@proves("A program that ignores signals is ended all the same.")
 def test_ignores_signals(confined):
     result = confined(
         f"""
@@ -83,7 +80,6 @@ DAEMON = f"""
 """
 
 
-@proves("A program that it leaves in the background is found and ended.")
 def test_leaves_a_daemon_behind(confined):
     result = confined(DAEMON)
     assert (result.code, result.ended_by) == (0, None)
@@ -107,7 +103,6 @@ def test_stopped_processes_are_killed(confined):
     assert result.ended_by == "time"
 
 
-@proves("The number of their processes is limited.")
 def test_forks_without_end(confined):
     result = confined(
         """
@@ -154,7 +149,6 @@ def test_threads_without_end(confined):
     assert result.ended_by in ("processes", "time")
 
 
-@proves("Their output is limited.")
 @pytest.mark.parametrize("stream", ["stdout", "stderr"])
 def test_floods_its_output(confined, stream):
     result = confined(
@@ -188,7 +182,6 @@ def test_one_process_takes_much_memory(confined):
     assert "MemoryError" in result.errors
 
 
-@proves("Their memory is limited.")
 def test_many_processes_take_much_memory(confined):
     result = confined(
         f"""
@@ -219,7 +212,6 @@ def test_writes_a_large_file(confined):
     assert (confined.scratch / "f").stat().st_size <= 5 * 2**20
 
 
-@proves("Their files are limited.")
 def test_writes_many_files(confined):
     result = confined(
         """
@@ -299,12 +291,6 @@ confine.run(["/usr/bin/python3", "-uc", {program!r}, "{token}"], {str(tmp_path)!
     wait_until(lambda: not processes_with(token), lambda: f"the end of {processes_with(token)}")
 
 
-@proves(
-    "If you are root, the package's programs run as another user, even without namespaces.",
-    "If you are not root and the system makes no namespaces, the package's programs can do what "
-    "you can do, such as end the checker's own processes.",
-    "The checker is root in it, so the package's programs run as another user.",
-)
 def test_the_watcher_is_killed(confined):
     """Where it runs as the same user, a package can end its watcher; its mark finds what is left.
     As root it runs as another user, and cannot."""

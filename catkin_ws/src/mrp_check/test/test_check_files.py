@@ -12,7 +12,6 @@ from mrp_check.rules import cmake as cmake_rule
 from mrp_check.rules import dependencies, manifest, messages, package_name, targets, text
 from mrp_check.sources import uses
 from mrp_check.student import cmake
-from mrp_testing.proves import proves
 
 pytestmark = pytest.mark.quick
 
@@ -225,7 +224,6 @@ def test_who_is_wrong_about_the_name_is_decided_by_the_others(tmp_path):
     assert (finding.file, finding.line) == ("package.xml", 3)
 
 
-@proves("The checker warns of a genmsg that makes messages, and accepts message_generation.")
 @pytest.mark.parametrize(
     ("generator", "configures", "severities"),
     [
@@ -344,10 +342,6 @@ def test_own_service_is_made_before_it_is_used(without, file, says, tmp_path):
         ("mrs_lib", "cpp", {"libtf-dev"}, "(not in Debian)"),
         ("mrs_lib", "cpp", set(), "(perhaps Debian package libmrs-lib-dev)"),
     ],
-)
-@proves(
-    "A ROS package that this machine has not makes no error: the checker names its Debian package, "
-    "or says that Debian has none.",
 )
 def test_a_package_that_is_not_here_is_named_as_debian_has_it(
     name, language, debian, says, monkeypatch

@@ -19,7 +19,6 @@ from mrp_check.rules import (
 )
 from mrp_check.sources import python_read
 from mrp_check.student.cmake import parsed
-from mrp_testing.proves import proves
 from one_source import AROUND, case, lines_of
 
 pytestmark = pytest.mark.quick
@@ -34,10 +33,6 @@ SERVER = "s = actionlib.SimpleActionServer('a', A, work, auto_start=False)\ns.st
 WORK = "def work(goal):\n    for i in range(9):\n        "
 
 
-@proves(
-    "What works only by chance is a warning, such as a message that is published before any "
-    "subscriber is connected."
-)
 @pytest.mark.parametrize(
     ("rule", "ending", "lines", "found"),
     [

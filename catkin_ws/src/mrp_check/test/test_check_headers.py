@@ -11,7 +11,6 @@ from mrp_check.building import headers
 from mrp_check.confined import gcc_headers, variables
 from mrp_check.contract import spec
 from mrp_check.student.package import Package
-from mrp_testing.proves import proves
 
 NODE = "src/publisher_cpp_node.cpp"
 # g++ sees the error in a header of ROS's.
@@ -108,10 +107,6 @@ def compiled(tmp_path, open_folders):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("isolation", ISOLATIONS)
-@proves(
-    "In a class and in make learn, the compiler reads ROS's headers once for each set of flags, and"
-    " not for each source."
-)
 def test_second_source_is_compiled_with_the_headers_of_the_first(
     kept, compiled, monkeypatch, isolation
 ):

@@ -13,7 +13,6 @@ from mrp_check import check
 from mrp_check.contract import spec
 from mrp_check.scratch import kept_folder
 from mrp_check.student.package import Package
-from mrp_testing.proves import proves
 
 pytestmark = [pytest.mark.slow, pytest.mark.usefixtures("open_folders")]
 
@@ -45,10 +44,6 @@ def checked(tmp_path, programs):
     return once
 
 
-@proves(
-    "A second check of a package builds only what has changed since the first, with the same"
-    " checker and the same Debian packages."
-)
 def test_second_check_builds_only_what_has_changed(checked, tmp_path):
     assert checked() == ([], True)
     assert checked() == ([], False)

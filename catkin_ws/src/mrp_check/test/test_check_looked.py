@@ -21,7 +21,6 @@ from mrp_check.rules import (
     unbound,
     unpacked,
 )
-from mrp_testing.proves import proves
 from one_source import case, lines_of
 
 pytestmark = pytest.mark.quick
@@ -61,7 +60,6 @@ BEGIN = "def begin():\n    rospy.init_node('a')\n"
 HEARS = "auto hear = [](const A::ConstPtr& m) {{ {} }};"
 
 
-@proves("So is a call that can fail and whose result nobody looks at.")
 @pytest.mark.parametrize(
     ("rule", "ending", "lines", "found"),
     [

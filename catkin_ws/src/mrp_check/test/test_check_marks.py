@@ -14,7 +14,6 @@ from mrp_check.cli import check as check_command
 from mrp_check.cli import classroom
 from mrp_check.contract import by_hand, errors, spec
 from mrp_check.report import class_table, mail, moodle, moved
-from mrp_testing.proves import proves
 from test_check_class import SPEC_FILE, Room, Tags
 
 pytestmark = pytest.mark.quick
@@ -31,12 +30,6 @@ def written(folder, text, encoding="utf-8"):
     return file
 
 
-@proves(
-    "student is a submission's name, and each other column or cell can be left out.",
-    "override counts instead of the points that were measured; late days take points off, and no "
-    "mark is above maximum.",
-    "The tables show the points that were measured, what was set by hand, and the mark.",
-)
 def test_a_person_s_marks_stand_apart_from_what_was_measured(tmp_path):
     for name in ("anna", "berta", "carl", "dora", "zoe"):
         hand_in(tmp_path / "class", name)
@@ -66,19 +59,11 @@ def test_a_person_s_marks_stand_apart_from_what_was_measured(tmp_path):
     assert "zoe: mark" not in said
 
 
-@proves(
-    "The contract says what a late day takes off: late: {points: 2}, or late: {percent: 10} of "
-    "all points.",
-)
 def test_late_days_take_points_or_percent():
     assert spec.Late(points=1.5).off(2, 40) == 3
     assert spec.Late(percent=10).off(2, 40) == 8
 
 
-@proves(
-    "A line that names nobody, a text in place of a number, or an override without a reason is an "
-    "error.",
-)
 @pytest.mark.parametrize(
     ("text", "says"),
     [
@@ -111,7 +96,6 @@ def test_a_line_that_cannot_be_used_is_an_error(tmp_path, text, says):
     assert "\n" not in str(error.value)
 
 
-@proves("Then nothing is checked.")
 def test_nothing_is_checked_before_the_file_can_be_used(tmp_path, monkeypatch, capsys):
     hand_in(tmp_path / "class", "anna")
     file = written(tmp_path, "student,late_days\nanna,1\n")
@@ -151,10 +135,6 @@ def moves(results):
     return {one.name: one.moved for one in results}
 
 
-@proves(
-    "The tables say whose marks have moved and why, such as 9 of 11 -> 9 of 10: wrap is no longer "
-    "required.",
-)
 def test_who_calls_again_sees_whose_marks_have_moved_and_why(tmp_path):
     contract, all_ = spec.read(SPEC_FILE), len(ASKED)
     first = dataclasses.replace(contract, points={"wrap": 3})
@@ -195,11 +175,6 @@ def test_what_a_student_or_a_person_has_changed_moves_a_mark_too(tmp_path):
     }
 
 
-@proves(
-    "--before shows what each student has gained and lost since an earlier hand-in.",
-    "The page of the class, that of the student, and the mail have it; the student reads nothing "
-    "of hidden requirements there.",
-)
 def test_progress_since_an_earlier_hand_in(tmp_path):
     """Moodle has another number for each hand-in, and an archive may become a folder."""
     contract, all_ = spec.read(SPEC_FILE), len(ASKED)

@@ -15,7 +15,6 @@ from mrp_check.contract.by_hand import ByHand
 from mrp_check.contract.finding import Finding
 from mrp_check.contract.verdict import BROKEN, FINDINGS, MET, UNCHECKED, Report, public, unchecked
 from mrp_check.report import class_table, console, gradescope, html, json_, mail, moodle
-from mrp_testing.proves import proves
 
 pytestmark = pytest.mark.quick
 
@@ -106,10 +105,6 @@ def test_results_have_the_fields_that_gradescope_names(one):
     assert "\x1b" not in text and text.encode()
 
 
-@proves(
-    "A hidden requirement counts: Gradescope's file has it with its points and with hidden as its "
-    "visibility.",
-)
 def test_each_requirement_is_a_test_with_its_points():
     tests = results(report(SPIN, VALUES))["tests"]
     by_id = {test["name"].split("(")[-1][:-1]: test for test in tests}
@@ -154,10 +149,6 @@ SHOWN = {
 NAMED = "Anna Lee_12345_assignsubmission_file_"
 
 
-@proves(
-    "It leaves out what the contract hides.",
-    "The student reads All public requirements are met, whether it is met or not.",
-)
 @pytest.mark.parametrize("kind", SHOWN)
 def test_a_student_does_not_see_which_hidden_requirement_failed(kind):
     shown = SHOWN[kind]
@@ -181,7 +172,6 @@ def test_a_hidden_requirement_that_a_comment_suppresses_is_not_named(kind):
     assert "suppressed: 1" in text or kind == "json"
 
 
-@proves("With --public, the other reports leave it out, too.")
 def test_public_leaves_hidden_requirements_out(tmp_path, monkeypatch, capsys):
     contract, file = tmp_path / "contract.yaml", tmp_path / "report.json"
     contract.write_text(spec.find("pub_sub").read_text() + "hidden: [spin]\n")
@@ -200,10 +190,6 @@ def test_without_hidden_requirements_nothing_is_left_out():
     assert console.summary(public(report(), ())).startswith("All requirements are met")
 
 
-@proves(
-    "check --gradescope FILE PATH writes the same file on your machine.",
-    "If the package cannot be checked, the file has a score of 0 and the reason.",
-)
 @pytest.mark.parametrize(
     ("make", "says"),
     [
@@ -241,7 +227,6 @@ CLASS = [
 ]
 
 
-@proves("The worksheet has each participant's number, points and reasons.")
 def test_worksheet_has_what_moodle_reads():
     """Moodle finds a column by its name, and the student by the number after "Participant "."""
     rows = list(csv.DictReader(moodle.text(CLASS, CONTRACT).splitlines()))
@@ -268,7 +253,6 @@ def test_text_for_a_mail(tmp_path):
     assert bea.endswith("It has no package.xml.\nNothing could be checked.\n")
 
 
-@proves("It is Moodle's grade, too, and the student reads what was set by hand.")
 def test_worksheet_has_the_mark_with_what_was_set_by_hand():
     late = ByHand(late_days=1, off=2, override=9.5, reason="<b>", by="B. Roe")
     bea = dataclasses.replace(CLASS[1], by_hand=late)
@@ -278,9 +262,6 @@ def test_worksheet_has_the_mark_with_what_was_set_by_hand():
     assert f"mark 7.5 of {class_table.most(CONTRACT):g}, {said}" in row["Feedback comments"]
 
 
-@proves(
-    "marks.zip has a page for each student, in a folder with the name that Moodle gave it.",
-)
 def test_zip_has_a_page_for_each_student(tmp_path):
     moodle.write_pages(tmp_path / "marks.zip", CLASS, CONTRACT)
     with zipfile.ZipFile(tmp_path / "marks.zip") as archive:
@@ -293,9 +274,6 @@ def test_zip_has_a_page_for_each_student(tmp_path):
     assert "It never spins." not in anna and "file:" not in anna
 
 
-@proves(
-    "A folder whose name has no number of its own is in neither file, and the checker says so.",
-)
 def test_a_name_without_a_number_is_said_and_not_guessed(tmp_path, capsys):
     check_command.write_pages(tmp_path / "marks.csv", CLASS, CONTRACT)
     said = capsys.readouterr().err.splitlines()

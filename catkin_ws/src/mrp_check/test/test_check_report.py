@@ -17,7 +17,6 @@ from mrp_check.contract.finding import Finding
 from mrp_check.report import annotation, console, github, json_, junit, sarif
 from mrp_check.report import html as html_report
 from mrp_check.rules import REQUIREMENTS
-from mrp_testing.proves import proves
 from mrp_testing.workspace import WORKSPACE
 
 pytestmark = pytest.mark.quick
@@ -117,10 +116,6 @@ class Reader(html.parser.HTMLParser):
         self.text += data
 
 
-@proves(
-    "It reports which requirement the package does not meet, where, why, and which page explains "
-    "it.",
-)
 @pytest.mark.parametrize("one", REPORTS, ids=lambda one: one.verdict)
 def test_page_needs_nothing_else(one):
     page = Reader(html_report.text(one))
@@ -150,11 +145,6 @@ def test_page_shows_what_a_package_says_as_text():
     assert "<script>alert(1)</script>" in page.text
 
 
-@proves(
-    "It reports what is wrong, where, and which page explains it.",
-    "It reports which requirement the package does not meet, where, why, and which page explains "
-    "it.",
-)
 def test_console_shows_verdicts_causes_first_and_pages():
     text = console.text(report(HINTED, RESULT, CAUSE))
     assert "  [FAIL] Each node waits for callbacks (spin)" in text
@@ -185,10 +175,6 @@ def repository(tmp_path):
     return tmp_path / "repo" / "src" / "a_pkg"
 
 
-@proves(
-    "A path in it is relative to the root of your repository, or to the working folder.",
-    "It has each requirement with its page, each finding with its line, and each certain fix.",
-)
 def test_sarif_has_each_finding_with_its_place_and_its_fix(repository):
     one = dataclasses.replace(report(CAUSE, RESULT, CHANGE), folder=repository)
     (run,) = sarif.data(one)["runs"]
@@ -219,7 +205,6 @@ def test_sarif_says_why_it_could_not_be_checked():
     assert said["message"]["text"] == REPORTS[2].reason
 
 
-@proves("--github prints each finding as an annotation of GitHub Actions.")
 def test_github_s_annotations_are_escaped_as_its_own_toolkit_does(repository):
     one = dataclasses.replace(report(CAUSE, RESULT, CHANGE, reason="No."), folder=repository)
     lines = github.text(one).split("\n")
@@ -257,7 +242,6 @@ def test_a_reader_s_paths_begin_at(git, working, base, repository, tmp_path, mon
     assert annotation.base_of(repository) == tmp_path / base
 
 
-@proves("The report counts what is suppressed, and shows the reason.")
 def test_what_is_suppressed_is_shown_with_its_reason():
     one = REPORTS[0]
     line = "src/a.py:4: suppressed (lifetime): It is kept elsewhere."
@@ -285,9 +269,6 @@ def test_progress_is_one_line_of_a_terminal_and_whole_in_a_log(monkeypatch):
         assert stream.getvalue() == said
 
 
-@proves(
-    "On a terminal, it is one line with a bar.",
-)
 @pytest.mark.parametrize("encoding, half", [("utf-8", "██████████"), ("ascii", "##########")])
 def test_progress_of_a_class_is_a_bar_on_a_terminal_and_a_number_in_a_log(encoding, half):
     for is_terminal, said in ((True, f"|{half}          | 3/6"), (False, "3 of 6:")):

@@ -14,7 +14,6 @@ import check_sets
 import pytest
 from mrp_check.contract import defects, spec
 from mrp_testing import compiler_cache, scratch
-from mrp_testing.proves import proves
 
 pytestmark = pytest.mark.sets
 
@@ -78,29 +77,6 @@ def shown(findings):
     )
 
 
-@proves(
-    "In Python, rospy keeps the subscriber too, and goes on calling the callback even if your own "
-    "object is gone.",
-    "project names the package, with the name that package.xml has.",
-    "Yes: a publisher may publish from a callback, too.",
-    "The package mrp_check builds and runs a package, and compares it with a contract.",
-    "A package may have any name.",
-    "Only errors count.",
-    "The exit code is 0 if all requirements are met, 1 if one is not, and 2 if the package could "
-    "not be checked.",
-    "They check correct packages in many styles, and none is reported as wrong.",
-    "This is the tutorial's spec, and the tutorial's package meets it:",
-    "relay.yaml is for a node that doubles what it receives, with its own type of message.",
-    "replay.yaml is for a node that publishes what is in a bag.",
-    "talker_listener_py.yaml and talker_listener_cpp.yaml are for the pair of the ROS wiki: "
-    "texts, a loop, and no launch file.",
-    "add_two_ints_py.yaml and add_two_ints_cpp.yaml are for a service and its client.",
-    "own_message.yaml, parameter.yaml, turtle.yaml and filter.yaml are for a message of the "
-    "package's own, a parameter, a command subscriber, and two inputs.",
-    "Exit code 0 means that all requirements are met.",
-    "A package meets it, and packages in which one thing is wrong do not:",
-    "Each example is a run of its own:",
-)
 @pytest.mark.parametrize("style", parameters(check_sets.STYLES, str))
 def test_correct_package_is_met(style, tmp_path, run_check):
     folder = tmp_path / "package"
@@ -113,19 +89,6 @@ def test_correct_package_is_met(style, tmp_path, run_check):
     assert {one["id"] for one in found} == set(warns)
 
 
-@proves(
-    "Here they are those of ROS; without them, the linker reports an error.",
-    "The same happens with a script named rospy.py or numbers.py: the checker reports it.",
-    "The checker reports them.",
-    "It reports what is wrong, where, and which page explains it.",
-    "The exit code is 0 if all requirements are met, 1 if one is not, and 2 if the package could "
-    "not be checked.",
-    "They check packages with one defect each, and it reports the right file and line, and "
-    "nothing else.",
-    "A package meets it, and packages in which one thing is wrong do not:",
-    "The checker asks the node that offers it, and answers the node that calls it:",
-    "Check: make check PKG=~/catkin_ws/src/my_package checks a package that you wrote.",
-)
 @pytest.mark.parametrize(
     "defect",
     parameters([one for one in check_sets.DEFECTS if not one.order], lambda one: one.name),
@@ -167,13 +130,6 @@ def assert_one_defect(findings, defect, folder, severities=("error",)):
     assert not others, f"besides the defect:\n{shown(others)}"
 
 
-@proves(
-    "Each exercise fails for its own reason, and its solution passes.",
-    "It only reads the folder that you name: it builds and runs a copy, in a scratch folder.",
-    "Some of these mistakes are exercises: packages that you fix, and that the checker checks.",
-    "Practise: make learn gives you broken packages to fix, one after the other, and checks each "
-    "when you save it.",
-)
 @pytest.mark.parametrize("exercise", EXERCISES, ids=lambda one: one.name)
 def test_exercise_fails_for_its_own_reason_and_its_solution_passes(exercise, tmp_path, run_check):
     folder = tmp_path / "package"
@@ -200,11 +156,6 @@ WRITTEN = {
 }
 
 
-@proves(
-    "Or have one written from a correct package: check --write-contract PKG builds the package, "
-    "runs its nodes, and writes down what they did.",
-    "The package meets that contract, and a package in which one thing is wrong does not.",
-)
 @pytest.mark.parametrize("style", WRITTEN)
 def test_a_contract_is_written_from_a_correct_package(style, tmp_path, run_check):
     """The package meets it, and the broken one does not: for what the defect breaks."""
@@ -232,7 +183,6 @@ ALONE = [
 ]
 
 
-@proves("--only checks the named requirements alone.")
 @pytest.mark.parametrize(
     ("style", "file", "old", "new", "id_"), ALONE, ids=["launch-nodes", "wrap"]
 )

@@ -10,7 +10,6 @@ from mrp_check.contract import lines, resources, spec
 from mrp_check.contract.errors import SpecError
 from mrp_check.contract.requirements import STAGES
 from mrp_check.rules import REQUIREMENTS
-from mrp_testing.proves import proves
 
 pytestmark = pytest.mark.quick
 
@@ -27,7 +26,6 @@ launch:
 """
 
 
-@proves("The folder specs has more examples:")
 def test_our_specs_can_be_read():
     names = {path.stem for path in spec.find("pub_sub").parent.iterdir()}
     wiki = {"talker_listener_cpp", "talker_listener_py"}
@@ -46,9 +44,6 @@ def test_values_wrap_round():
     assert spec.Values(1, 2).after(2**32 - 1) == 2**32 + 1
 
 
-@proves(
-    "relay.yaml is for a node that doubles what it receives, with its own type of message.",
-)
 def test_relay_doubles():
     relays = spec.read(spec.find("relay")).nodes["relay_node"].relays
     assert (relays.of(3), relays.of(2**31)) == (6, 0)
@@ -77,7 +72,6 @@ def test_each_key_says_what_it_is():
             assert value.get("description") or referred.get("description"), key
 
 
-@proves("If a contract is wrong, the checker names the line and says what is wrong.")
 @pytest.mark.parametrize(
     ("old", "new", "says"),
     [

@@ -17,7 +17,6 @@ from mrp_check.contract.severity import weigh
 from mrp_check.report import class_table, console, json_, junit
 from mrp_check.report import html as html_report
 from mrp_check.rules import RULES
-from mrp_testing.proves import proves
 
 pytestmark = pytest.mark.quick
 
@@ -114,7 +113,6 @@ def test_one_requirement_alone_is_checked_as_among_all(id_):
     assert all(needs >= {*rule.needs} for rule in rules)
 
 
-@proves("One with [--] could not be checked: the report says why, and it earns no points.")
 def test_what_was_never_seen_is_neither_met_nor_paid(tmp_path, monkeypatch):
     """A package without sources: nobody can say anything of its nodes."""
     one = examined(tmp_path, STATIC, monkeypatch, only=STATIC_IDS)
@@ -154,13 +152,6 @@ FOLLOWS = Finding("values", "No value came.", "src/a.py", 3, consequence_of="spi
 DROPPED = Finding("lifetime", "It is not kept.", "src/a.py", 4, stage="static")
 
 
-@proves(
-    "In a package without a contract, a comment with a reason suppresses a finding of its line or "
-    "of the next one.",
-    "In Python and CMake it is # mrp_check: ignore spin: it sleeps in a loop of its own.",
-    "A comment without a reason, for no requirement that there is, or that suppresses nothing is "
-    "a warning.",
-)
 def test_a_comment_with_a_reason_suppresses_a_finding(tmp_path):
     package = check_rules.make(tmp_path, src__a_DOT_py=COMMENTED)
     found = [dataclasses.replace(f, certainty=SEEN) for f in (SPINS, FOLLOWS, DROPPED)]
@@ -185,10 +176,6 @@ def test_what_could_not_be_checked_is_no_idle_comment(tmp_path):
     assert suppression.applied(package, [], {"spin"}, False) == ([], [])
 
 
-@proves(
-    "In Python and CMake it is # mrp_check: ignore spin: it sleeps in a loop of its own.",
-    "It begins with // in C++, and with <!-- in XML.",
-)
 @pytest.mark.parametrize(
     ("file", "line"),
     [
@@ -206,7 +193,6 @@ def test_a_comment_is_one_of_its_language(file, line, tmp_path):
     assert comment == suppression.Comment(name, 1, "spin", "why")
 
 
-@proves("Under a contract it suppresses nothing: a student could suppress each mistake.")
 def test_under_a_contract_a_comment_suppresses_nothing(tmp_path, monkeypatch):
     wrong = Finding("cmake", "It is wrong.", "CMakeLists.txt", 1)
     text = "# mrp_check: ignore cmake: it is as I want it\n"

@@ -13,7 +13,6 @@ from mrp_check.contract import defects, packages
 from mrp_check.contract.finding import WARNING, Finding
 from mrp_check.learning import plain, watch
 from mrp_check.learning.exercise import Course
-from mrp_testing.proves import proves
 from mrp_testing.waiting import DEADLINE, wait_until
 
 pytestmark = pytest.mark.quick
@@ -47,7 +46,6 @@ def checked(monkeypatch):
     return findings
 
 
-@proves("make exercise makes one step, and ends: the first call prints your task.")
 def test_first_call_shows_the_task_and_makes_the_package(tmp_path, capsys, checked):
     assert plain.run_once(tmp_path / "mine") == plain.PASSED
     printed = capsys.readouterr().out
@@ -59,7 +57,6 @@ def test_first_call_shows_the_task_and_makes_the_package(tmp_path, capsys, check
     assert checked.folders == []
 
 
-@proves("The next call checks your copy.")
 def test_not_yet_says_what_and_where_and_not_how(tmp_path, capsys, checked):
     plain.run_once(tmp_path)
     capsys.readouterr()
@@ -74,14 +71,12 @@ def test_not_yet_says_what_and_where_and_not_how(tmp_path, capsys, checked):
     assert checked.folders == [tmp_path / f"01_{FIRST}"]
 
 
-@proves("If your copy meets the contract, without a warning, the exercise is passed.")
 def test_a_warning_is_not_passed(tmp_path, checked):
     plain.run_once(tmp_path)
     checked.append(Finding("warnings", "It warns.", severity=WARNING))
     assert plain.run_once(tmp_path) == plain.NOT_YET
 
 
-@proves("If it passes, the next exercise follows.")
 def test_passed_goes_on_to_the_next_until_all_are_passed(tmp_path, capsys, checked):
     for number in range(1, COUNT + 1):
         plain.run_once(tmp_path)
@@ -107,9 +102,6 @@ def test_another_number_changes_neither_the_progress_nor_the_copy(tmp_path, chec
         assert course.exercises[0].place.name.startswith("01_")
 
 
-@proves(
-    "make exercise HINT=1 gives a hint, and make exercise RESET=1 starts the exercise again.",
-)
 def test_hint(tmp_path, capsys, checked):
     plain.run_once(tmp_path)
     capsys.readouterr()
@@ -118,9 +110,6 @@ def test_hint(tmp_path, capsys, checked):
     assert checked.folders == []
 
 
-@proves(
-    "make exercise HINT=1 gives a hint, and make exercise RESET=1 starts the exercise again.",
-)
 def test_reset_begins_anew(tmp_path, checked):
     plain.run_once(tmp_path)
     script = tmp_path / f"01_{FIRST}" / "src" / "subscriber_py_node.py"
@@ -139,7 +128,6 @@ def test_installed_without_sources_says_what_to_do(tmp_path, monkeypatch):
         plain.run_once(tmp_path / "mine")
 
 
-@proves("make learn checks your copy each time that you save a file of it.")
 def test_each_save_is_checked_and_an_editors_own_files_are_not(tmp_path, checked):
     watched = watch.Watched(Course(tmp_path / "mine"), tmp_path / "scratch")
 
@@ -167,9 +155,6 @@ def test_each_save_is_checked_and_an_editors_own_files_are_not(tmp_path, checked
     assert (place / "src" / "subscriber_py_node.py").read_text() != ""
 
 
-@proves(
-    "It first shows what it finds in the files, and then what it finds when it runs the nodes.",
-)
 def test_what_is_found_early_is_shown_early(tmp_path, capsys, monkeypatch):
     """The check goes on only after its first findings are shown, and its verdict comes later."""
     shown = threading.Event()
@@ -197,7 +182,6 @@ def test_what_is_found_early_is_shown_early(tmp_path, capsys, monkeypatch):
     assert "mrp: In a run.\n" in printed[0]
 
 
-@proves("Where there is no terminal, it prints lines, and goes on by itself.")
 def test_without_a_terminal_it_goes_on_to_the_last(tmp_path, capsys, checked):
     plain.Followed(watch.Watched(Course(tmp_path), tmp_path / "scratch")).follow()
     printed = capsys.readouterr().out

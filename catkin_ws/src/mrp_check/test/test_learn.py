@@ -17,7 +17,6 @@ from mrp_check.learning.exercise import Course
 from mrp_check.student.package import Package
 from mrp_testing import compiler_cache
 from mrp_testing.process import Process, processes_with
-from mrp_testing.proves import proves
 from mrp_testing.waiting import wait_until, within
 
 pytestmark = [pytest.mark.slow, pytest.mark.usefixtures("open_folders")]
@@ -109,23 +108,6 @@ class Terminal:
         return self.program.exitstatus
 
 
-@proves(
-    "It makes a broken copy of a package, and shows your task.",
-    "make learn checks your copy each time that you save a file of it.",
-    "It shows what is still wrong, the file and the line, and the page that explains it.",
-    "If your copy meets the contract, without a warning, the exercise is passed.",
-    "n goes on to the next exercise, when this one is passed.",
-    "h shows a hint.",
-    "r runs the nodes again, and shows what they print.",
-    "l lists all exercises, and which of them are passed.",
-    "There Enter opens one.",
-    "s shows the solution, when the exercise is passed.",
-    "x, pressed twice, deletes your changes and starts the exercise again.",
-    "q or Ctrl-C quits, and leaves no process behind.",
-    "The next make learn goes on where you were.",
-    "Practise: make learn gives you broken packages to fix, one after the other, and checks each "
-    "when you save it.",
-)
 def test_first_exercise_at_a_terminal(tmp_path, env):
     mine = tmp_path / "mine"
     terminal = Terminal(env, *COMMAND, str(mine))
@@ -169,7 +151,6 @@ def test_lines_without_a_terminal_and_the_end_by_a_signal(tmp_path, env):
     assert_nothing_is_left(tmp_path)
 
 
-@proves("What has not changed is not built again.")
 def test_what_has_not_changed_is_not_built_again(tmp_path, monkeypatch, programs):
     """An old file that is put back is new to make; and an executable of the build before does not
     stand in for one that cannot be built now. What a Python file says reaches neither make nor

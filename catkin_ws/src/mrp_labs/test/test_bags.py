@@ -18,7 +18,6 @@ from mrp_testing.graph import Graph
 from mrp_testing.lab import PACKAGE, Lab
 from mrp_testing.nodes import program
 from mrp_testing.process import LIVE, Process
-from mrp_testing.proves import proves
 from mrp_testing.waiting import wait_until
 from rosgraph_msgs.msg import Clock
 from std_msgs.msg import UInt32
@@ -95,30 +94,16 @@ class TestBags(unittest.TestCase):
     def path(cls, name):
         return os.path.join(cls.folder, name)
 
-    @proves(
-        "What you see: the first bag has the map, though the map was published before the "
-        "recording began.",
-        "The second bag has none.",
-        "Why: a latched publisher sends its last message to a subscriber once, when it connects.",
-        "rosbag record connects once for all its bags.",
-        "Only the first of split bags has what was latched before.",
-        "A recording gets a latched message once: only the first bag of a split recording has it.",
-    )
     def test_split(self):
         self.assertEqual(self.codes, [0, 0])
         first, second = (topics_of(self.path(f"trip_{number}.bag")) for number in (0, 1))
         self.assertEqual(first[MAP], 1)
         self.assertEqual(list(second), [COUNT])
 
-    @proves("Or record with --repeat-latched: then each bag has the map.")
     def test_repeat_latched(self):
         for number in (0, 1):
             self.assertEqual(topics_of(self.path(f"repeated_{number}.bag"))[MAP], 1)
 
-    @proves(
-        "Who plays it alone gets no map.",
-        "At the bag's end it exits, unless you say --keep-alive.",
-    )
     def test_play_one_of_split_bags(self):
         with subscriber(MAP) as maps, subscriber(COUNT) as counts:
             with play(self.path("trip_1.bag")) as player:
@@ -126,12 +111,6 @@ class TestBags(unittest.TestCase):
             wait_until(lambda: counts, "the bag's numbers")
         self.assertEqual(maps, [])
 
-    @proves(
-        "Then the map is there.",
-        "What you see: a late subscriber gets the map, and no old number of the other topic.",
-        "Why: what was latched when it was recorded is latched again, while rosbag play runs.",
-        "At the bag's end it exits, unless you say --keep-alive.",
-    )
     def test_play_all_of_split_bags(self):
         both = (self.path("trip_0.bag"), self.path("trip_1.bag"))
         with play("--keep-alive", *both) as player:
@@ -144,18 +123,12 @@ class TestBags(unittest.TestCase):
                 self.assertEqual((maps, late), ([1], []))
             self.assertEqual(player.stop(), 0)
 
-    @proves("What was latched in it is published all the same.")
     def test_play_from_later_on(self):
         with subscriber(MAP) as maps:
             with play("--start", "0.5", self.path("trip_0.bag")) as player:
                 wait_until(lambda: maps, "the latched message of before")
                 self.assertEqual(player.wait(), 0)
 
-    @proves(
-        "The first numbers are lost: with --wait-for-subscribers, rosbag play begins when each "
-        "topic of the bag has a subscriber, and then none is lost.",
-        "Until then it says Waiting for subscribers..",
-    )
     def test_wait_for_subscribers(self):
         bag = self.path("trip_0.bag")
         recorded = [one.message.data for one in rosbag.Bag(bag).read_messages(COUNT)]
@@ -168,7 +141,6 @@ class TestBags(unittest.TestCase):
                 wait_until(lambda: recorded[-1] in counts, "the last number")
             self.assertEqual(counts, recorded)
 
-    @proves("Ctrl-C does not end it meanwhile, and Ctrl-\\ does.")
     def test_ctrl_c_does_not_end_it_while_it_waits(self):
         options = ("--wait-for-subscribers", "__name:=waits")
         with play(*options, self.path("trip_0.bag")) as player:
@@ -177,7 +149,6 @@ class TestBags(unittest.TestCase):
             player.wait_for(lambda: "/waits" not in Graph().nodes, "roscpp shuts down")
             self.assertEqual(player.stop(signal.SIGQUIT), -signal.SIGQUIT)
 
-    @proves("In practice the clock jumps back when a bag is played in a loop.")
     def test_loop_turns_the_clock_back(self):
         times = []
         clock = rospy.Subscriber("/clock", Clock, lambda msg: times.append(msg.clock))
@@ -186,11 +157,6 @@ class TestBags(unittest.TestCase):
             wait_until(lambda: times != sorted(times), "an earlier time")
             self.assertEqual(player.stop(), 0)
 
-    @proves(
-        "Cause: /use_sim_time is true, and nobody publishes /clock: a simulator has ended, or a "
-        "bag is played without --clock.",
-        "Fix: with rosbag play --clock, the time of all nodes is that of the bag.",
-    )
     def test_clock(self):
         rospy.set_param("/use_sim_time", True)
         self.addCleanup(rospy.delete_param, "/use_sim_time")
@@ -208,13 +174,6 @@ class TestBags(unittest.TestCase):
                 begin, end = opened.get_start_time(), opened.get_end_time()
             self.assertTrue(begin <= log_line.parse(line).simulated <= end, line)
 
-    @proves(
-        "Symptom: the file's name ends in .bag.active, and rosbag info says ERROR bag unindexed.",
-        "Cause: the recording was killed.",
-        "rosbag record completes the index when it ends.",
-        "What was still in memory is lost.",
-        "A bag that was not closed needs rosbag reindex.",
-    )
     def test_killed(self):
         self.assertEqual(self.killed_code, -signal.SIGKILL)
         bag = self.path("killed.bag.active")

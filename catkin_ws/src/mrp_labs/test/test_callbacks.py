@@ -12,7 +12,6 @@ from mrp_testing import log_line
 from mrp_testing.lab import PACKAGE, Lab
 from mrp_testing.nodes import program
 from mrp_testing.process import LIVE, Process
-from mrp_testing.proves import proves
 from mrp_testing.waiting import wait_until
 from std_msgs.msg import String, UInt32
 
@@ -35,16 +34,6 @@ class TestCallbacks(unittest.TestCase):
     def setUpClass(cls):
         rospy.init_node("test_callbacks")
 
-    @proves(
-        "What you see: without a lock, the total stays behind.",
-        "With a lock, each message is counted.",
-        "Why: several threads are in the callback at once.",
-        "They read the same total, and the one that writes last overwrites what the others have "
-        "added.",
-        "What two threads change needs a lock.",
-        "Two callbacks add up what they receive.",
-        "With a lock all is counted; without one, values get lost.",
-    )
     def test_shared_without_lock(self):
         with Lab("shared_without_lock.launch", extra_env=LIVE) as lab:
 
@@ -65,15 +54,6 @@ class TestCallbacks(unittest.TestCase):
             lab.wait_for(lambda: len(locked()) >= len(unlocked()), "both have counted")
             self.assertEqual(locked(), list(range(1, len(locked()) + 1)))
 
-    @proves(
-        "With several threads that works:",
-        "What you see: the node with one thread asks once, and then does nothing any more.",
-        "It logs no error.",
-        "Why: the answer comes from a callback, too, and the only thread waits in the first one.",
-        "A callback must not wait for another callback of its thread.",
-        "A callback that calls a service of its own node waits for ever, unless another thread "
-        "answers.",
-    )
     def test_service_in_callback(self):
         waits, *answer = (f"/service/{node}" for node in ("one_thread", "two_threads", "in_python"))
         with Lab("service_in_callback.launch", extra_env=LIVE) as lab:
@@ -85,16 +65,6 @@ class TestCallbacks(unittest.TestCase):
                 self.assertEqual(answered, asked.replace("asks", "has the answer"))
             self.assertEqual(len(lab.logged(waits)), 1, "it asks once, and waits for good")
 
-    @proves(
-        "What you see: in Python the number doubles 31 times, and the next one is too large for "
-        "the message: bad callback, with a traceback.",
-        "In C++ no number is too large: it becomes 0, and the node sends zeros as fast as it can.",
-        "The console says nothing about it.",
-        "Why: what the callback publishes comes back to it as the next message.",
-        "rosnode info shows a topic of this kind under both Publications and Subscriptions.",
-        "A callback must not publish on a topic to which it listens.",
-        "A callback that publishes on the topic it listens to calls itself, again and again.",
-    )
     def test_callback_that_answers_itself(self):
         error = "rospy.exceptions.ROSSerializationException: field data exceeds specified width"
         with values_on("/feedback_cpp/number") as cpp, values_on("/feedback_py/number") as py, Lab(
@@ -115,26 +85,12 @@ class TestCallbacks(unittest.TestCase):
                 topics = rf"^{heading}: *\n( \* .*\n)*? \* /feedback_cpp/number \[std_msgs/UInt32\]"
                 self.assertRegex("\n".join(info.lines), re.compile(topics, re.MULTILINE))
 
-    @proves(
-        "A late subscriber gets 2, though the node has published 1:",
-        "Why: a latched publisher in Python keeps your object, and not what it was.",
-        "A latched message that you change is sent as it is then.",
-    )
     def test_changed_message(self):
         with Process(program(PACKAGE, "changed_message.py"), extra_env=LIVE) as node:
             node.wait_for(lambda: log_line.texts(node.lines), "it has published 1")
             with values_on("/great_topic") as values:
                 wait_until(lambda: values == [2], lambda: f"2, which it never published: {values}")
 
-    @proves(
-        'publish takes a message, or the values of its fields: publish(String("a")) and '
-        'publish("a") send the same.',
-        "Each of these fails:",
-        "field data must be unsigned integer type",
-        "field data must be of type bytes or an ascii string",
-        "Invalid number of arguments, args should be ['data']",
-        "expected [uint32] but got [std_msgs/String]",
-    )
     def test_what_publish_takes(self):
         """The short forms of publish, and what rospy says of wrong ones."""
         number = rospy.Publisher("/number", UInt32, queue_size=10)

@@ -10,7 +10,6 @@ import rostest
 from mrp_testing import log_line
 from mrp_testing.clock import TurnedClock
 from mrp_testing.lab import PACKAGE, Lab
-from mrp_testing.proves import proves
 
 NODES = ("/coarse_clock/rate_cpp", "/coarse_clock/rate_py")
 STEP = 1.0  # seconds; the loops have a period of 0.1
@@ -22,15 +21,6 @@ class TestCoarseClock(unittest.TestCase):
     def setUpClass(cls):
         rospy.init_node("test_coarse_clock")
 
-    @proves(
-        "A simulated clock goes on in steps: with each message on /clock.",
-        "In this lab such a step is longer than the period of the loops:",
-        "Where /clock comes only every 10 periods, each message lets the loop come round twice at "
-        "once, and no more.",
-        "For the second turn, sleep finds its time over and does not block.",
-        "A loop that is faster than the clock does not come round as often as its rate says, and "
-        "does not catch up.",
-    )
     def test_a_loop_faster_than_the_clock(self):
         with TurnedClock() as clock, Lab("loop_coarse_clock.launch", "clock:=false") as lab:
 

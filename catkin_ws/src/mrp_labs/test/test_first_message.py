@@ -11,7 +11,6 @@ import unittest
 
 import rostest
 from mrp_testing.lab import PACKAGE, Lab, path_of
-from mrp_testing.proves import proves
 
 LATE = ("late_cpp", "late_py")
 PUBLISHERS = ("publisher_cpp", "publisher_py")
@@ -58,38 +57,6 @@ class TestFirstMessage(unittest.TestCase):
         lab.wait_for(lambda: len(bursts()) >= 2, f"{publisher} publishes twice")
         self.assertEqual(bursts()[:2], ["published 1 to 3", "published 4 to 6"], publisher)
 
-    @proves(
-        "You may call publish in any function: in another callback, in a loop, or once in main.",
-        "For example, a node may publish in the function that ROS calls when a subscriber "
-        "connects.",
-        "The first number of a publisher may be missing, because a publisher does not wait for "
-        "its subscribers.",
-        "No queue holds a message for a subscriber that is not there yet: latch.",
-        "A publisher sends each message to the subscribers that are connected at that moment.",
-        "In this lab each publisher sends three numbers at once, waits, and sends the next three.",
-        "The subscribers connect too late for the first three numbers:",
-        "Wait for all subscribers before the first message: no subscriber loses anything.",
-        "Wait for one subscriber: this one loses nothing, and later ones lose what came before "
-        "them.",
-        "Publish when a subscriber connects, in the connect callback: the subscriber gets what "
-        "the callback publishes, here the last message:",
-        "Latch the publisher: the subscriber gets the last message.",
-        "A late subscriber loses what was published before it connected.",
-        "Only one of the four cures saves every message: to wait for all subscribers.",
-        "Symptom: a subscriber begins with the second value, or with a later one.",
-        "Cause: the publisher sent the first value before the subscriber was connected.",
-        "The first message can be lost: a subscriber that comes later begins with a later value.",
-        "A publisher that publishes in its connect callback gives a late subscriber that message: "
-        "here the last one.",
-        "A latched publisher gives a late subscriber one old message: the last one.",
-        "A late subscriber misses every message that was published before it came.",
-        "When a publisher waits for all its subscribers, none of them misses a message: each "
-        "begins with 1.",
-        "When a publisher waits for one subscriber, only that one misses nothing: later ones miss "
-        "the first messages.",
-        "Sometimes a first value is missing, because a publisher does not wait until its "
-        "subscribers have connected.",
-    )
     def test_loss_and_cures(self):
         with Lab(
             "first_message_lost.launch",

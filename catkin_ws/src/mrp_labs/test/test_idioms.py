@@ -22,7 +22,6 @@ from mrp_testing.graph import Graph
 from mrp_testing.lab import PACKAGE
 from mrp_testing.nodes import program, receivers_of
 from mrp_testing.process import LIVE, Process
-from mrp_testing.proves import proves
 from mrp_testing.waiting import DEADLINE, wait_until, within
 from rosgraph_msgs.msg import Log
 from std_msgs.msg import String, UInt32
@@ -173,9 +172,6 @@ class TestIdioms(unittest.TestCase):
     def setUpClass(cls):
         rospy.init_node("test_idioms")
 
-    @proves(
-        "A part with several topics can have a namespace of its own, below the node's:",
-    )
     def test_names(self):
         names = [idiom for idiom in TOPICS if idiom.startswith("name_")]
         for idiom, language in itertools.product(names, LANGUAGES):
@@ -205,10 +201,6 @@ class TestIdioms(unittest.TestCase):
                         two.wait_for_values(idiom, 2)
                         one.wait_for_values(idiom, 1)
 
-    @proves(
-        "The number is that of the connections, which rosnode info shows, too.",
-        "get_num_connections and getNumSubscribers say how many listen.",
-    )
     def test_wait_for_subscribers(self):
         for language in LANGUAGES:
             with Idiom("wait_for_subscribers", language) as idiom, LabSubscriber("one") as one:
@@ -291,18 +283,6 @@ class TestIdioms(unittest.TestCase):
                 subscriber.wait_for(2, 40, 600)
                 self.assertEqual(subscriber.senders, {idiom.name})
 
-    @proves(
-        "Its sleep waits until the next turn is due.",
-        "So there is one message in each period.",
-        "The condition asks whether the node is to end, with rospy.is_shutdown() or ros::ok().",
-        "The message is a std_msgs/String, so the program makes a text out of the number first.",
-        "Neither changes what is sent.",
-        "The talker says one text in each period.",
-        "Under a simulated clock, sleep raises rospy.ROSInterruptException.",
-        "rate.sleep() raises nothing.",
-        "ros::ok() is false from then on, and main returns 0, also under a clock that stands "
-        "still.",
-    )
     def test_loop_talker(self):
         for language in LANGUAGES:
             with TurnedClock() as clock, contextlib.closing(
@@ -321,12 +301,6 @@ class TestIdioms(unittest.TestCase):
                 first = int(values[0].split()[1])
                 self.assertEqual(values, [f"hello {first + i}" for i in range(len(values))])
 
-    @proves(
-        "The other node needs no loop.",
-        "It spins, and ROS calls its callback for each message:",
-        "Ctrl-C tells ROS to end the node, and your loop must ask.",
-        "The condition then ends the loop.",
-    )
     def test_loop_talker_and_listener(self):
         for language, other in (LANGUAGES, LANGUAGES[::-1]):
             with Idiom("loop_listener", language) as listener, contextlib.closing(
@@ -346,10 +320,6 @@ class TestIdioms(unittest.TestCase):
                 count = len(said())
                 wait_until(lambda: len(said()) > count, lambda: f"one more line: {said()}")
 
-    @proves(
-        "So each turn has the newest value.",
-        "It calls those of all messages that have arrived, and returns.",
-    )
     def test_loop_with_callbacks(self):
         for language in LANGUAGES:
             with TurnedClock() as clock, contextlib.closing(

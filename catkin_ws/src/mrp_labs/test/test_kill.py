@@ -16,7 +16,6 @@ from mrp_testing.lab import PACKAGE, Lab
 from mrp_testing.master import master
 from mrp_testing.nodes import pid_of
 from mrp_testing.ports import free_port
-from mrp_testing.proves import proves
 from mrp_testing.waiting import wait_until
 
 PUBLISHERS = ("/kill/publisher_cpp", "/kill/publisher_py")
@@ -63,13 +62,6 @@ def kill(lab, pid):
 
 
 class TestKill(unittest.TestCase):
-    @proves(
-        "The master's list is out of date.",
-        "The other nodes go on and miss nothing.",
-        "The master still lists the dead node.",
-        "A node that is killed does not stop the others; with respawn:=true, roslaunch starts it "
-        "again.",
-    )
     def test_the_others_go_on(self):
         with Lab("kill.launch") as lab:
             wait_for_more(lab, PAIRS)
@@ -86,14 +78,6 @@ class TestKill(unittest.TestCase):
             self.assertIsNone(pid_of("/kill/publisher_cpp"))
             self.assertIsNone(pid_of("/kill/subscriber_py"))
 
-    @proves(
-        'With respawn="true" in the launch file, roslaunch starts the node again, and its '
-        "connections come back by themselves.",
-        "A publisher that comes back begins to count anew.",
-        'respawn="true" brings a node back.',
-        "A node that is killed does not stop the others; with respawn:=true, roslaunch starts it "
-        "again.",
-    )
     def test_respawn(self):
         with Lab("kill.launch", "respawn:=true") as lab:
             wait_for_more(lab, PAIRS)
@@ -112,12 +96,6 @@ class TestKill(unittest.TestCase):
                 fallen = [after for before, after in zip(found, found[1:]) if after < before]
                 self.assertEqual(len(fallen), 1, f"{subscriber}: {found}")
 
-    @proves(
-        'With required="true", roslaunch ends all its nodes when this one ends.',
-        'required="true" ends the others with it.',
-        'When a node with required="true" dies, roslaunch ends all its nodes; when another node '
-        "dies, the rest go on.",
-    )
     def test_required(self):
         # Two at a time, each with a master of its own.
         with contextlib.ExitStack() as stack:
@@ -137,25 +115,6 @@ class TestKill(unittest.TestCase):
                 for one in pid.values():
                     wait_until(lambda: not os.path.exists(f"/proc/{one}"), f"{one} of {lab} ends")
 
-    @proves(
-        "The nodes find each other through the master.",
-        "The messages go straight from node to node, so they keep flowing when the master ends.",
-        "The master brings publishers and subscribers together, and is not on the messages' way.",
-        "Nodes that are connected go on when the master ends, but a node that starts after a new "
-        "master hears nothing of the old ones.",
-        "Nodes that are already connected go on.",
-        "A new master knows nothing of them: a node registers each publisher and subscriber once, "
-        "when it makes it.",
-        "A node that starts later receives nothing from the old ones.",
-        "Messages go from node to node: connected nodes do not need the master.",
-        "The connection between the two nodes is still there, so messages flow.",
-        "But the new master does not know the nodes, and rostopic list asks the master for its "
-        "topics.",
-        "One master is enough: no message passes through it.",
-        "Messages do not go through it.",
-        "When one roscore ends and another starts, connected nodes stay connected, but old and "
-        "new nodes never find each other.",
-    )
     def test_master(self):
         port = free_port()
         uri = f"http://localhost:{port}"

@@ -9,7 +9,6 @@ import rostest
 from mrp_testing.graph import Graph
 from mrp_testing.lab import PACKAGE, Lab, path_of
 from mrp_testing.process import Process
-from mrp_testing.proves import proves
 from std_msgs.msg import UInt32
 
 SUBSCRIBERS = ("subscriber_cpp", "subscriber_py")
@@ -21,31 +20,6 @@ class TestLatch(unittest.TestCase):
     def setUpClass(cls):
         rospy.init_node("test_latch")
 
-    @proves(
-        "A publisher can be latched: then it keeps its last message for subscribers that come "
-        "later.",
-        "A latched publisher keeps its last message, and sends it to each subscriber that "
-        "connects later.",
-        "The argument latch=True of rospy.Publisher latches a publisher.",
-        "If latched publishers of several nodes share a topic, a subscriber gets the last message "
-        "of each.",
-        "The publisher keeps the message, not the topic: when the publisher ends, the message is "
-        "gone.",
-        "Two of the four publishers in this lab are latched.",
-        "A late subscriber begins with the last message of these two, and then hears all four "
-        "publishers:",
-        "A latch saves one message of each publisher, for as long as the publisher runs.",
-        "It gets two: the last message of each publisher.",
-        "The subscriber then gets the last number of each.",
-        "Not the topic keeps a message, but each latched publisher: a late subscriber gets the "
-        "last message of each.",
-        "A late subscriber gets the last message of each latched publisher, and no old message of "
-        "the others.",
-        "The publisher keeps its latched message, not the topic: when the publisher ends, the "
-        "message is gone.",
-        "A subscriber that restarts gets the latched messages again; a publisher that restarts "
-        "sends its new one to all subscribers.",
-    )
     def test_latch(self):
         with Lab(
             "latch.launch", path_of("latch_restart.launch"), path_of("latch_end.launch")

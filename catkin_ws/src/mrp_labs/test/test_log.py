@@ -18,7 +18,6 @@ from mrp_testing.lab import PACKAGE, Lab
 from mrp_testing.master import master, uri_of
 from mrp_testing.ports import free_port
 from mrp_testing.process import LIVE, Process
-from mrp_testing.proves import proves
 from mrp_testing.waiting import within
 
 DECIMALS = {"py": 6, "cpp": 9}  # of the time in a line: so each shows its language
@@ -82,50 +81,12 @@ class TestLog(unittest.TestCase):
                 found = [one for one in log_line.texts(lab.lines) if one == text]
                 self.assertEqual(len(found), len(LOGGERS), str(lab))
 
-    @proves(
-        "No level ends the node.",
-        "In these lines, a space stands before INFO and WARN in C++, and none in Python.",
-        "Debug and info lines go to the standard output, all others to the standard error output.",
-        "A line with once or throttle in its call is not repeated at each turn.",
-        "Symptom: of the five levels, the console lacks one: debug.",
-        "Cause: each logger has a level, and drops what is below it.",
-        "A node starts with the level info.",
-        "Fix: while the node runs, set its logger's level:",
-        "The logger of a Python node is rosout, and that of a C++ node is ros. and its package's "
-        "name.",
-        "Debug lines need a level: the logger's name is rosout in Python, and ros.PACKAGE in C++.",
-        "rosout is the logger of Python nodes.",
-        "A node shows no debug line until somebody sets the level of its logger, which has "
-        "another name in C++ than in Python.",
-    )
     def test_levels_py(self):
         self.check("py")
 
-    @proves(
-        "No level ends the node.",
-        "In these lines, a space stands before INFO and WARN in C++, and none in Python.",
-        "Debug and info lines go to the standard output, all others to the standard error output.",
-        "A line with once or throttle in its call is not repeated at each turn.",
-        "Symptom: of the five levels, the console lacks one: debug.",
-        "Cause: each logger has a level, and drops what is below it.",
-        "A node starts with the level info.",
-        "Fix: while the node runs, set its logger's level:",
-        "The logger of a Python node is rosout, and that of a C++ node is ros. and its package's "
-        "name.",
-        "Debug lines need a level: the logger's name is rosout in Python, and ros.PACKAGE in C++.",
-        "A node shows no debug line until somebody sets the level of its logger, which has "
-        "another name in C++ than in Python.",
-    )
     def test_levels_cpp(self):
         self.check("cpp")
 
-    @proves(
-        "Every Python node and every roslaunch writes files into ~/.ros/log, or into the folder "
-        "in ROS_LOG_DIR.",
-        "Cause: roslaunch only warns of old logs: it deletes none.",
-        "Fix: type rosclean purge.",
-        "rosclean purge deletes old log files.",
-    )
     def test_log_files(self):
         with tempfile.TemporaryDirectory() as folder:
             env = {"ROS_LOG_DIR": folder}
@@ -144,15 +105,6 @@ class TestLog(unittest.TestCase):
             self.assertEqual(run("rosclean", "purge", "-y", env=env), 0)
             self.assertFalse(os.path.exists(os.path.join(folder, "old.log")))
 
-    @proves(
-        "What you see: after Ctrl-C the node prints no more lines, and does not end.",
-        "A second Ctrl-C does not end it either.",
-        "Why: rospy asks the master for a parameter at each line of log.",
-        "At Ctrl-C, the same thread must call the master to end the node, and waits for itself.",
-        "So it happens in a node whose main thread logs in a loop.",
-        "Fix: set the parameter in your launch file, and it asks only once:",
-        "A node that logs in its callbacks, and whose main thread spins, ends at Ctrl-C.",
-    )
     def test_ctrl_c_in_a_log_call(self):
         self.press_ctrl_c(LOGS, asks_each_time=True, ends=False)
         self.press_ctrl_c(LOGS, asks_each_time=False, ends=True)

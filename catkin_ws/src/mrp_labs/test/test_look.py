@@ -15,7 +15,6 @@ import rostest
 from mrp_testing.lab import PACKAGE, Lab
 from mrp_testing.nodes import connections_of, pid_of
 from mrp_testing.process import LIVE, Process
-from mrp_testing.proves import proves
 
 PUBLISHERS = ("/look/publisher_cpp", "/look/publisher_py")
 SUBSCRIBERS = ("/look/subscriber_cpp", "/look/subscriber_py")
@@ -69,29 +68,6 @@ def plays_to_both():
 
 
 class TestLook(unittest.TestCase):
-    @proves(
-        "This name replaces the one in the code.",
-        "The last lines are the connections: a publisher is connected to each subscriber, "
-        "whatever its language.",
-        "With -n and a number it ends after so many messages:",
-        "Two publishers with two messages a second each make four:",
-        "rosnode list and rosnode info show the nodes; rostopic list, type and info show the "
-        "topics.",
-        "rostopic info with the name of the topic.",
-        "If you do not know that name, rosnode info shows to what the node subscribes.",
-        "rosnode list still shows it.",
-        "The number is that of the connections, which rosnode info shows, too.",
-        "rosnode ping tests that path.",
-        "rostopic info shows the nodes of a topic, and rosnode info shows a node's connections.",
-        "It prints about 12: the Python publisher still sends two messages a second, and rostopic "
-        "hz counts both publishers.",
-        "roslaunch hides it, because it gives each node the name in the launch file.",
-        "The commands that look at the graph are on inspecting, and a lab runs them.",
-        "Four nodes to look at with rosnode, rostopic, rosgraph, roswtf and rosbag: C++ sends "
-        "even numbers, Python odd ones.",
-        "Other machines can still reach the XML-RPC port of each C++ node: use a network that you "
-        "trust.",
-    )
     def test_commands(self):
         with Lab("look.launch") as running:
             wait_until_connected(running)
@@ -186,9 +162,6 @@ class TestLook(unittest.TestCase):
         # It is dead, and still on the list.
         self.assertIn("/look/publisher_py", nodes)
 
-    @proves(
-        "rosbag play is a publisher like any other: both subscribers get every message of the bag.",
-    )
     def test_bag(self):
         with tempfile.TemporaryDirectory() as folder:
             bag = os.path.join(folder, "counts.bag")

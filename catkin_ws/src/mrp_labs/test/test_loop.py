@@ -14,7 +14,6 @@ from mrp_testing import log_line
 from mrp_testing.clock import TurnedClock
 from mrp_testing.lab import PACKAGE, Lab
 from mrp_testing.nodes import receivers_of
-from mrp_testing.proves import proves
 
 STEP = 0.5  # seconds by which the clock is turned
 MESSAGES = 63
@@ -29,18 +28,6 @@ class TestLoop(unittest.TestCase):
     def setUpClass(cls):
         rospy.init_node("test_loop")
 
-    @proves(
-        "In this lab each turn works for half of its period, which is a second:",
-        "A timer keeps its period, and so does a loop with a rate.",
-        "After 60 seconds each has published 60 messages.",
-        "The sleep of a rate waits for what is left of the period.",
-        "A loop with rospy.sleep(1.0) or ros::Duration(1.0).sleep() drifts: it adds the work to "
-        "the period.",
-        "After 60 seconds it has published 40 messages.",
-        "A rate does not drift, and a plain sleep does.",
-        "When a timer and a loop with a rate have come round 60 times, a loop that sleeps a "
-        "period has come round 40 times.",
-    )
     def test_drift(self):
         keep, drift = (
             [f"/loop_drift/{kind}_{language}" for kind in kinds for language in ("cpp", "py")]
@@ -74,21 +61,6 @@ class TestLoop(unittest.TestCase):
                 for before, after in zip(found, found[1:]):
                     self.assertGreater(after - before, 1.5 - 0.01, node)
 
-    @proves(
-        "Here only ros::spinOnce calls the callbacks.",
-        "In C++ the loop must come round often.",
-        "What arrives between two calls of spinOnce waits in the subscriber's queue.",
-        "When the queue is full, the oldest message is dropped.",
-        "In this lab a publisher sends four messages a second.",
-        "One C++ subscriber calls spinOnce every 0.1 s, the other one every 2 s.",
-        "Each has a queue of 4:",
-        "The slow loop gets the four newest messages of each two seconds, late and all at once.",
-        "The quick loop misses none, and neither does a subscriber in Python.",
-        "The publisher of the lab with spinOnce sends four messages a second.",
-        "It receives the four newest messages of each two seconds.",
-        "A loop that calls spinOnce too seldom loses messages: its queue keeps the newest of "
-        "them, and no more.",
-    )
     def test_spin_once_too_seldom(self):
         publisher, often, seldom, python = (
             f"/loop_spin_once/{name}"

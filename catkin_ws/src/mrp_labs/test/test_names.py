@@ -14,7 +14,6 @@ from mrp_testing.graph import Graph
 from mrp_testing.lab import PACKAGE, Lab
 from mrp_testing.nodes import pid_of, program
 from mrp_testing.process import LIVE, Process
-from mrp_testing.proves import proves
 from mrp_testing.waiting import wait_until
 
 CPP, PY = "/one_name/publisher_cpp", "/one_name/publisher_py"
@@ -86,16 +85,6 @@ class TestNames(unittest.TestCase):
         if rospy.has_param(DISABLED):
             rospy.delete_param(DISABLED)
 
-    @proves(
-        "Each node has a name of its own in the graph.",
-        "What you see: the nodes of the first start end, and those of the second start go on.",
-        "Why: the master keeps one node under a name.",
-        "If another node registers the name, the master asks the node that had it to shut down.",
-        "So the exit code is 0, and roslaunch says that all is well.",
-        "Or set the parameter: then each node asks for it only once, and the newer node goes on.",
-        "new node registered with same name: look for a second start of the same node.",
-        "The newer of two nodes of one name ends the older.",
-    )
     def test_the_newer_ends_the_older(self):
         with started_twice("asked_once:=true") as (older, newer):
             for node in (CPP, PY):
@@ -105,15 +94,6 @@ class TestNames(unittest.TestCase):
                 wait_until_published(newer, node, 3)
                 self.assertEqual(ended_by_name(newer, node), [], str(newer))
 
-    @proves(
-        "In Python, the newer node may end as well, with the same reason in its console.",
-        "Then none of the name is left:",
-        "Why: the older node still logs while it shuts down.",
-        "So the master asks the newer node to shut down, too.",
-        "In Python, start it a third time: the two may have ended each other.",
-        "Perhaps the newer one, and perhaps neither.",
-        "In Python, what the older logs at its end may end the newer, too.",
-    )
     def test_a_line_of_log_of_the_older_ends_the_newer(self):
         with Process(*GOODBYE, extra_env=LIVE) as older:
             older.wait_for(lambda: older.lines, "the older one is up")
@@ -122,12 +102,6 @@ class TestNames(unittest.TestCase):
                     self.assertEqual(node.wait(), 0)
                     self.assertEqual(len(ended_by_name(node, "/goodbye")), 1, str(node))
 
-    @proves(
-        "The master can only end a node that it reaches.",
-        "With a wrong ROS_HOSTNAME, the older node goes on beside the newer one, and neither logs "
-        "anything about it.",
-        "You see it by messages that come from both.",
-    )
     def test_both_go_on_when_the_master_cannot_reach_the_older(self):
         with started_twice("asked_once:=true", first=["hostname:=no-such-host"]) as labs:
             for lab in labs * 2:
@@ -135,10 +109,6 @@ class TestNames(unittest.TestCase):
                     wait_until_published(lab, node, 3)
                     self.assertEqual(ended_by_name(lab, node), [], str(lab))
 
-    @proves(
-        "With respawn:=true, roslaunch starts each node again that has ended.",
-        "Then the nodes of both starts end each other for ever.",
-    )
     def test_respawned_nodes_end_each_other_for_ever(self):
         # Ctrl-C may find one that is just starting.
         with started_twice("respawn:=true", traceback=True) as labs:
@@ -146,16 +116,6 @@ class TestNames(unittest.TestCase):
                 ends = len(ended_by_name(lab, CPP))
                 lab.wait_for(lambda: len(ended_by_name(lab, CPP)) > ends, f"{CPP} ends again")
 
-    @proves(
-        "Others find its parameters by that name, and commands such as rosnode kill find the node.",
-        "Then ROS puts a number behind the name:",
-        "Two such nodes have different names, and so both go on.",
-        "What you see: the node does not get its parameter.",
-        "rosnode kill says Unknown node(s).",
-        "Why: the parameter is under /anonymous_name, and that is not the node's name.",
-        "Or the command line gives the parameter: _rate:=7 reaches the node whatever its name is.",
-        "With anonymous=True both go on.",
-    )
     def test_anonymous_name(self):
         rospy.set_param("/anonymous_name/rate", 5)
         self.addCleanup(rospy.delete_param, "/anonymous_name")
@@ -180,14 +140,6 @@ class TestNames(unittest.TestCase):
                     if node.code is None:
                         self.assertEqual(node.stop(), 0, str(node))
 
-    @proves(
-        "In a launch file, the attribute name counts: roslaunch starts the node under that name, "
-        "without a number.",
-        "There, $(anon name) puts a number behind it, and roslaunch still gives the node its "
-        "parameters:",
-        "roslaunch names the nodes: anonymous=True in their code adds no number, and $(anon) in "
-        "the launch file does.",
-    )
     def test_roslaunch_names_what_is_anonymous(self):
         topic = "/anonymous_name/great_topic"
         with Lab("names_anonymous.launch", extra_env=LIVE) as lab:

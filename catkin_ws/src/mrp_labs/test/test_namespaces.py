@@ -8,7 +8,6 @@ import rospy
 import rostest
 from mrp_testing.graph import Graph
 from mrp_testing.lab import PACKAGE, Lab
-from mrp_testing.proves import proves
 from std_msgs.msg import UInt32
 
 GROUPS = ("/by_code", "/by_remap")
@@ -21,25 +20,6 @@ class TestNamespaces(unittest.TestCase):
     def setUpClass(cls):
         rospy.init_node("test_namespaces")
 
-    @proves(
-        "It stands in the namespace in which the node is started.",
-        "great_topic does not begin with a slash, so it is relative.",
-        "It stands in the node's own namespace, which is the node's full name.",
-        "A group's namespace goes in front of relative names.",
-        "In the group by_remap, they ask for another name, and a <remap> in the launch file "
-        "replaces it by such a name.",
-        "Each node prints its topic's full name, and in brackets the name that it asked for.",
-        "A name without a slash or a ~ in front, such as great_topic, is relative: ROS puts the "
-        "node's namespace in front of it.",
-        "In a launch file, that namespace is the group's.",
-        "Bad: nodes in different groups do not meet, unless you remap a name.",
-        "A relative name follows the group.",
-        "ROS puts the namespace in front of it (namespaces).",
-        "Its attribute ns puts a namespace in front of all relative names in the group.",
-        "A plain NodeHandle is in the group's namespace, and a NodeHandle for ~ is in the node's "
-        "own.",
-        "A relative name is in the group's namespace, in the code as in a remap.",
-    )
     def test_group(self):
         with Lab("namespaces_group.launch") as lab:
             self.check_flow(lab, {group: nodes("publisher", [group]) for group in GROUPS})
@@ -47,17 +27,6 @@ class TestNamespaces(unittest.TestCase):
                 for node in nodes("publisher", [group]) + nodes("subscriber", [group]):
                     self.check_names(lab, node, group + "/great_topic", asked)
 
-    @proves(
-        "A name that begins with a slash stays as it is.",
-        "In the group by_remap, they ask for another name, and a <remap> in the launch file "
-        "replaces it by such a name.",
-        "Bad: nodes in different groups do not meet, unless you remap a name.",
-        "A name with a slash in front, such as /my_global_namespace/great_topic, is global: no "
-        "group changes it.",
-        "Good: the nodes of both groups meet on one topic.",
-        "A global name is the same everywhere: no group can move it.",
-        "A name with / in front is in no group's namespace: both groups share one topic.",
-    )
     def test_global(self):
         with Lab("namespaces_global.launch") as lab:
             self.check_flow(lab, {group: nodes("publisher") for group in GROUPS})
@@ -65,21 +34,6 @@ class TestNamespaces(unittest.TestCase):
                 for node in nodes("publisher", [group]) + nodes("subscriber", [group]):
                     self.check_names(lab, node, GLOBAL, asked)
 
-    @proves(
-        "This name is also the node's own namespace, for what belongs to this one node.",
-        "In the group by_remap, they ask for another name, and a <remap> in the launch file "
-        "replaces it by such a name.",
-        "A private name is in the node's own namespace: the group's namespace and then the node's "
-        "name.",
-        "In Python it has a ~ in front, as in ~great_topic.",
-        'In C++ you ask a handle for the node\'s namespace, ros::NodeHandle("~"), for great_topic.',
-        "Here four nodes have four topics, and no subscriber receives anything from a publisher.",
-        "Good: nodes do not meet by chance, even if all of them ask for the same name.",
-        "Bad: to hear a publisher, another node must ask for the full name of its topic, such as "
-        "/by_code/publisher_py/great_topic.",
-        "A private name is in the namespace of one node.",
-        "A name with ~ in front is in the node's own namespace: no node hears another.",
-    )
     def test_private(self):
         with Lab("namespaces_private.launch") as lab:
             publishers, subscribers = nodes("publisher"), nodes("subscriber")

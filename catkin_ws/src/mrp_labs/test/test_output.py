@@ -12,7 +12,6 @@ from mrp_testing import contract
 from mrp_testing.graph import Graph
 from mrp_testing.lab import PACKAGE
 from mrp_testing.process import LIVE, Process
-from mrp_testing.proves import proves
 from std_msgs.msg import UInt32
 
 LAUNCH = """
@@ -75,29 +74,16 @@ class TestLaunched(unittest.TestCase):
         self.assertFalse(self.has(hidden), str(self.console))
         self.assertIn(hidden, self.logged)
 
-    @proves(
-        "Without it, only warnings and errors come to the screen, and the rest goes into a log "
-        "file.",
-    )
     def test_without_screen_lines_go_into_a_log_file_cpp(self):
         self.check(contract.PUBLISHER_CPP, "cpp")
 
-    @proves(
-        "Without it, only warnings and errors come to the screen, and the rest goes into a log "
-        "file.",
-    )
     def test_without_screen_lines_go_into_a_log_file_py(self):
         self.check(contract.PUBLISHER_PY, "py")
 
-    @proves(
-        "Without it, only warnings and errors come to the screen, and the rest goes into a log "
-        "file.",
-    )
     def test_without_screen_errors_are_on_the_console_all_the_same(self):
         for wrong in ("/wrong_cpp", "/wrong_py"):
             self.assertTrue(self.has(f"{wrong}: parameter ~period is -1"), str(self.console))
 
-    @proves("This name replaces the one in the code.")
     def test_name_in_the_launch_file_replaces_that_in_the_code(self):
         self.assertEqual(self.nodes, NODES)
 
@@ -120,15 +106,9 @@ class TestPipe(unittest.TestCase):
         texts = list(map(contract.logged_text, process.lines))
         self.assertEqual(texts, [node.start_line.format("/" + node.name)])
 
-    @proves("The first is for C++, the second for Python.")
     def test_lines_wait_in_the_buffer_of_a_pipe_cpp(self):
         self.check(contract.PUBLISHER_CPP)
 
-    @proves(
-        "The second one is for Python.",
-        "So do those of a Python node.",
-        "The first is for C++, the second for Python.",
-    )
     def test_lines_wait_in_the_buffer_of_a_pipe_py(self):
         self.check(contract.PUBLISHER_PY)
 

@@ -9,7 +9,6 @@ import rospy
 import rostest
 from mrp_labs.msg import Count
 from mrp_testing.lab import PACKAGE, Lab
-from mrp_testing.proves import proves
 from mrp_testing.waiting import DEADLINE
 
 SUBSCRIBERS = ("/own_message/subscriber_cpp", "/own_message/subscriber_py")
@@ -25,12 +24,6 @@ def parts(value):
 
 
 class TestOwnMessage(unittest.TestCase):
-    @proves(
-        "The header has the time at which a message was sent, so a subscriber knows how long it "
-        "was on its way.",
-        "A message type of your own goes from C++ to Python and back; the time in its header "
-        "gives the latency.",
-    )
     def test_from_each_language_to_each(self):
         with Lab("own_message.launch") as lab:
             for subscriber in SUBSCRIBERS:

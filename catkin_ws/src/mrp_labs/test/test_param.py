@@ -14,7 +14,6 @@ from mrp_testing import log_line
 from mrp_testing.lab import PACKAGE, Lab, path_of
 from mrp_testing.nodes import program
 from mrp_testing.process import LIVE, Process
-from mrp_testing.proves import proves
 
 PROGRAMS = {"py": "read_parameters.py", "cpp": "read_parameters"}
 
@@ -41,23 +40,6 @@ class TestParam(unittest.TestCase):
             lambda: last_of(process, node) == says(*expected), f"{node}: {says(*expected)}"
         )
 
-    @proves(
-        "The parameter robot_name has a relative name, so all nodes of a group read the same one.",
-        "The parameter speed is private: each node has its own.",
-        "Its full name has the node's name in it, such as /param_scope/own_py/speed.",
-        "A <param> in a <node> is private to this node.",
-        "A <param> outside of a <node> is relative to the group.",
-        "So the 9.0 reaches no node's private speed.",
-        "With ~ in front, such a <param> is private to each node below it.",
-        "The nodes above it do not get it.",
-        "If somebody sets the parameter meanwhile, only the latter changes:",
-        "A <param> with ~ reaches only the nodes below it.",
-        "A node that reads once does not see a change.",
-        "It gets its default.",
-        "The parameter of the group is not the node's private one.",
-        "A param with ~ in front reaches the nodes below it; one without ~ is the group's, and no "
-        "node's private parameter.",
-    )
     def test_scope(self):
         with Lab("param_scope.launch") as lab:
             for language in PROGRAMS:
@@ -71,29 +53,15 @@ class TestParam(unittest.TestCase):
                 self.master.setParam(own + "/speed", 5.0)
                 self.check(lab, own, "robbie", 3.0, 5.0)
 
-    @proves(
-        "The node takes its default, and logs nothing about it.",
-        "A text in place of a number: Python gets the text, and C++ takes its default and logs "
-        "nothing.",
-    )
     def test_type_cpp(self):
         with Lab("param_type.launch") as lab:
             self.check(lab, "/param_type/text_cpp", "nobody", 1.0, 1.0)
             self.assertEqual(lab.logged("/param_type/text_cpp", ("WARN", "ERROR")), [])
 
-    @proves(
-        'In this lab the parameter speed is the text "fast":',
-        "The node gets the text.",
-        "A text in place of a number: Python gets the text, and C++ takes its default and logs "
-        "nothing.",
-    )
     def test_type_py(self):
         with Lab("param_type.launch") as lab:
             self.check(lab, "/param_type/text_py", "nobody", "fast", "fast")
 
-    @proves(
-        'Fix: write type="double" into the <param>: roslaunch then refuses the text "fast".',
-    )
     def test_type_is_double(self):
         path = pathlib.Path(path_of("param_type.launch"))
         text = path.read_text().replace('value="fast"', 'value="fast" type="double"')
@@ -104,12 +72,6 @@ class TestParam(unittest.TestCase):
                 self.assertEqual(roslaunch.wait(), 1)
         self.assertIn("could not convert string to float: 'fast'", str(roslaunch))
 
-    @proves(
-        'In a launch file, clear_params="true" in the <node> deletes the node\'s parameters '
-        "before it starts.",
-        "A parameter stays on the master when its node has ended; with clear_params the next node "
-        "begins without it.",
-    )
     def test_left(self):
         for kind, language in itertools.product(("kept", "cleared"), PROGRAMS):
             self.set(f"/param_left/{kind}_{language}/speed", 7.0)
@@ -127,10 +89,6 @@ class TestParam(unittest.TestCase):
             self.check(node, "/read_parameters", "nobody", speed, speed)
             self.assertEqual(node.stop(), 0, str(node))
 
-    @proves(
-        "With rosrun, an argument _speed:=4.0 sets the private parameter.",
-        "The master keeps a parameter when its node has ended.",
-    )
     def test_command_line(self):
         self.set("/read_parameters/speed", 1.5)
         for name in PROGRAMS.values():
@@ -138,14 +96,9 @@ class TestParam(unittest.TestCase):
             self.run_once(name, 4.0)
             self.master.setParam("/read_parameters/speed", 1.5)
 
-    @proves(
-        "Without the underscore, the argument renames speed, and sets nothing:",
-        "The node reads its default, and logs nothing about it.",
-    )
     def test_without_underscore_py(self):
         self.run_once(PROGRAMS["py"], "speed:=4.0", 1.0)
 
-    @proves("The node aborts, because a name begins with no digit.")
     def test_without_underscore_cpp(self):
         with Process(program(PACKAGE, PROGRAMS["cpp"]), "speed:=4.0") as node:
             self.assertEqual(node.wait(), -signal.SIGABRT)
@@ -155,10 +108,6 @@ class TestParam(unittest.TestCase):
             node.lines,
         )
 
-    @proves(
-        "Cause: no parameter of this name was set before the node asked for it.",
-        "Without a default, rospy.get_param raises a KeyError.",
-    )
     def test_missing_py(self):
         code = "import rospy; rospy.init_node('reader'); rospy.get_param('~speed')"
         with Process("/usr/bin/python3", "-c", code) as node:

@@ -7,7 +7,6 @@ import unittest
 
 import rostest
 from mrp_testing.lab import PACKAGE, Lab, path_of
-from mrp_testing.proves import proves
 
 LANGUAGES = ("cpp", "py")
 COUNT = 20  # messages that each publisher publishes
@@ -28,35 +27,6 @@ class TestPublisherQueue(unittest.TestCase):
         self.assertEqual(values, list(map(text_of, numbers)))
         return numbers
 
-    @proves(
-        "The node then publishes only as fast as its subscriber receives.",
-        "A message waits in a queue while it cannot be sent yet.",
-        "If a queue is full when one more message comes, the oldest message in it is dropped. "
-        "queues shows it.",
-        "The oldest one in the queue.",
-        "The new one takes a place at the end.",
-        "A message can wait in two queues, and each has its own size: at the publisher until it "
-        "is sent, and at the subscriber until the callback is free.",
-        "When it is full, it drops the oldest message.",
-        "In this lab two publishers send 20 large messages each, from a queue of 5, faster than "
-        "their subscriber's callback takes them.",
-        "The last ones were in the queue, which dropped those before them.",
-        "In rospy up to twice the size may wait, because its sending thread takes all waiting "
-        "messages at once.",
-        "A size of 0 means that the queue has no limit: it drops nothing.",
-        "A queue without a limit takes more and more of the machine's memory while messages wait "
-        "in it.",
-        "rospy also accepts queue_size=None: then there is no queue.",
-        "publish waits until the message is on its way, so no message is lost.",
-        "A full queue drops its oldest message.",
-        "0 and None have special meanings.",
-        "A publisher's queue of 0 has no limit, in both languages.",
-        "A publisher's queue that is full drops the oldest messages: the newest ones arrive.",
-        "In rospy, queue_size=None means no queue: the publisher is as slow as its subscriber, "
-        "and no message is lost.",
-        "A publisher's queue with size 0 has no limit: every message arrives, and takes memory "
-        "until then.",
-    )
     def test_publisher_queue(self):
         with Lab(
             "publisher_queue.launch",

@@ -12,16 +12,9 @@ import unittest
 import rosgraph
 import rostest
 from mrp_testing.lab import PACKAGE, Lab
-from mrp_testing.proves import proves
 
 
 class TestRefusedValue(unittest.TestCase):
-    @proves(
-        "After such an exception, every Python subscriber of this publisher stays deaf to it: it "
-        "receives none of the publisher's later messages.",
-        "After one value that rospy refuses, the publisher's Python subscribers receive nothing "
-        "more; its C++ subscribers go on.",
-    )
     def test_refused(self):
         with Lab("refused_value.launch") as lab:
             # To the second value that is refused, and past it.

@@ -19,7 +19,6 @@ from mrp_testing.master import uri_of
 from mrp_testing.nodes import program
 from mrp_testing.ports import free_port, ports_of
 from mrp_testing.process import LIVE, Process
-from mrp_testing.proves import proves
 
 ADDRESS = "127.0.0.2"  # of this machine, and not that of localhost
 ADDRESSES = ("ROS_HOSTNAME", "ROS_IP")
@@ -57,17 +56,9 @@ class TestRegister(unittest.TestCase):
             self.assertEqual(urllib.parse.urlparse(uri).hostname, host, variables)
             self.assertEqual(process.stop(), 0, str(process))
 
-    @proves(
-        "If both are set, ROS_HOSTNAME wins, and ROS ignores ROS_IP: a forgotten export "
-        "ROS_HOSTNAME=localhost in ~/.bashrc makes a correct ROS_IP useless.",
-    )
     def test_ros_hostname_wins_over_ros_ip_cpp(self):
         self.check_ros_hostname_wins(contract.PUBLISHER_CPP)
 
-    @proves(
-        "If both are set, ROS_HOSTNAME wins, and ROS ignores ROS_IP: a forgotten export "
-        "ROS_HOSTNAME=localhost in ~/.bashrc makes a correct ROS_IP useless.",
-    )
     def test_ros_hostname_wins_over_ros_ip_py(self):
         self.check_ros_hostname_wins(contract.PUBLISHER_PY)
 
@@ -83,23 +74,12 @@ class TestRegister(unittest.TestCase):
         for port in ports_of(process.pid):
             self.assertTrue(int(first) <= port <= int(last), port)
 
-    @proves(
-        "Only the master has a fixed port, 11311: each node listens on two more, which the system "
-        "chooses when the node starts.",
-    )
     def test_listens_on_two_ports_cpp(self):
         self.check_two_ports(contract.PUBLISHER_CPP)
 
-    @proves(
-        "Only the master has a fixed port, 11311: each node listens on two more, which the system "
-        "chooses when the node starts.",
-    )
     def test_listens_on_two_ports_py(self):
         self.check_two_ports(contract.PUBLISHER_PY)
 
-    @proves(
-        "Without --wait, it starts a master on the robot, which then has a graph of its own.",
-    )
     def test_roslaunch_starts_a_master_if_none_runs(self):
         uri = uri_of(free_port())
         self.assertFalse(rosgraph.is_master_online(uri))
@@ -126,10 +106,6 @@ class TestRegister(unittest.TestCase):
                 # The master is not roslaunch's: it goes on.
                 self.assertTrue(rosgraph.is_master_online(uri))
 
-    @proves(
-        "rosnode cleanup takes dead nodes off the list.",
-        "rosnode cleanup takes it off the list.",
-    )
     def test_rosnode_cleanup_takes_a_dead_node_off_the_list(self):
         dead = self.start(contract.PUBLISHER_CPP)
         alive = self.start(contract.PUBLISHER_PY)

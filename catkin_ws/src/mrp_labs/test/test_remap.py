@@ -7,7 +7,6 @@ import unittest
 
 import rostest
 from mrp_testing.lab import PACKAGE, Lab
-from mrp_testing.proves import proves
 
 RELATIVE, GLOBAL, PRIVATE = "great_topic", "/great_topic", "~great_topic"
 # (node, name that it asks for) -> the topic to which it subscribes
@@ -43,34 +42,9 @@ class TestRemap(unittest.TestCase):
             for word in ("warn", "error"):
                 self.assertNotIn(word, said)
 
-    @proves(
-        "The order counts: a remap reaches only nodes that stand below it.",
-        "The tag counts: behind the end of its <group> or <node>, a remap is gone.",
-        "One inside a <node> replaces one of the same name outside.",
-        "The name counts, as the node asks for it: if the code asks for /great_topic or "
-        "~great_topic, write it so in from.",
-        "Nobody warns you: a remap of graet_topic, which no node asks for, prints nothing.",
-        "A <remap> needs the name as the node asks for it, and a place above the node or in it.",
-        "A remap affects only nodes listed after it in its tag, and only the exact name "
-        "they ask for.",
-        "If it affects nothing, it prints nothing.",
-    )
     def test_remap_py(self):
         self.check()
 
-    @proves(
-        "The order counts: a remap reaches only nodes that stand below it.",
-        "The tag counts: behind the end of its <group> or <node>, a remap is gone.",
-        "One inside a <node> replaces one of the same name outside.",
-        "The name counts, as the node asks for it: if the code asks for /great_topic or "
-        "~great_topic, write it so in from.",
-        'In C++, ~ stands for the names of a ros::NodeHandle("~").',
-        "Nobody warns you: a remap of graet_topic, which no node asks for, prints nothing.",
-        "A <remap> needs the name as the node asks for it, and a place above the node or in it.",
-        "A remap affects only nodes listed after it in its tag, and only the exact name "
-        "they ask for.",
-        "If it affects nothing, it prints nothing.",
-    )
     def test_remap_cpp(self):
         self.check("type:=lab_subscriber_cpp_node")
 

@@ -53,8 +53,6 @@ constexpr int PUBLISHES = 0;
 constexpr int SUBSCRIBES = 1;
 }  // namespace
 
-// Proves: In C++, a subscriber lives as long as its object: if it is a local variable of the
-//   constructor, the node receives nothing.
 TEST(Roscpp, subscriberEndsWithItsLastCopy)
 {
   ros::NodeHandle nh;
@@ -83,8 +81,6 @@ TEST(Roscpp, subscriberEndsWithItsLastCopy)
   EXPECT_EQ(1, calls);
 }
 
-// Proves: In C++, the publisher ends when the last copy of the object goes away: a local variable
-//   of the constructor would be gone before the node publishes anything.
 TEST(Roscpp, publisherEndsWithItsLastCopy)
 {
   ros::NodeHandle nh;
@@ -97,8 +93,6 @@ TEST(Roscpp, publisherEndsWithItsLastCopy)
   EXPECT_FALSE(isListed(PUBLISHES, "/of_publisher"));
 }
 
-// Proves: In C++, nh.advertise and nh.subscribe refuse a name that begins with ~: they throw
-//   ros::InvalidNameException.
 TEST(Roscpp, advertiseRefusesPrivateName)
 {
   ros::NodeHandle nh;
@@ -106,8 +100,6 @@ TEST(Roscpp, advertiseRefusesPrivateName)
   EXPECT_NO_THROW(ros::NodeHandle("~").advertise<std_msgs::UInt32>("great_topic", 10));
 }
 
-// Proves: In C++, nh.advertise and nh.subscribe refuse a name that begins with ~: they throw
-//   ros::InvalidNameException.
 TEST(Roscpp, subscribeRefusesPrivateName)
 {
   const boost::function<void(const std_msgs::UInt32&)> nothing = [](const std_msgs::UInt32&) {};
@@ -146,7 +138,6 @@ bool has(const std::string& text, const std::string& part)
 }
 }  // namespace
 
-// Proves: Lines of the level debug are not shown unless you ask for them.
 TEST(Roscpp, debugIsNotShownUnlessAskedFor)
 {
   const Shown shown = logOfEachLevel();
@@ -196,25 +187,18 @@ int clocksUntilReturn(const std::function<void()>& sleep)
 }
 }  // namespace
 
-// Proves: time.sleep and ros::WallDuration::sleep go by the machine's clock.
-// Proves: rospy.sleep, rospy.Rate.sleep, ros::Duration::sleep and ros::Rate::sleep do not return,
-//   either.
 TEST(Roscpp, durationSleepsUntilThereIsAClock)
 {
   EXPECT_GT(clocksUntilReturn([] { ros::Duration(0.001).sleep(); }), 0);
   EXPECT_EQ(0, clocksUntilReturn([] { ros::WallDuration(0.001).sleep(); }));
 }
 
-// Proves: rospy.sleep, rospy.Rate.sleep, ros::Duration::sleep and ros::Rate::sleep do not return,
-//   either.
 TEST(Roscpp, rateSleepsUntilThereIsAClock)
 {
   EXPECT_GT(clocksUntilReturn([] { ros::Rate(1000).sleep(); }), 0);
   EXPECT_EQ(0, clocksUntilReturn([] { ros::WallRate(1000).sleep(); }));
 }
 
-// Proves: What you change later changes nothing, unless you publish a boost::shared_ptr: then a
-//   subscriber in the same process gets the very object that you publish, and sees each change.
 TEST(Roscpp, publishedPointerIsSharedInOneProcess)
 {
   ros::NodeHandle nh;

@@ -16,7 +16,6 @@ from mrp_testing.graph import Graph
 from mrp_testing.lab import PACKAGE
 from mrp_testing.nodes import program
 from mrp_testing.process import LIVE, Process
-from mrp_testing.proves import proves
 from mrp_testing.waiting import wait_until, within
 from rosgraph_msgs.msg import Log
 from std_msgs.msg import UInt8MultiArray, UInt32
@@ -77,10 +76,6 @@ class TestRospy(unittest.TestCase):
         gc.collect()
         self.assertIsNone(gone())
 
-    @proves(
-        "In Python, rospy keeps the subscriber too, and goes on calling the callback even if your "
-        "own object is gone.",
-    )
     def test_subscriber_goes_on_without_its_object_py(self):
         values = []
         self.drop_subscriber(values)
@@ -89,7 +84,6 @@ class TestRospy(unittest.TestCase):
         wait_until(lambda: values == [7], lambda: f"7, not {values}")
         self.assertIn(rospy.get_name(), Graph().subscribers[SUBSCRIBER])
 
-    @proves("Keep it all the same: you need it to stop the subscriber with unregister.")
     def test_unregister_ends_a_subscriber_py(self):
         values = []
         subscriber = rospy.Subscriber("/ended", UInt32, lambda msg: values.append(msg.data))
@@ -102,10 +96,6 @@ class TestRospy(unittest.TestCase):
         self.assertNotIn("/ended", Graph().subscribers)
         self.assertEqual(values, [7])
 
-    @proves(
-        "In Python, rospy keeps the publisher too: it stays registered until you call its "
-        "unregister, or until the node ends, even if your own object is gone.",
-    )
     def test_publisher_stays_without_its_object_until_the_node_ends_py(self):
         with run("""
             import gc, rospy, weakref
@@ -123,17 +113,12 @@ class TestRospy(unittest.TestCase):
             self.assertEqual(process.stop(), 0, str(process))
         self.assertNotIn(PUBLISHER, Graph().publishers)
 
-    @proves(
-        "In Python, rospy keeps the publisher too: it stays registered until you call its "
-        "unregister, or until the node ends, even if your own object is gone.",
-    )
     def test_unregister_ends_a_publisher_py(self):
         publisher = rospy.Publisher(PUBLISHER, UInt32, queue_size=10)
         self.assertEqual(Graph().publishers[PUBLISHER], [rospy.get_name()])
         publisher.unregister()
         self.assertNotIn(PUBLISHER, Graph().publishers)
 
-    @proves("If you leave out queue_size, rospy prints a warning.")
     def test_publisher_without_queue_size_is_warned_of_py(self):
         process = ended("""
             import rospy, sys
@@ -148,10 +133,6 @@ class TestRospy(unittest.TestCase):
         self.assertNotIn(warning, "\n".join(process.errors[:place]))
         self.assertIn(warning, "\n".join(process.errors[place:]))
 
-    @proves(
-        "rospy.on_shutdown takes a function that rospy calls when the node is to end, before it "
-        "closes the publisher.",
-    )
     def test_on_shutdown_comes_before_the_publishers_are_closed_py(self):
         values = []
         subscriber = rospy.Subscriber("/last_words", UInt32, lambda msg: values.append(msg.data))
@@ -171,7 +152,6 @@ class TestRospy(unittest.TestCase):
             self.assertEqual(process.stop(), 0, str(process))
         wait_until(lambda: values == [7], lambda: f"7, not {values}: {process}")
 
-    @proves("The data of a UInt8MultiArray arrives in Python as bytes, not as a tuple.")
     def test_uint8_multi_array_arrives_as_bytes_py(self):
         arrays = []
         subscriber = rospy.Subscriber("/array", UInt8MultiArray, arrays.append)
@@ -182,7 +162,6 @@ class TestRospy(unittest.TestCase):
         self.assertEqual(arrays[0].data, b"\x01\x02\xff")
         self.assertEqual(arrays[0].data[2], 255)
 
-    @proves("Lines of the level debug are not shown unless you ask for them.")
     def test_debug_is_not_shown_unless_asked_for_py(self):
         self.assertNotIn("debug", levels(ended(LOG_BY_DEFAULT).lines))
         self.assertIn("debug", levels(ended(LOG, "DEBUG").lines))
@@ -192,7 +171,6 @@ class TestRospy(unittest.TestCase):
         self.assertEqual(sorted(levels(process.lines)), ["error", "fatal", "info", "warn"])
         self.assertEqual(levels(process.errors), ["warn", "error", "fatal"])
 
-    @proves("print writes no time, no level, and nothing into /rosout.")
     def test_print_is_no_log_py(self):
         texts = []
         subscriber = rospy.Subscriber("/rosout", Log, lambda msg: texts.append(msg.msg))
@@ -210,9 +188,6 @@ class TestRospy(unittest.TestCase):
             self.assertNotIn("logged", process.lines)
         self.assertNotIn("printed", " ".join(texts))
 
-    @proves(
-        "As long as the clock is the machine's own, sleep goes on to its end and raises nothing.",
-    )
     def test_ctrl_c_does_not_wake_a_sleep_py(self):
         with run("""
             import rospy, time
@@ -238,17 +213,9 @@ class TestRospy(unittest.TestCase):
             stack.enter_context(Process(program(PACKAGE, "lab_clock_py_node.py")))
             process.wait_for(lambda: "up" in process.lines, "it is up again")
 
-    @proves(
-        "rospy.sleep, rospy.Rate.sleep, ros::Duration::sleep and ros::Rate::sleep do not return, "
-        "either.",
-    )
     def test_sleep_does_not_return_without_a_clock_py(self):
         self.check_sleeps_until_there_is_a_clock("rospy.sleep(0.001)")
 
-    @proves(
-        "rospy.sleep, rospy.Rate.sleep, ros::Duration::sleep and ros::Rate::sleep do not return, "
-        "either.",
-    )
     def test_rate_sleep_does_not_return_without_a_clock_py(self):
         self.check_sleeps_until_there_is_a_clock("rospy.Rate(1000).sleep()")
 

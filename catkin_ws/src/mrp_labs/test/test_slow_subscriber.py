@@ -15,7 +15,6 @@ from mrp_testing.clock import TurnedClock
 from mrp_testing.lab import PACKAGE
 from mrp_testing.nodes import connections_of, program
 from mrp_testing.process import Process
-from mrp_testing.proves import proves
 from mrp_testing.waiting import wait_until, within
 from std_msgs.msg import String
 
@@ -100,18 +99,12 @@ class TestSlowSubscriber(unittest.TestCase):
             os.kill(self.slow.pid, signal.SIGCONT)
             self.assertLess(len(self.received_by_slow()), COUNT)
 
-    @proves("A publisher has one queue for each subscriber.")
     def test_slow_subscriber_does_not_hold_up_the_other_cpp(self):
         self.check_only_the_slow_one_loses("lab_publisher_cpp_node")
 
-    @proves("A publisher has one queue for each subscriber.")
     def test_slow_subscriber_does_not_hold_up_the_other_py(self):
         self.check_only_the_slow_one_loses("lab_publisher_py_node.py")
 
-    @proves(
-        "publish waits for every subscriber, so the slowest one slows down the publisher, and "
-        "with it all others.",
-    )
     def test_without_a_queue_the_slow_subscriber_holds_up_the_other_py(self):
         with self.publisher("lab_publisher_py_node.py", "none"):
             while self.more() or self.more():

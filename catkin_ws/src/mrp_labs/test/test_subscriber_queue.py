@@ -7,7 +7,6 @@ import unittest
 import rospy
 import rostest
 from mrp_testing.lab import PACKAGE, Lab, path_of
-from mrp_testing.proves import proves
 from std_msgs.msg import UInt32
 
 LANGUAGES = ("cpp", "py")
@@ -18,48 +17,6 @@ class TestSubscriberQueue(unittest.TestCase):
     def setUpClass(cls):
         rospy.init_node("test_subscriber_queue")
 
-    @proves(
-        "The queue holds messages that arrive while the callback is still busy.",
-        "In Python, a subscriber has a queue for each publisher of the topic.",
-        "In C++, all publishers of the topic share one queue.",
-        "A message can wait in two queues, and each has its own size: at the publisher until it "
-        "is sent, and at the subscriber until the callback is free.",
-        "When it is full, it drops the oldest message.",
-        "In this lab one message keeps each callback busy while 15 more arrive.",
-        "The lab's Python subscribers receive the same numbers.",
-        "In C++ it is the size 0.",
-        "In Python it is None, and 0 is an error.",
-        "A C++ subscriber has one queue for all publishers of the topic: with a size of 1, a "
-        "message of one publisher pushes out a message of the other.",
-        "A Python subscriber has a queue for each publisher.",
-        "The queue size counts only within one read.",
-        "So when messages are larger, all the old ones arrive, too, even with a size of 1.",
-        "When buff_size is larger than several messages, a queue of 1 drops old ones again.",
-        "A full queue drops its oldest message.",
-        "A C++ subscriber has one queue for all publishers; a Python subscriber has one for each.",
-        "0 and None have special meanings.",
-        "The size is 1: such a queue keeps only the newest message.",
-        "In Python it is not enough for large pictures: buff_size must have room for several of "
-        "them, too.",
-        "The subscriber's queue of 10 keeps only the newest of that burst.",
-        "The node's queue keeps 10 of them, and rostopic echo has a queue without a limit.",
-        "With a queue of 10, the newest ten numbers of a publisher wait while the callback is "
-        "busy.",
-        "So it prints runs of up to 10 numbers of each publisher, with a gap before each run.",
-        "With a queue of 1, it prints the newest number each time (queues).",
-        "In roscpp, all publishers of a topic share the subscriber's one queue.",
-        "A subscriber's queue of 0 has no limit in C++, and is an error in Python.",
-        "This is not always true.",
-        "In rospy each connection has a queue of its own.",
-        "Old messages that do not fit into one read of buff_size bytes still arrive.",
-        "While a callback is busy, a subscriber's queue keeps the newest messages: 1, 10, or all "
-        "of them.",
-        "In rospy, a queue of 1 drops only messages that came in the same read; a read takes up "
-        "to buff_size bytes.",
-        "A C++ subscriber has one queue for both publishers and loses messages; a Python "
-        "subscriber has one queue for each.",
-        "A subscriber's queue_size of 0 means no limit in C++, and is an error in Python.",
-    )
     def test_subscriber_queue(self):
         with Lab(
             "subscriber_queue.launch",

@@ -8,7 +8,6 @@ import unittest
 import rostest
 from mrp_testing.lab import PACKAGE, Lab
 from mrp_testing.nodes import pid_of
-from mrp_testing.proves import proves
 
 CPP, PY = "/threads/publisher_cpp", "/threads/publisher_py"
 PUBLISHERS = (CPP, PY)
@@ -38,30 +37,6 @@ def overlaps(lab, subscriber):
 
 
 class TestThreads(unittest.TestCase):
-    @proves(
-        "rospy.spin waits until something ends the node, such as the keys Ctrl-C: the callbacks "
-        "run in other threads.",
-        "A Python node calls its subscriber's callbacks in threads of their own, not in the main "
-        "one.",
-        "ros::spin calls all callbacks in the main thread.",
-        "Python: each publisher's connection has a thread of its own, which calls the callback.",
-        "rospy.spin calls no callback: it only waits.",
-        "ros::MultiThreadedSpinner and ros::AsyncSpinner call them in other threads than the main "
-        "one.",
-        "Under ros::spin the number is the same.",
-        "In Python each publisher has another one.",
-        "rospy: one thread for each connection, one for each timer.",
-        "ros::spin: one thread for all callbacks.",
-        "In Python the timer and the connection have different threads.",
-        "Under ros::spin it cannot: one thread calls all callbacks.",
-        "rospy calls the callback in a thread of the connection, whatever the loop does.",
-        "In Python, the connection's own thread receives the message and calls the callback.",
-        "In C++, it calls the callbacks; in Python, other threads call them.",
-        "The comment is right in C++: ros::spin calls all callbacks in the main thread.",
-        "In Python each connection of a subscriber has a thread of its own.",
-        "In rospy, each connection has a thread for its callbacks; in roscpp, you choose the main "
-        "thread or several others.",
-    )
     def test_in_which_thread(self):
         with Lab("threads.launch") as lab:
             for subscriber in ("py", "spin", *POOLS):
@@ -96,20 +71,6 @@ class TestThreads(unittest.TestCase):
         for subscriber, together in expected.items():
             self.assertEqual(overlaps(lab, subscriber), together, subscriber)
 
-    @proves(
-        "ros::spin calls the callbacks, one after the other, until something ends the node, such "
-        "as the keys Ctrl-C. return 0 then says that all is well.",
-        "Under ros::spin, a slow callback holds up all callbacks of its node: no two run at the "
-        "same time.",
-        "With several threads in C++, callbacks of two topics run at the same time.",
-        "A sleep in a callback blocks in the same way, for as long as it takes: threads shows who "
-        "waits.",
-        "With two threads it can, because callbacks of two topics run at the same time.",
-        "A timer changes nothing, because its callback works just as long, and ros::spin calls "
-        "one callback after the other.",
-        "A slow callback delays others: under spin all of them, in several threads those of its "
-        "topic, in rospy those of its publisher.",
-    )
     def test_slow_callbacks_of_two_topics(self):
         both = {("C++", "Python")}
         with Lab("threads_blocking.launch") as lab:
@@ -117,15 +78,6 @@ class TestThreads(unittest.TestCase):
             for pool in POOLS:
                 self.assertEqual(len(threads(lab, pool, *PUBLISHERS)), 2, pool)
 
-    @proves(
-        "Callbacks of one subscriber still wait for each other.",
-        "They need not wait if the subscriber sets allow_concurrent_callbacks in its "
-        "ros::SubscribeOptions.",
-        "In Python, the callback runs for two publishers at the same time, even on one topic.",
-        "In Python, two threads may be in your callback at once.",
-        "A slow callback delays others: under spin all of them, in several threads those of its "
-        "topic, in rospy those of its publisher.",
-    )
     def test_slow_callbacks_of_one_topic(self):
         both = {("C++", "Python")}
         with Lab("threads_blocking.launch", "second_topic:=great_topic") as lab:

@@ -12,7 +12,6 @@ from mrp_testing.graph import Graph
 from mrp_testing.lab import PACKAGE, Lab
 from mrp_testing.nodes import pid_of, program
 from mrp_testing.process import Process
-from mrp_testing.proves import proves
 
 CPP = ("/time/publisher_wall_cpp", "/time/publisher_steady_cpp")
 PY = ("/time/publisher_steady_py",)
@@ -55,19 +54,6 @@ def times(line):
 
 
 class TestTime(unittest.TestCase):
-    @proves(
-        "With /use_sim_time and no publisher of /clock, time stands still.",
-        "A loop publishes its first message, sleeps for good, and logs nothing about it.",
-        "The loops of this lab show it.",
-        "rospy.sleep and ros::Duration::sleep stand still as the rates do.",
-        "time.sleep and ros::WallDuration::sleep go by the machine's clock.",
-        "Then ROS timers never fire, and the node logs nothing about it.",
-        "In this lab five publishers wait for their timers, and nobody publishes /clock.",
-        "These three publish all the same, because their timers do not follow it.",
-        "rosparam get /use_sim_time prints true, and rostopic info /clock shows no publisher.",
-        "With use_sim_time and no clock, ROS timers never fire, loops never wake up, and neither "
-        "logs anything; wall timers and steady timers go on.",
-    )
     def test_no_clock(self):
         with Lab("time_no_clock.launch") as running:
             for subscriber in SUBSCRIBERS:
@@ -88,15 +74,6 @@ class TestTime(unittest.TestCase):
                     for publisher in ROS + LOOPS:
                         running.wait_until_received(subscriber, 2, publisher=publisher)
 
-    @proves(
-        "If the parameter /use_sim_time is true when a node starts, the node takes its time from "
-        "the topic /clock instead.",
-        "the ROS clock",
-        "When /clock runs ten times as fast, ROS timers fire ten times as often; wall timers and "
-        "steady timers do not.",
-        "When the simulated clock runs ten times as fast, so do ROS timers, but not wall timers "
-        "and steady timers.",
-    )
     def test_fast_clock(self):
         with Lab("time_fast_clock.launch") as running:
             begin = wait_until_published(running, CPP + PY + ROS, 1)
@@ -111,13 +88,6 @@ class TestTime(unittest.TestCase):
                 factor = (last_simulated - first_simulated) / (last_wall - first_wall)
                 self.assertAlmostEqual(factor, 10, delta=3, msg=publisher)
 
-    @proves(
-        "Forward: every timer goes on, and none catches up on the time that was left out.",
-        "Back: a rospy.Timer ends with an exception, and its node goes on without it.",
-        "A rospy.Timer with reset=True goes on, and so does a ros::Timer in C++.",
-        "When the clock jumps, no timer catches up; a jump back ends a rospy.Timer without "
-        "reset=True, and no other timer.",
-    )
     def test_jump(self):
         publishers = (ROS_CPP, ROS_PY, RESET_PY)
         with Lab("time_jump.launch", traceback=True) as running:

@@ -6,7 +6,6 @@ import unittest
 
 import rostest
 from mrp_testing.lab import PACKAGE, Lab
-from mrp_testing.proves import proves
 
 ROBOTS = ("/robot1", "/robot2")
 LANGUAGES = ("cpp", "py")
@@ -43,14 +42,6 @@ class TestTwoRobots(unittest.TestCase):
                 text = lab.logged(node)[0]
                 self.assertTrue(text.endswith(f'{topic} (asked for "{asked}")'), text)
 
-    @proves(
-        "Good: you can start the same nodes once more, in another group, without changing their "
-        "code.",
-        "Groups with relative names keep robots apart.",
-        "In this lab two robots run the same four nodes, and neither hears the other.",
-        "In groups, with relative names, the robots stay apart.",
-        "Two robots run the same four nodes, each in its own group: neither hears the other.",
-    )
     def test_groups_keep_the_robots_apart(self):
         with Lab("two_robots.launch") as lab:
             self.check(
@@ -60,13 +51,6 @@ class TestTwoRobots(unittest.TestCase):
                 lambda subscriber: robot_of(subscriber, PUBLISHERS),
             )
 
-    @proves(
-        "Bad: you cannot keep two robots apart by groups alone.",
-        "With a global name, the same launch file mixes the robots: each subscriber hears all "
-        "four publishers.",
-        "It does guarantee that, and so takes away what the page praises in the option before: "
-        "with two robots, each subscriber hears both.",
-    )
     def test_a_hard_coded_global_name_mixes_them(self):
         with Lab("two_robots.launch", "topic:=/great_topic") as lab:
             self.check(

@@ -8,7 +8,6 @@ import unittest
 import rospy
 import rostest
 from mrp_testing.lab import PACKAGE, Lab
-from mrp_testing.proves import proves
 from std_msgs.msg import Int32
 
 PUBLISHERS = ("/mismatch/publisher_cpp", "/mismatch/publisher_py")
@@ -25,33 +24,6 @@ class TestTypeMismatch(unittest.TestCase):
     def setUpClass(cls):
         rospy.init_node("test_type_mismatch")
 
-    @proves(
-        "Both sides must name the same type.",
-        "A subscriber that expects another type receives nothing, and the publishers that refuse "
-        "it log why.",
-        "Nodes exchange messages of one type on a named topic.",
-        "In this lab four nodes agree on std_msgs/UInt32.",
-        "They receive nothing, and the publishers that refuse them log why.",
-        "The four nodes that agree go on without a gap.",
-        "The subscriber's side prints nothing.",
-        "A refused subscriber does not try again as time goes by.",
-        "It tries again when the publishers of the topic change.",
-        "Publishers and subscribers of a topic must name the same type.",
-        "No, it receives nothing.",
-        "The types have different names and fingerprints, so the publisher refuses the connection.",
-        "Symptom: the nodes run, and the subscriber of the other type receives nothing.",
-        "Each publisher that refuses it logs both types: an error in C++, a warning in Python.",
-        "The lines do not repeat as time goes by.",
-        "Cause: a publisher and a subscriber of one topic name different types.",
-        "Their types differ: then the publisher has logged it.",
-        "With one node left unchanged, its type differs from that of the others: a publisher that "
-        "meets another type refuses the connection, and logs that.",
-        "Nothing unexpected happens: the publishers refuse the connection and log why.",
-        "The subscriber receives nothing from them.",
-        "All other nodes go on.",
-        "A subscriber of another type receives nothing: the publishers refuse it and log that; "
-        "the other nodes go on.",
-    )
     def test_other_type(self):
         with Lab("type_mismatch.launch") as lab:
             for other in OTHERS:

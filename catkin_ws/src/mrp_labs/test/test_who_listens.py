@@ -13,7 +13,6 @@ from mrp_testing.clock import TurnedClock
 from mrp_testing.lab import PACKAGE
 from mrp_testing.nodes import program
 from mrp_testing.process import LIVE, Process
-from mrp_testing.proves import proves
 from mrp_testing.waiting import within
 from std_msgs.msg import UInt32
 
@@ -58,15 +57,6 @@ class TestWhoListens(unittest.TestCase):
             with TurnedClock() as clock, Process(command, extra_env=LIVE) as node:
                 yield node, clock
 
-    @proves(
-        "rospy.wait_for_message and ros::topic::waitForMessage wait for one message, without a "
-        "callback.",
-        "What you see: numbers are missing.",
-        "What is published between two calls is lost.",
-        "Why: each call subscribes, waits for one message, and unsubscribes.",
-        "wait_for_message is for one message.",
-        "In a loop it loses what comes in between.",
-    )
     def test_what_comes_between_two_waits_is_lost(self):
         for node, clock in self.each_idiom():
             with publisher() as one:
@@ -81,11 +71,6 @@ class TestWhoListens(unittest.TestCase):
                 # Not by Ctrl-C: while it logs, rospy may not end.
                 node.stop(signal.SIGKILL)
 
-    @proves(
-        "And if the publisher is latched, each call gets the last message once more.",
-        "Each call subscribes anew, and a latched publisher sends its last message to each new "
-        "subscriber.",
-    )
     def test_what_is_latched_comes_again(self):
         for node, clock in self.each_idiom():
             with publisher(latch=True) as one:
@@ -95,7 +80,6 @@ class TestWhoListens(unittest.TestCase):
                 received(node, 1, 1)
                 self.assertEqual(node.errors, [], str(node))
 
-    @proves("A publisher that nobody hears raises nothing and logs nothing.")
     def test_nobody_hears(self):
         for executable in ("latch", "latch.py"):
             command = (program(PACKAGE, executable), "great_topic:=nobody_hears")
@@ -107,7 +91,6 @@ class TestWhoListens(unittest.TestCase):
             self.assertEqual(log_line.texts(node.lines), ["published 42"])
             self.assertEqual(node.errors, [])
 
-    @proves("In Python it raises rospy.ROSException, with this text.")
     def test_timeout(self):
         with self.assertRaises(rospy.ROSException) as raised:
             rospy.wait_for_message("/nobody", UInt32, timeout=0.01)

@@ -14,7 +14,6 @@ from mrp_testing.master import master
 from mrp_testing.nodes import pid_of, program
 from mrp_testing.ports import free_port
 from mrp_testing.process import LIVE, Process
-from mrp_testing.proves import proves
 from mrp_testing.viewer import PUBLISHERS, SUBSCRIBERS, TOPIC, Client, PubSub, Viewer
 from mrp_testing.waiting import wait_until
 
@@ -24,13 +23,6 @@ class TestFaults(unittest.TestCase):
     def setUpClass(cls):
         rospy.init_node("test_faults")
 
-    @proves(
-        "The nodes at both ends of a connection count it, and the viewer asks them.",
-        "A C++ subscriber reports what its queue has dropped.",
-        "A Python subscriber does not report what it drops.",
-        "There the page shows how many messages were sent and have not come out of the queue.",
-        "subscriber_queue.launch: the page shows how many messages each queue drops.",
-    )
     def test_dropped_messages_are_counted_where_they_are_dropped(self):
         with Viewer() as viewer, Client(viewer.address) as page:
             with Lab("subscriber_queue.launch"):
@@ -59,15 +51,6 @@ class TestFaults(unittest.TestCase):
                 for kind in ("dropped", "missing"):
                     page.wait_for_finding(kind)
 
-    @proves(
-        "You may start the viewer before, during or after roslaunch.",
-        "When a publisher refuses a subscriber, its log line names both types, and the page draws "
-        "a red line with this reason.",
-        "If the viewer started too late for the log line, the page only says that the two are not "
-        "connected.",
-        "type_mismatch.launch: a publisher and a subscriber are not connected, and the page says "
-        "why.",
-    )
     def test_other_type_is_told_with_its_reason(self):
         """The reason of a refusal is known if it was heard; else it is not, and not guessed."""
         topic = "/mismatch/great_topic"
@@ -110,7 +93,6 @@ class TestFaults(unittest.TestCase):
             link = topic, publisher, "/mismatch/late"
             page.wait_for(lambda: page.link_states()[link] == ("mismatch", reason), "the reason")
 
-    @proves("namespaces_private.launch: each node is alone on its topic.")
     def test_private_names_are_islands(self):
         with Viewer() as viewer, Client(viewer.address) as page:
             with Lab("namespaces_private.launch"):
@@ -130,7 +112,6 @@ class TestFaults(unittest.TestCase):
                 }
                 page.wait_for(lambda: set(page.edges()) == wanted, "each on its own topic alone")
 
-    @proves("latch.launch: the topic is marked as latched.")
     def test_latched_topic_is_told(self):
         with Viewer() as viewer, Client(viewer.address) as page:
             with Lab("latch.launch"):
@@ -143,12 +124,6 @@ class TestFaults(unittest.TestCase):
                     "the topic's label",
                 )
 
-    @proves(
-        "You may start the viewer before, during or after roslaunch.",
-        "A node that was killed is still on that list, and the page shows it as dead.",
-        "It shows the node as dead.",
-        "The viewer calls the node itself, and nothing answers.",
-    )
     def test_killed_node_is_dead(self):
         """A node that is killed unregisters nothing: the master alone would say that it lives."""
         env = {"ROS_MASTER_URI": f"http://localhost:{free_port()}"}
@@ -161,7 +136,6 @@ class TestFaults(unittest.TestCase):
             self.assertNotEqual(page.states()[PUBLISHERS[1]], "dead")
             page.wait_for_finding("dead")
 
-    @proves("A node that hangs is not dead: the page says that it does not answer.")
     def test_node_that_hangs_is_not_called_dead(self):
         with PubSub(), Viewer() as viewer, Client(viewer.address) as page:
             page.wait_for(lambda: page.states().get(SUBSCRIBERS[1]) == "alive", "a node")
@@ -173,11 +147,6 @@ class TestFaults(unittest.TestCase):
                 os.kill(pid, signal.SIGCONT)
             page.wait_for(lambda: page.states()[SUBSCRIBERS[1]] == "alive", "it answers again")
 
-    @proves(
-        "You may start the viewer before, during or after roslaunch.",
-        "It needs no master to start.",
-        "When the master is restarted, the viewer says so and goes on.",
-    )
     def test_master_is_restarted(self):
         """The page says so; connected nodes are heard all the time, and those who come later."""
         port = free_port()

@@ -4,16 +4,11 @@
 import types
 
 import pytest
-from mrp_testing.proves import proves
 from mrp_view import listener
 
 pytestmark = pytest.mark.quick
 
 
-@proves(
-    "So the viewer subscribes to a topic only after nothing has joined or left it for some "
-    "seconds.",
-)
 def test_others_come_first(monkeypatch):
     now, topics = 100.0, []
 

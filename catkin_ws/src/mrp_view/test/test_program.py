@@ -8,7 +8,6 @@ import rospy
 import rostest
 from mrp_testing.graph import Graph
 from mrp_testing.process import Process
-from mrp_testing.proves import proves
 from mrp_testing.viewer import TOPIC, Client, PubSub, Viewer
 from std_msgs.msg import Header, String
 
@@ -18,11 +17,6 @@ class TestProgram(unittest.TestCase):
     def setUpClass(cls):
         rospy.init_node("test_program")
 
-    @proves(
-        "The viewer subscribes to each topic, as any other subscriber does.",
-        "It publishes nothing.",
-        "The viewer only listens.",
-    )
     def test_viewer_publishes_nothing(self):
         with PubSub(), Viewer() as viewer, Client(viewer.address, viewer=True) as page:
             page.wait_for(lambda: (TOPIC, "/mrp_view") in page.edges(), "the viewer in the graph")

@@ -8,7 +8,6 @@ import unittest
 import rospy
 import rostest
 from mrp_testing.ports import listening
-from mrp_testing.proves import proves
 from mrp_testing.viewer import PUBLISHERS, SUBSCRIBERS, TOPIC, Client, PubSub, Viewer
 from mrp_testing.waiting import DEADLINE, wait_until
 from std_msgs.msg import UInt32
@@ -19,12 +18,6 @@ class TestView(unittest.TestCase):
     def setUpClass(cls):
         rospy.init_node("test_view")
 
-    @proves(
-        "roslaunch sends each node the signal SIGINT, so the node takes itself off the master's "
-        "list.",
-        "The viewer asks the master, and shows each node with its topics.",
-        "Watch: make view shows the graph and the messages in a browser.",
-    )
     def test_graph_of_four_nodes(self):
         with Viewer() as viewer, Client(viewer.address) as page:
             page.wait_for(lambda: page.graph, "a graph before the launch")
@@ -52,11 +45,6 @@ class TestView(unittest.TestCase):
             self.assertEqual(viewer.stop(), 0, str(viewer))
             self.assertNotIn("Traceback", str(viewer))
 
-    @proves(
-        "It counts every message, even if it looks into only some of them.",
-        "A publisher that waits for subscribers counts the viewer as one.",
-        "Watch: make view shows the graph and the messages in a browser.",
-    )
     def test_counts_are_those_of_the_nodes(self):
         """The page's counts, against what a subscriber has received that counts by itself."""
         received = []
@@ -82,7 +70,6 @@ class TestView(unittest.TestCase):
         subscriber.unregister()
         publisher.unregister()
 
-    @proves("Only a browser on this machine gets an answer there.")
     def test_only_its_own_page_gets_an_answer(self):
         """Another site's page in the same browser asks with its name, or tells its origin."""
         with Viewer("--name", "robot.local") as viewer:

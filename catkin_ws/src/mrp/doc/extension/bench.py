@@ -10,8 +10,8 @@ import json
 import pathlib
 import sys
 
-from docutils import nodes
 from cases import WORKSPACE
+from docutils import nodes
 from picture import Picture
 from sphinx.util.docutils import SphinxDirective
 

@@ -53,12 +53,13 @@ def faults(rows, sentences, tests):
     tests: all there are, name -> Case
     """
     texts = [sentence.text for sentence in sentences]
+    first = {name: row.line for row in reversed(rows) for name in row.tests}
+    for name, line in first.items():
+        if name not in tests:
+            yield line, f"there is no test {name}{_hint(name, tests)}"
     for row in rows:
         if not row.tests:
             yield row.line, f"expected the name of a test above this sentence: {row.text}"
-        for name in row.tests:
-            if name not in tests:
-                yield row.line, f"there is no test {name}{_hint(name, tests)}"
         if not any(map(row.matches, texts)):
             yield row.line, f"the page has no such sentence: {row.text}{_hint(row.text, texts)}"
     for sentence in sentences:

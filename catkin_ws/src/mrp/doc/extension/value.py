@@ -17,8 +17,8 @@ import re
 import sys
 import xml.etree.ElementTree as ElementTree
 
-from docutils import nodes
 from cases import WORKSPACE
+from docutils import nodes
 from sphinx.util.docutils import SphinxRole
 
 ROS = ("rospy", "rosmaster")
