@@ -12,7 +12,7 @@ from check_rules import ASKED, hand_in
 from mrp_check.cli import check as check_command
 from mrp_check.contract import spec
 from mrp_check.contract.by_hand import ByHand
-from mrp_check.contract.finding import Finding
+from mrp_check.contract.finding import SEEN, Finding
 from mrp_check.contract.verdict import BROKEN, FINDINGS, MET, UNCHECKED, Report, public, unchecked
 from mrp_check.report import class_table, console, gradescope, html, json_, mail, moodle
 
@@ -65,10 +65,12 @@ RESULTS = {
 CONTRACT = dataclasses.replace(
     spec.read(spec.find("pub_sub")), points={"values": 5, "spin": 2.5}, hidden=("spin", "wrap")
 )
-SPIN = Finding("spin", "It never spins.", "src/a.py", 3)
-WRAP = Finding("wrap", "It ends at 2^32.", "src/a.py", 7)
-VALUES = Finding("values", "It publishes <2>.", "src/a.py", 9)
-SILENT = Finding("received", "Nothing came.", "src/b.py", 2, consequence_of="spin")
+SPIN = Finding("spin", "It never spins.", "src/a.py", 3, SEEN, severity="error")
+WRAP = Finding("wrap", "It ends at 2^32.", "src/a.py", 7, SEEN, severity="error")
+VALUES = Finding("values", "It publishes <2>.", "src/a.py", 9, SEEN, severity="error")
+SILENT = Finding(
+    "received", "Nothing came.", "src/b.py", 2, consequence_of="spin", severity="error"
+)
 
 
 def report(*findings, reason=""):
@@ -94,7 +96,7 @@ def submission(name, one):
     [
         report(),
         report(SPIN, SILENT, VALUES),
-        report(Finding("text", "\x1b[2J", "\udcff"), reason="No time was left."),
+        report(Finding("text", "\x1b[2J", "\udcff", severity="error"), reason="No time was left."),
         unchecked("There is no folder x."),
     ],
     ids=range(4),

@@ -6,11 +6,10 @@ import types
 import check_rules
 import pytest
 from check_rules import MANIFEST
-from mrp_check import check
 from mrp_check.building import configuring, placeholders
 from mrp_check.confined.places import Kind, Place
 from mrp_check.confined.seen import LaunchResult, Seen
-from mrp_check.contract.finding import ERROR, NOTE, WARNING, Finding
+from mrp_check.contract.finding import ERROR, NOTE, WARNING
 from mrp_check.rules import arguments, definitions, launched, waiting
 from mrp_check.sources.facts import Facts
 from mrp_check.student.cmake import Model
@@ -93,18 +92,6 @@ def test_a_target_that_is_waited_for_and_does_not_exist_is_found_where_cmake_sto
     assert "Perhaps some_pkg_gencpp is meant." in finding.message
 
 
-def test_many_findings_are_one_line_without_a_contract_if_they_are_of_many_files():
-    facts = Facts(python={f"{n}.py": None for n in range(5)})
-    twice = [Finding("starts", "It is so.", f"{n}.py", 1) for n in range(2) for _ in range(3)]
-    assert len(check.folded(twice, facts, is_any=True)) == 6
-    many = [Finding("starts", "It is so.", f"{n}.py", 1) for n in range(5)]
-    (one,) = check.folded(many, facts, is_any=True)
-    assert one.message.startswith("5 such faults in files that are no node: 0.py")
-
-
-OF_BOTH = 'ros::NodeHandle n;\n  ros::NodeHandle own("~");\n  '
-
-
 @pytest.mark.parametrize(
     ("begin", "arguments", "line"),
     [
@@ -179,6 +166,7 @@ def test_what_a_node_raises_under_roslaunch(line, kind, time, other, found, tmp_
     files = {"src__odd_DOT_py": f"{line}\n", "src__b_DOT_py": ""}
     package = check_rules.make(tmp_path / "some_pkg", **files)
     places = types.SimpleNamespace(
+        wrong_arguments=lambda lines: None,
         traceback=lambda lines: (("src/odd.py", 1), kind, "no") if kind in lines else None,
         sources=lambda node: ["src/odd.py"],
         of=lambda *given: ("src/odd.py", 1),

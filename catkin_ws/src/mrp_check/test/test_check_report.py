@@ -145,20 +145,36 @@ def test_page_shows_what_a_package_says_as_text():
     assert "<script>alert(1)</script>" in page.text
 
 
-def test_console_shows_verdicts_causes_first_and_pages():
-    text = console.text(report(HINTED, RESULT, CAUSE))
+def test_console_shows_verdicts_causes_first_and_pages(monkeypatch):
+    monkeypatch.setattr(console, "SITE", pathlib.Path("/nowhere"))
+    text = console.text(report(HINTED, RESULT, CAUSE), everything=True)
     assert "  [FAIL] Each node waits for callbacks (spin)" in text
     assert "  [--]   Publishers publish the right values (values)" in text
     assert text.index("src/a.py:3: error:") < text.index("src/a.py:9: error:")
     assert text.index("src/a.py:9: error:") < text.index("src/a.py:4: note:")
-    assert "  page:     pages/publisher.html" in text
+    assert "  page:     “publisher” of the tutorial" in text
     count = len(REQUIREMENTS)
     assert text.endswith(f"1 of {count} requirements are not met; 1 could not be checked.")
 
 
-def test_console_and_page_name_the_text_that_a_tool_prints():
+def test_console_shows_one_cause_once_and_notes_on_request():
+    others = [dataclasses.replace(CAUSE, file=f"src/{name}.py", severity="") for name in "bc"]
+    one = report(CAUSE, *others, HINTED, RESULT)
+    text = console.text(one)
+    assert text.count("It never spins.") == 1
+    assert "  also at:  src/b.py:3, src/c.py:3\n" in text
+    assert "It is not kept." not in text and "No value came." not in text
+    one.left_out = ["values"]
+    assert "[OK]" not in console.text(one)
+    assert console.text(one).endswith("Errors: 3; warnings: 0 (--all shows 2 more).")
+    assert "[OK]" in console.text(one, everything=True)
+
+
+def test_console_and_page_name_the_text_that_a_tool_prints(monkeypatch):
+    monkeypatch.setenv("MRP_PAGES", "https://a.example/mrp/")
     one = report(Finding("text", "It.", "a.py", 1, why="script-crlf"))
-    assert "\n  why:      pages/why.html#script-crlf\n" in console.text(one)
+    address = "https://a.example/mrp/pages/why.html#script-crlf"
+    assert f"\n  why:      {address}\n" in console.text(one)
     assert "pages/why.html#script-crlf" in Reader(html_report.text(one)).text
 
 

@@ -14,7 +14,7 @@ from mrp_check import causes, confine, sandbox, suppression
 from mrp_check.any_case import AnyCase
 from mrp_check.building.catkin import missing_tool
 from mrp_check.case import Case
-from mrp_check.contract.errors import CannotCheck
+from mrp_check.contract.errors import CannotCheck, NotHere
 from mrp_check.contract.finding import ERROR, Finding
 from mrp_check.contract.requirements import ANY, CONTRACT, closure
 from mrp_check.contract.severity import weigh
@@ -26,8 +26,6 @@ from mrp_check.running.planning import ENOUGH
 from mrp_check.scratch import scratch_folder
 from mrp_check.sources import python_modules
 from mrp_check.student.package import Package
-
-_FOLD = 3  # findings about files outside the exercise, or such files: more are folded into one
 
 
 def check(
@@ -80,6 +78,7 @@ class _Examination:
         self.findings: list[Finding] = []
         self.failed: dict[str, str] = {}
         self.reasons: list[str] = []
+        self.not_here: list[str] = []
         self.lost: dict[str, Exception] = {}
         needs = needs_of(ids, rules)
         if "nodes" in needs:
@@ -96,8 +95,9 @@ class _Examination:
                 self._ask(rule)
             if early:
                 early(self.report())
-        for said in self._absent():
-            self._lose(("python-names",), said)
+        facts = vars(case).get("facts")
+        if facts and facts.absent():
+            self._lose(("python-names",), NotHere(facts.absent().values()))
         self._guarded(ids, lambda: self.failed.update(unseen(case, self._open())))
 
     def _ask(self, rule):
@@ -123,11 +123,10 @@ class _Examination:
         """Call a function; if it fails, these ids could not be checked."""
         try:
             function()
-            return
         except CannotCheck as error:
-            reason = str(error)
+            self._lose(ids, error)
         except confine.ConfineError as error:
-            reason = f"A command could not be run confined: {error}."
+            self._lose(ids, CannotCheck(f"A command could not be run confined: {error}."))
         except Exception as error:  # the checker's own fault: no finding, and no end of it all
             place = traceback.extract_tb(error.__traceback__)[-1]
             file = pathlib.Path(place.filename).name
@@ -135,17 +134,14 @@ class _Examination:
                 f"The checker itself failed, in {place.name}() of {file}:{place.lineno}:"
                 f" {type(error).__name__}: {error}. Please report it."
             )
-        self._lose(ids, reason)
+            self._lose(ids, CannotCheck(reason))
 
-    def _lose(self, ids, reason):
-        self.failed.update({id_: reason for id_ in ids if id_ in self.ids})
-        if reason not in self.reasons:
-            self.reasons.append(reason)
-
-    def _absent(self):
-        """Return a sentence on each module that this machine has not, and a node needs."""
-        facts = vars(self.case).get("facts")
-        return facts.absent().values() if facts else ()
+    def _lose(self, ids, error):
+        self.failed.update({id_: str(error) for id_ in ids if id_ in self.ids})
+        if isinstance(error, NotHere):
+            self.not_here += [name for name in error.names if name not in self.not_here]
+        elif str(error) not in self.reasons:
+            self.reasons.append(str(error))
 
     def _open(self):
         return [id_ for id_ in self.ids if id_ not in self.failed]
@@ -160,23 +156,26 @@ class _Examination:
         findings, suppressed = suppression.applied(package, findings, self._open(), not is_any)
         weigh(findings, has_contract=not is_any)
         findings = [f for f in findings if f.id in self.ids]
-        findings = folded(findings, known.get("facts"), is_any)
         errors = [finding for finding in findings if finding.severity == ERROR]
         broken = {f.id for f in errors if not f.consequence_of}
         unseen = {id_: why for id_, why in self.failed.items() if id_ not in broken}
         unseen.update(
             {f.id: f"it follows from {f.consequence_of}" for f in errors if f.id not in broken}
         )
+        reasons = [*self.reasons, *([str(NotHere(self.not_here))] if self.not_here else ())]
+        requirements = {
+            id_: BROKEN if id_ in broken else UNCHECKED if id_ in unseen else MET
+            for id_ in self.ids
+        }
+        # Without a contract, what could be judged counts; with one, somebody asked for the rest.
+        judged = {*requirements.values()} - {UNCHECKED} if is_any else not reasons
         return Report(
             package=package.name,
             spec=self.case.spec.title,
-            verdict=UNCHECKED if self.reasons else FINDINGS if errors else MET,
+            verdict=FINDINGS if errors else MET if judged else UNCHECKED,
             findings=findings,
-            requirements={
-                id_: BROKEN if id_ in broken else UNCHECKED if id_ in unseen else MET
-                for id_ in self.ids
-            },
-            reason=" ".join(self.reasons),
+            requirements=requirements,
+            reason=" ".join(reasons),
             unseen={id_: unseen[id_] for id_ in self.ids if id_ in unseen},
             left_out=[id_ for id_ in REQUIREMENTS if is_any and id_ not in {*self.asked, *MORE}],
             console=_console(known.get("observed")),
@@ -184,31 +183,6 @@ class _Examination:
             isolation=sandbox.isolation_text(),
             folder=package.root.resolve(),
         )
-
-
-def folded(findings, facts, is_any):
-    """Return the findings; of many about scripts that are no node, one for each id and severity
-    tells of them all. Without a contract, many are those of more files."""
-    of_nodes = {file for files in facts.sources.values() for file in files} if facts else set()
-    outside = facts.python.keys() - of_nodes if facts else ()
-    groups: dict[object, list[Finding]] = {}
-    for finding in findings:
-        alone = finding.file not in outside
-        key = id(finding) if alone else (finding.id, finding.severity, finding.consequence_of)
-        groups.setdefault(key, []).append(finding)
-    kept = []
-    for group in groups.values():
-        first = group[0]
-        files = list(dict.fromkeys(f.file for f in group if f.file))
-        if len(files if is_any else group) > _FOLD:
-            where = "no node" if is_any else "no node of the exercise"
-            first.message = (
-                f"{len(group)} such faults in files that are {where}:"
-                f" {', '.join(files[:5])}{', ...' if files[5:] else ''}. The first: {first.message}"
-            )
-            group = [first]
-        kept += group
-    return kept
 
 
 def _console(observed):

@@ -228,7 +228,10 @@ def _missing_header(error: Error) -> Words:
         return Words(said, f"Write {right}.", None, (header, right))
     is_other = folder != package.name and uses.is_called_so(folder)
     if is_other and not uses.is_ros_package(folder):
-        return Words(f"there is no header {header}. {uses.absent(folder, 'cpp')}", "Install it.")
+        return Words(
+            f"there is no header {header} on this machine: {uses.absent(folder, 'cpp')}.",
+            "Install it.",
+        )
     newer = f"{header}pp"
     if uses.is_header(newer):
         said = f"there is no header {header}: here it is called {newer}."

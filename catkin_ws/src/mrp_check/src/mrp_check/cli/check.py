@@ -69,12 +69,13 @@ FLAGS = {  # what --help says of each
     "write_contract": "run a correct package, and write NAME.yaml: a contract for it, to be edited",
     "public": "leave the contract's hidden requirements out of the reports",
     "github": "print the findings as annotations of GitHub Actions, too",
+    "all": "show notes, what follows from other findings, and every requirement, too",
     "timing": "show after how many seconds each part of the check begins",
 }
 
 
 def main(arguments=None):
-    """Check what the command line says, and exit: 0 all met, 1 findings, 2 could not check."""
+    """Check what the command line says, and exit: 0 no errors, 1 errors, 2 could not check."""
     # As with Ctrl-C, nothing is left behind then.
     signal.signal(signal.SIGTERM, signal.default_int_handler)
     options = parser().parse_args(arguments)
@@ -88,7 +89,7 @@ def parser():
     parser = argparse.ArgumentParser(
         prog="check",
         description="Runs a package, against its contract or without, and says what is wrong.",
-        epilog="exit code: 0 all requirements are met; 1 findings; 2 it could not check",
+        epilog="exit code: 0 no errors; 1 errors; 2 it could not check",
     )
     what = parser.add_mutually_exclusive_group(required=True)
     what.add_argument("path", metavar="PATH", nargs="?", help="the package's folder or archive")
@@ -263,7 +264,7 @@ def run_package(options):
     for name, (_, text) in OF_PACKAGE.items():
         write(getattr(options, name), text, report, contract)
     if report.requirements:
-        shown = console.text(report, colours=console.has_colours(sys.stdout))
+        shown = console.text(report, console.has_colours(sys.stdout), options.all)
         print(github.stopped(shown) if options.github else shown)
     if options.github:
         print(github.text(report))

@@ -1,9 +1,22 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Why a check cannot be made: the text of each of these errors is one sentence."""
+"""Errors that stop a check: the text of each is one sentence."""
+
+from typing import Iterable
 
 
 class CannotCheck(Exception):  # noqa: N818 (it says what happened)
     """Something other than the package keeps the check from being made."""
+
+
+class NotHere(CannotCheck):
+    """This machine lacks what the package needs.
+
+    names: what it lacks, each with the Debian package that has it
+    """
+
+    def __init__(self, names: Iterable[str]) -> None:
+        self.names = list(names)
+        super().__init__(f"Not on this machine, so not checked: {', '.join(self.names)}.")
 
 
 class PackageError(Exception):

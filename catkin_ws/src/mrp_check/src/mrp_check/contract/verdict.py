@@ -69,7 +69,7 @@ def public(report: Report, hidden: Collection[str]) -> Report:
     is_met = not any(finding.severity == ERROR for finding in findings)
     return dataclasses.replace(
         report,
-        verdict=UNCHECKED if report.reason else MET if is_met else FINDINGS,
+        verdict=FINDINGS if not is_met else UNCHECKED if report.reason else MET,
         findings=findings,
         requirements={id_: v for id_, v in report.requirements.items() if id_ not in hidden},
         unseen=unseen,

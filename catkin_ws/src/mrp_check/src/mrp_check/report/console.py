@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import os
+import pathlib
 import re
 import shutil
 import textwrap
@@ -14,6 +15,8 @@ from mrp_check.contract.requirements import STAGES
 from mrp_check.contract.verdict import BROKEN, MET, UNCHECKED
 from mrp_check.rules import REQUIREMENTS
 
+# Where `make docs` puts the pages.
+SITE = pathlib.Path(__file__).resolve().parents[5] / "build" / "docs"
 MARKS = {MET: "[OK]  ", BROKEN: "[FAIL]", UNCHECKED: "[--]  "}
 _COLOURS = {
     MET: "32",
@@ -68,31 +71,56 @@ def has_colours(stream):
     return stream.isatty() and "NO_COLOR" not in os.environ and os.environ.get("TERM") != "dumb"
 
 
-def text(report, colours=False):
-    """Return the whole report: each requirement's verdict, then the findings, then a summary."""
+def text(report, colours=False, everything=False):
+    """Return the whole report: errors, then warnings, then a summary.
+
+    everything: with notes, with what follows from other findings, and with each requirement
+    """
 
     def paint(text, colour):
         return f"\x1b[{_COLOURS[colour]}m{text}\x1b[0m" if colours else text
 
     lines = []
-    for stage, ids in by_stage(report):
+    has_contract = not report.left_out
+    for stage, ids in by_stage(report) if has_contract or everything else ():
         lines.append(stage)
         for id_ in ids:
             verdict = report.requirements[id_]
             title = f"{REQUIREMENTS[id_].title} ({id_})"
             lines.append(f"  {paint(MARKS[verdict], verdict)} {title}{why_not(report, id_)}")
-    for cause, following in with_consequences(report.findings):
-        for finding in (cause, *following):
+    for cause, others, following in causes(report.findings):
+        if cause.severity == NOTE and not everything:
+            continue
+        for finding in (cause, *(following if everything else ())):
             first, *rest = finding_lines(finding, report)
             head, mark, message = first.partition(f" {finding.severity}: ")
             lines += ["", f"{head} {paint(mark.strip(), finding.severity)} {message}", *rest]
+        if others:
+            places = ", ".join(where(one, report) for one in others)
+            lines += _wrapped("  also at:  ", places, " " * 12)
     for finding in report.suppressed:
         lines += ["", *_wrapped("", suppressed_line(finding, report), "  ")]
-    if report.left_out:
+    if report.left_out and everything:
         left_out = f"Left out, as only a contract can say it: {', '.join(report.left_out)}."
         lines += ["", *_wrapped("", left_out, "")]
     isolation = [plain(report.isolation)] if report.isolation else []
-    return "\n".join([*lines, "", *isolation, summary(report)])
+    return "\n".join([*lines, "", *isolation, summary(report)]).lstrip("\n")
+
+
+def causes(findings):
+    """Return (finding, others of the same cause, what follows from it) for each, errors first.
+
+    The same cause is the same requirement, broken in the same way: the same is expected.
+    """
+    found = {}
+    for finding, following in with_consequences(findings):
+        what = finding.expected or id(finding)
+        key = finding.id, finding.severity, finding.consequence_of, what
+        first = found.setdefault(key, (finding, [], []))
+        first[2].extend(following)
+        if first[0] is not finding:
+            first[1].append(finding)
+    return list(found.values())
 
 
 def suppressed_line(finding, report):
@@ -155,13 +183,26 @@ def finding_lines(finding, report):
 
 def page_lines(finding):
     """Return the lines that name the places of the pages that explain a finding."""
-    return [f"  {name + ':':<10}{page}" for name, page in pages(finding)]
+    return [f"  {name + ':':<10}{address_of(page)}" for name, page in pages(finding)]
 
 
 def pages(finding):
     """Return (name, address) of the places of the pages that explain a finding."""
     found = [("page", REQUIREMENTS[finding.id].page)]
     return [*found, ("why", f"pages/why.html#{finding.why}")] if finding.why else found
+
+
+def address_of(page):
+    """Return where a reader finds a page of the tutorial: at the address of its site, if
+    MRP_PAGES has one; else its file, if it was built here; else the page's name."""
+    path, hash_, anchor = page.partition("#")
+    site = os.environ.get("MRP_PAGES", "")
+    if site:
+        return f"{site.rstrip('/')}/{page}"
+    if (SITE / path).is_file():
+        return (SITE / path).as_uri() + hash_ + anchor
+    name = path.rpartition("/")[2].partition(".")[0].replace("_", " ")
+    return f"“{name}” of the tutorial" + (f", {anchor}" if anchor else "")
 
 
 def detail_lines(finding, names):
@@ -189,17 +230,24 @@ def _wrapped(head, text, indent):
 
 
 def summary(report):
-    """Return one sentence: how many requirements are met, and how many are not."""
+    """Return one sentence: how many requirements are met, and how many are not; or, without a
+    contract, how many findings there are."""
     if not report.requirements:
         return "Nothing could be checked."
     verdicts = list(report.requirements.values())
+    causes_ = [one for one in report.findings if not one.consequence_of]
+    warnings = sum(one.severity == WARNING for one in causes_)
+    suppressed = f"; suppressed: {len(report.suppressed)}" if report.suppressed else ""
+    if report.left_out:
+        errors = sum(one.severity == ERROR for one in causes_)
+        notes = len(report.findings) - errors - warnings
+        rest = f" (--all shows {notes} more)" if notes else ""
+        return f"Errors: {errors}; warnings: {warnings}{suppressed}{rest}."
     kind = "public requirements" if report.is_public else "requirements"
     met, broken = verdicts.count(MET), verdicts.count(BROKEN)
     unchecked = verdicts.count(UNCHECKED)
     rest = f"; {unchecked} could not be checked" if unchecked else ""
-    warnings = sum(f.severity == WARNING and not f.consequence_of for f in report.findings)
-    rest += f"; warnings: {warnings}" if warnings else ""
-    rest += f"; suppressed: {len(report.suppressed)}" if report.suppressed else ""
+    rest += (f"; warnings: {warnings}" if warnings else "") + suppressed
     if broken or unchecked:
         return f"{broken} of {len(verdicts)} {kind} are not met{rest}."
     return f"All {kind} are met: {met} of {len(verdicts)}{rest}."

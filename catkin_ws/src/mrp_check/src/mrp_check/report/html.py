@@ -3,16 +3,12 @@
 
 from __future__ import annotations
 
-import pathlib
-
 import jinja2
 
 from mrp_check.contract import resources
 from mrp_check.contract.verdict import WORDS
 from mrp_check.report import console
 from mrp_check.rules import REQUIREMENTS
-
-_SITE = pathlib.Path(__file__).resolve().parents[5] / "build" / "docs"
 
 _TEMPLATES = jinja2.Environment(
     loader=jinja2.FileSystemLoader(resources.folder("templates")),
@@ -52,6 +48,6 @@ def text(report, has_links=True, progress=""):
 
 
 def address_of(page):
-    """Return where a page of the tutorial is on this machine, or "" if it has not been built."""
-    path, hash_, anchor = page.partition("#")
-    return (_SITE / path).as_uri() + hash_ + anchor if (_SITE / path).is_file() else ""
+    """Return where a page of the tutorial can be opened, or "" if it cannot."""
+    address = console.address_of(page)
+    return address if "://" in address else ""

@@ -9,7 +9,7 @@ from typing import Iterable, Iterator
 from mrp_check import evidence
 from mrp_check.building import compiler, configuring, linker, placeholders
 from mrp_check.case import Case
-from mrp_check.contract.errors import CannotCheck
+from mrp_check.contract.errors import NotHere
 from mrp_check.contract.finding import Finding
 from mrp_check.contract.requirements import Requirement, Rule
 from mrp_check.contract.words import last_part
@@ -39,7 +39,7 @@ def findings(case: Case) -> Iterator[Finding]:
     stopped = [p.file for p in problems if compiler.is_no_header(p)]
     yield from _of_text(case, () if case.spec.is_contract else stopped)
     if absent:
-        raise CannotCheck(" ".join(uses.absent(name, "cpp") for name in sorted({*absent.values()})))
+        raise NotHere(uses.absent(name, "cpp") for name in sorted({*absent.values()}))
 
 
 def _of_text(case: Case, files: Iterable[str]) -> Iterator[Finding]:

@@ -9,7 +9,7 @@ from mrp_check import evidence
 from mrp_check.building import configuring, stubs
 from mrp_check.building.catkin import WANTS_TESTS
 from mrp_check.case import Case
-from mrp_check.contract.errors import CannotCheck
+from mrp_check.contract.errors import NotHere
 from mrp_check.contract.finding import HABIT, Finding
 from mrp_check.contract.requirements import Requirement, Rule
 from mrp_check.sources import uses
@@ -20,17 +20,17 @@ def findings(case: Case) -> Iterator[Finding]:
     if case.built is not None:
         yield from _wants_tests(case)
         if case.catkin.stubs.names:
-            raise CannotCheck(" ".join(uses.absent(one, "cpp") for one in case.catkin.stubs.names))
+            raise NotHere(uses.absent(one, "cpp") for one in case.catkin.stubs.names)
         return
     missing = stubs.absent(package, step.output, case.spec.is_contract)
     if missing:
         # CMake stops at the first.
         others = [one for one in case.catkin.model.components if not uses.is_ros_package(one)]
         names = [missing, *(one for one in others if one != missing and uses.is_called_so(one))]
-        raise CannotCheck(" ".join(uses.absent(one, "cpp") for one in names))
+        raise NotHere(uses.absent(one, "cpp") for one in names)
     missing = configuring.without_definitions(step.output)
     if missing:
-        raise CannotCheck(uses.absent(missing, "msg"))
+        raise NotHere([uses.absent(missing, "msg")])
     output = "" if step.why_ended else step.output
     finding = configuring.finding(package, output, case.package_folder, case.catkin.model)
     yield finding or configuring.unknown(package, step, "configure")

@@ -71,7 +71,7 @@ def _elsewhere(case: Case, launch: Launch) -> Iterator[Finding]:
     own = _executables(case.package, case.model)
     for name, node in {node.package: node for node in launch.nodes}.items():
         if name != case.package.name and not uses.is_ros_package(name):
-            said = uses.absent(name, "cpp")
+            said = f"It starts a node of a package that is not here: {uses.absent(name, 'cpp')}."
             yield Finding("launch-nodes", said, node.file, node.line, HINT)
     for node in launch.nodes:
         is_ros = node.package == case.package.name or uses.is_called_so(node.package)
@@ -85,7 +85,8 @@ def _elsewhere(case: Case, launch: Launch) -> Iterator[Finding]:
     for node in launch.nodes:
         program = node.prefix.split()[0] if node.prefix else None
         if program and not shutil.which(program, path=search_path()):
-            said = uses.absent(program, "program")
+            where = uses.absent(program, "program")
+            said = f"It starts a node by a program that is not here: {where}."
             yield Finding("launch-nodes", said, node.file, node.line, HINT)
 
 

@@ -12,7 +12,7 @@ from typing import Collection, Iterator, Sequence
 from pyflakes import checker, messages
 
 from mrp_check import evidence
-from mrp_check.contract.finding import CERTAIN, HINT, Change, Finding
+from mrp_check.contract.finding import CERTAIN, Change, Finding
 from mrp_check.contract.requirements import Requirement, Rule
 from mrp_check.contract.words import last_part, nearest, perhaps
 from mrp_check.sources import uses
@@ -93,7 +93,7 @@ class Names(PythonRule):
                 yield self._old_name(node, missing)
                 return
             if not near or uses.is_called_so(missing) or uses.is_of_debian(missing):
-                yield self._absent(node, missing)
+                self.source.absent[missing] = uses.absent(missing, "python")
                 return
         else:
             near = nearest(missing.rsplit(".", 1)[-1], {"msg", "srv", "exceptions"})
@@ -143,10 +143,6 @@ class Names(PythonRule):
             expected=self.package.name,
             fix=f"Write {self.package.name} for {name}.",
         )
-
-    def _absent(self, node: ast.stmt, module: str) -> Finding:
-        self.source.absent[module] = said = uses.absent(module, "python")
-        return self.finding("python-names", said, node, certainty=HINT)
 
     def _imported(self, node: ast.ImportFrom, origin: str) -> Iterator[Finding]:
         if origin == f"{self.package.name}.msg":

@@ -72,7 +72,7 @@ def _raised(node: Traces, place: Where, kind: str, text: str) -> Finding:
     return node.finding(
         id_of_error(kind, text, "starts"),
         f"{node.name} ends as soon as it is started: {kind}: {text}"
-        + (f" {uses.absent(name, 'python')}" if apart else ""),
+        + (f" It is not on this machine: {uses.absent(name, 'python')}." if apart else ""),
         place,
         HINT if is_known or apart else SEEN,
         expected=_EXPECTED,

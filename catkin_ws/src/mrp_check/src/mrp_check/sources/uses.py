@@ -118,15 +118,12 @@ def exists(name: str) -> bool:
 
 
 def absent(name: str, language: str) -> str:
-    """Return the sentence about a package or a module that this machine has not."""
+    """Return the name of a package or a module that this machine lacks, and where Debian has it."""
     guesses, debian = _guesses(name, language), debian_packages()
     guess = next((guess for guess in guesses if guess in debian), None if debian else guesses[0])
     perhaps = "" if debian else "perhaps "
     where = f"{perhaps}Debian package {guess}" if guess else "not in Debian"
-    return (
-        f"{name} is not on this machine ({where}): what needs it could not be checked. Install it,"
-        " and check again."
-    )
+    return f"{name} ({where})"
 
 
 def is_of_debian(module: str) -> bool:
