@@ -59,7 +59,7 @@ def node(program):
 
 def test_every_report_has_its_patch_and_its_test():
     reports = {path.stem for path in UPSTREAM.glob("*.md")}
-    assert reports == {path.stem for path in UPSTREAM.glob("*.patch")}
+    assert reports == {path.stem for path in UPSTREAM.rglob("*.patch")}
     assert all(f"test_{name}" in globals() for name in reports)
 
 
@@ -92,6 +92,31 @@ def test_sleep_without_a_clock_is_silent(patched):
     rosgraph.Master("/test").setParam("/use_sim_time", True)
     with node("rospy.sleep(1)") as sleeper:
         sleeper.wait_for(lambda: "no message has come on /clock" in str(sleeper), "the warning")
+
+
+def test_cmake_4_refuses_every_workspace(tmp_path):
+    """No CMake complains, not even one that warns of what CMake 4 refuses."""
+    (tmp_path / "cmake").mkdir()
+    shutil.copy("/usr/share/catkin/cmake/toplevel.cmake", tmp_path / "cmake")
+    patch = UPSTREAM / "catkin" / "cmake_4_refuses_every_workspace.patch"
+    # catkin's own CMakeLists.txt, which the patch changes as well, is not installed.
+    (tmp_path / "CMakeLists.txt").write_text(
+        "cmake_minimum_required(VERSION 3.0.2)\n\n"
+        "set(catkin_EXTRAS_DIR ${CMAKE_CURRENT_SOURCE_DIR}/cmake)\n\n"
+    )
+    subprocess.run(["patch", "-p1", "--input", patch], cwd=tmp_path, check=True)
+    (tmp_path / "src").mkdir()
+    # What a CMake before 4 does not refuse, it says: which version the workspace is written for.
+    text = (tmp_path / "cmake" / "toplevel.cmake").read_text()
+    (tmp_path / "src" / "CMakeLists.txt").write_text(
+        text + 'cmake_policy(GET CMP0065 new)\nmessage("written for CMake 3.4 or later: ${new}")\n'
+    )
+    environment = {k: v for k, v in os.environ.items() if k != "CMAKE_POLICY_VERSION_MINIMUM"}
+    command = ["cmake", "-S", "src", "-B", "build", "-DPYTHON_EXECUTABLE=/usr/bin/python3"]
+    done = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    assert "written for CMake 3.4 or later: NEW" in done.stderr
+    assert "Compatibility with CMake" not in done.stderr
 
 
 def test_both_nodes_of_one_name_go_on(patched):
