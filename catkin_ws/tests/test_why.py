@@ -21,6 +21,7 @@ import rosmaster.main
 import rospkg
 import why
 from front_door import environment, make
+from mrp_check import releases
 from mrp_check.building import configuring, cpp_words
 from mrp_check.rules import launch_file
 from mrp_check.sources import python_read
@@ -66,7 +67,7 @@ PACKAGE_XML = """<package format="2">
 <maintainer email="you@mrp.example">you</maintainer>
 <license>BSD-3-Clause</license><buildtool_depend>catkin</buildtool_depend></package>
 """
-RELEASE = pathlib.Path("/etc/debian_version").read_text().split(".")[0]
+RELEASE = str(releases.here())
 ENDING = 10.0  # seconds that a program has to end after Ctrl-C
 
 # Python takes longer to load the master than it lives here: it is loaded once, and then copied.

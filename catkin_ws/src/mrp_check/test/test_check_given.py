@@ -5,6 +5,7 @@ import types
 
 import check_rules
 import pytest
+from mrp_check import releases
 from mrp_check.contract.finding import ERROR, NOTE, WARNING
 from mrp_check.rules import (
     cmake,
@@ -74,15 +75,30 @@ def test_a_package_has_a_usual_name(name, found, tmp_path):
     assert lines_of(package_name, known) == found
 
 
-@pytest.mark.parametrize(("version", "found"), [("2.8.3", [1]), ("3.0.2", []), ("3.5...3.20", [])])
+@pytest.mark.parametrize(("version", "found"), [("2.8.3", [1]), ("3.10", []), ("2.8...3.20", [])])
 def test_cmakelists_is_not_of_an_old_cmake(version, found, tmp_path):
     known = case(tmp_path, "cpp", INIT, CMakeLists_DOT_txt=MADE_BY_CMAKE.replace("3.10", version))
     assert lines_of(cmake, known) == found
 
 
-@pytest.mark.parametrize(("version", "found"), [("2.8.12", [1]), ("3.0.2", [])])
-def test_what_only_a_newer_cmake_says_is_a_note(version, found, tmp_path):
+# CMake 3.25 warns of what is older than 2.8.12, CMake 3.31 of what is older than 3.10.
+@pytest.mark.parametrize(
+    ("version", "release", "found"),
+    [
+        *[("2.8.12", 12, [1]), ("3.0.2", 12, [1]), ("3.0.2...3.4", 12, [1]), ("3.5", 12, [])],
+        *[("3.0.2", 13, []), ("3.0.2...3.5", 12, []), ("3.0.2", None, [1])],
+    ],
+)
+def test_what_only_a_newer_cmake_says_is_a_note(version, release, found, tmp_path, monkeypatch):
+    monkeypatch.setattr(releases, "here", lambda: release)
     known = case(tmp_path, "cpp", INIT, CMakeLists_DOT_txt=MADE_BY_CMAKE.replace("3.10", version))
+    assert lines_of(cmake, known, NOTE) == found
+
+
+@pytest.mark.parametrize(("library", "found"), [("boost_system", [7]), ("${Boost_LIBRARIES}", [])])
+def test_a_library_that_a_later_debian_does_not_have_is_a_note(library, found, tmp_path):
+    text = MADE_BY_CMAKE + f"add_executable(a a.cpp)\ntarget_link_libraries(a {library})\n"
+    known = case(tmp_path, "cpp", INIT, CMakeLists_DOT_txt=text)
     assert lines_of(cmake, known, NOTE) == found
 
 

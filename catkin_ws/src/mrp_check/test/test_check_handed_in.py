@@ -167,7 +167,8 @@ REFUSED = {
     "bomb.zip": (bomb, "entry mrp/zeros.txt: it unpacks to more than 100 times its size"),
     "lying.zip": (lying_bomb, "cannot be unpacked"),
     "many.zip": (lambda path: zip_(path, dict.fromkeys(map(str, range(60)), "")), "50 entries"),
-    "header.tgz": (huge_header, "its list of files is too long"),
+    # Before Python 3.14, tarfile asks for all of the header at once.
+    "header.tgz": (huge_header, " is too long"),
     "encrypted.zip": (encrypted, "is encrypted, password required"),
     "cut.tgz": (cut, "cannot be unpacked"),
     "huge.zip": (huge, "has 10000 MB"),

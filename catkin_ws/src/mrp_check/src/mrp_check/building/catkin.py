@@ -12,7 +12,7 @@ import shlex
 import shutil
 import typing
 
-from mrp_check import confine, sandbox
+from mrp_check import confine, releases, sandbox
 from mrp_check.building import headers
 from mrp_check.building.stubs import Stubs, absent
 from mrp_check.confined import variables, written
@@ -86,6 +86,7 @@ class Catkin:
     def _run(self, *command: str) -> confine.Result:
         """Run a command that may call the compiler."""
         environment = {**self.compiler_environment(), "CXXFLAGS": self.workspace.compiler_flags}
+        environment[releases.CMAKE_VARIABLE] = releases.CMAKE_VALUE
         cache = environment.get("CCACHE_DIR")
         if cache:
             os.makedirs(cache, exist_ok=True)  # within the confinement it could not be made

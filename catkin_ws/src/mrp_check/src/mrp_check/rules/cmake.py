@@ -6,7 +6,7 @@ from __future__ import annotations
 import re
 from typing import Iterator
 
-from mrp_check import evidence
+from mrp_check import evidence, releases
 from mrp_check.case import Case
 from mrp_check.contract.finding import CERTAIN, HABIT, HINT, Finding
 from mrp_check.contract.requirements import Requirement, Rule
@@ -37,6 +37,7 @@ def _findings(case: Case) -> Iterator[Finding]:
         yield from _twice(case.model)
         if not case.spec.is_contract:
             yield from _old(case.package, case.model)
+            yield from _boost_system(case.package, case.model)
             yield from _again(case.package, case.model)
             yield from _made_again(case.package, case.model)
     else:
@@ -67,23 +68,48 @@ def _in_round_brackets(package: Package) -> Iterator[Finding]:
 
 
 def _old(package: Package, model: Model) -> Iterator[Finding]:
-    """Yield a finding if CMakeLists.txt is written for an older CMake than catkin is: a warning
-    where CMake warns, too. https://cmake.org/cmake/help/latest/release/3.19.html#deprecated
+    """Yield a finding if CMakeLists.txt is written for a CMake that is too old for CMake 4: a
+    warning where this machine's CMake warns, too. Of MIN...MAX, MAX counts.
+    https://cmake.org/cmake/help/latest/command/cmake_minimum_required.html
     """
     asked = next((one for one in model.calls if one.command == "cmake_minimum_required"), None)
-    numbers = [int(part) for part in re.findall(r"\d+", " ".join(asked.arguments))] if asked else []
-    if asked and numbers and numbers < [3, 0, 2]:
+    newest = asked.arguments[1].split("...")[-1] if asked and asked.arguments[1:] else ""
+    numbers = tuple(map(int, re.findall(r"\d+", newest)))
+    if asked and numbers and numbers < releases.CMAKE_LEAST:
+        gone = releases.GONE["cmake"]
+        warned = (3, 10) if (releases.here() or 0) >= 13 else (2, 8, 12)
+        least = ".".join(map(str, releases.CMAKE_LEAST))
         yield Finding(
             "cmake",
-            "This asks for a CMake older than catkin's own: a newer CMake warns of it, and CMake 4"
-            " stops.",
+            f"This is written for CMake {newest}. A newer CMake warns of it, and CMake 4"
+            f" (Debian {gone.since}) refuses all below {least}.",
             FILE,
             asked.line,
-            HABIT if numbers < [2, 8, 12] else HINT,
-            expected="cmake_minimum_required(VERSION 3.10)",
+            HABIT if numbers < warned else HINT,
+            expected=gone.instead,
             seen=package.line(FILE, asked.line),
-            fix="Write cmake_minimum_required(VERSION 3.10).",
+            fix=f"Write {gone.instead}.",
+            why=gone.why,
         )
+
+
+def _boost_system(package: Package, model: Model) -> Iterator[Finding]:
+    """Yield a note if the library boost_system is linked: where it is gone, the linker says so."""
+    gone = releases.GONE["boost_system"]
+    for call in model.calls:
+        if call.command == "target_link_libraries":
+            if {"boost_system", "-lboost_system"} & {*call.arguments}:
+                yield Finding(
+                    "cmake",
+                    f"From Debian {gone.since} on, there is no {gone.what}.",
+                    call.file,
+                    call.line,
+                    HINT,
+                    expected=gone.instead,
+                    seen=package.line(call.file, call.line),
+                    fix="Take boost_system out.",
+                    why=gone.why,
+                )
 
 
 def _twice(model: Model) -> Iterator[Finding]:

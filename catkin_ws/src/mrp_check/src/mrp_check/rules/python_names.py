@@ -11,7 +11,7 @@ from typing import Collection, Iterator, Sequence
 
 from pyflakes import checker, messages
 
-from mrp_check import evidence
+from mrp_check import evidence, releases
 from mrp_check.contract.finding import CERTAIN, Change, Finding
 from mrp_check.contract.requirements import Requirement, Rule
 from mrp_check.contract.words import last_part, nearest, perhaps
@@ -85,6 +85,9 @@ class Names(PythonRule):
         if missing in OF_PYTHON_2:
             yield self._renamed(node, missing)
             return
+        if missing in releases.GONE:
+            yield self._gone(node, missing)
+            return
         if parent is None:
             known = set(sys.modules) | ros_modules()
             # Of short names many are alike: cv2 is no misspelt csv.
@@ -104,6 +107,18 @@ class Names(PythonRule):
             node,
             expected="a module that is installed",
             fix=f"Write {near}." if near else "Correct the name of the module.",
+        )
+
+    def _gone(self, node: ast.stmt, name: str) -> Finding:
+        gone = releases.GONE[name]
+        return self.finding(
+            "python-names",
+            f"From Debian {gone.since} on, there is no {gone.what}: Python ends with a"
+            " ModuleNotFoundError.",
+            node,
+            expected=gone.instead,
+            fix=f"Use {gone.instead}.",
+            why=gone.why,
         )
 
     def _generated(self, node: ast.stmt, name: str) -> Iterator[Finding]:

@@ -93,6 +93,21 @@ def _tabs(lines: Sequence[str]) -> str:
     return f"Tabs and spaces are mixed: use four spaces for each level. Lines with {kind}: {shown}."
 
 
+def _source(file: str, text: str) -> Source:
+    """Return the Source of a text. Raises SyntaxError where Python 2 is written.
+
+    From Python 3.14 on, `except OSError, e:` means two classes: a small letter means a variable.
+    """
+    source = Source(file, text)
+    for handler in source.nodes(ast.ExceptHandler):
+        last = handler.type.elts[-1] if isinstance(handler.type, ast.Tuple) else None
+        line = text.splitlines()[handler.lineno - 1]
+        if isinstance(last, ast.Name) and last.id[0].islower() and _EXCEPT.match(line):
+            place = (file, handler.lineno, handler.col_offset + 1, line)
+            raise SyntaxError("multiple exception types must be parenthesized", place)
+    return source
+
+
 def further(package: Package, file: str) -> tuple[Source | None, list[Finding]]:
     """Return (the Source, what else Python says) of a file that Python cannot read, as if what
     Python says of each of its lines had been corrected; None if only its author can do that."""
@@ -100,7 +115,7 @@ def further(package: Package, file: str) -> tuple[Source | None, list[Finding]]:
     problems: list[Finding] = []
     while True:
         try:
-            return Source(file, text), problems
+            return _source(file, text), problems
         except SyntaxError as error:
             before, said = said, error.msg or "invalid syntax"
             correct = next((one for shape, one in _IN_PYTHON3 if re.search(shape, said)), str)
@@ -120,7 +135,7 @@ def read(package: Package, file: str) -> tuple[Source | None, Finding | None]:
     try:
         if b"\0" not in data:
             data.decode("utf-8")
-        return Source(file, package.text(file)), None
+        return _source(file, package.text(file)), None
     except UnicodeDecodeError:
         try:
             return Source(file, data), None  # Python itself reads the coding line
