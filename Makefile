@@ -11,7 +11,8 @@ MAKEFLAGS += --no-print-directory
 # - Debian 14's CMake 4 refuses what catkin itself asks for, unless it is told to take it as 3.5;
 # - ROS One and ROS Noetic have a file to source, Debian's ROS has not;
 # - in a test, mrp_testing/guard.py puts programs in the place of sudo and its like.
-OPT_ROS := $(firstword $(wildcard /opt/ros/one/setup.bash /opt/ros/noetic/setup.bash))
+export MRP_OPT_ROS ?= /opt/ros
+OPT_ROS := $(firstword $(wildcard $(MRP_OPT_ROS)/one/setup.bash $(MRP_OPT_ROS)/noetic/setup.bash))
 IN_ENVIRONMENT := export CMAKE_POLICY_VERSION_MINIMUM=3.5 \
   PATH="$${MRP_TEST_GUARD:+$$MRP_TEST_GUARD:}/usr/bin:/bin:/usr/sbin:/sbin:$$PATH"; \
   unset CMAKE_PREFIX_PATH ROS_PACKAGE_PATH PYTHONPATH; $(if $(OPT_ROS),source $(OPT_ROS);)
@@ -219,7 +220,7 @@ test-browser: packages-test-browser $(BUILT_WHOLE) docs catkin_ws/build/dask/bin
 .PHONY: doctor
 doctor:  ## find what keeps the tutorial from running on this machine
 	@test -x /usr/bin/python3 || { echo "[FAIL] expected /usr/bin/python3; there is none"; \
-	  echo "       mend: make deps"; exit 1; }
+	  echo "       fix: make deps"; exit 1; }
 	@/usr/bin/python3 -IB catkin_ws/tools/doctor.py
 
 # A text may have quotes, and $(...) of a launch file, which make must not read.
@@ -234,7 +235,7 @@ clean:  ## delete all that was built
 	rm -rf catkin_ws/build catkin_ws/devel catkin_ws/install
 	rm -f catkin_ws/src/CMakeLists.txt catkin_ws/.catkin_workspace catkin_ws/compile_commands.json
 
-# Containers. DEBIAN names the release that the images are made of: trixie (13) or bookworm (12).
+# Containers. DEBIAN names the release that the images are made of: trixie (13), bookworm (12) or forky (14).
 export DEBIAN ?= trixie
 IMAGE := mrp:$(DEBIAN)
 DOCKER_RESULTS := $(RESULTS)/$(DEBIAN)
@@ -258,8 +259,10 @@ IN_BOUNDS := docker run --rm --init --network none --hostname localhost \
 need-docker:
 	@command -v docker > /dev/null || { \
 	  echo "error: this needs Docker, which is not installed on this machine" >&2; exit 1; }
-	@docker info > /dev/null 2>&1 || { \
-	  echo "error: Docker's engine does not answer: start it; 'docker info' says more" >&2; exit 1; }
+	@said=$$(docker info 2>&1 > /dev/null) || { \
+	  echo "error: 'docker info' says: $${said%%$$'\n'*}" >&2; \
+	  [[ "$$said" != *[Cc]"annot connect"* && "$$said" != *"failed to connect"* ]] || \
+	    echo "fix: start Docker's engine" >&2; exit 1; }
 
 .PHONY: docker-build
 docker-build: need-docker  ## build the image mrp, which runs the four nodes anywhere

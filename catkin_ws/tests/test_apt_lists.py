@@ -136,8 +136,7 @@ def test_installer_without_apt_points_to_the_container(tmp_path):
     done = install([str(LISTS["build"])], tmp_path, path=str(tmp_path))
     assert done.returncode == 1
     assert done.stderr == (
-        "error: this system has no apt-get; ROS 1 comes from Debian's packages. "
-        "Run it in the container instead: make docker-run\n"
+        f"error: this system has no apt-get; {ANYWHERE_ELSE}\nfix: make docker-run\n"
     )
 
 
@@ -150,9 +149,69 @@ def test_installer_says_which_package_no_archive_has(tmp_path):
     done = install([str(path)], tmp_path)
     assert done.returncode == 1
     assert done.stderr == (
-        "error: no package archive of this system has 'no-such-package or nor-this-one'. "
-        "Run it in the container instead: make docker-run\n"
+        "error: no package archive of this system has 'no-such-package or nor-this-one'; "
+        f"{ANYWHERE_ELSE}\nfix: make docker-run\n"
     )
+
+
+def test_installer_passes_on_what_apt_cache_says(tmp_path):
+    become(tmp_path, "root")
+    stand_in(tmp_path, "apt-get", "")
+    stand_in(
+        tmp_path, "apt-cache", "echo 'E: The list of sources could not be read.' >&2\nexit 100\n"
+    )
+    path = tmp_path / "list.txt"
+    path.write_text("no-such-package\n")
+    assert (
+        "(apt-cache says: E: The list of sources could not be read.)"
+        in install([str(path)], tmp_path).stderr
+    )
+
+
+# As packages.ros.org's is, and as Debian's is.
+CONFLICTS = "Package: python3-catkin-pkg\nConflicts: catkin, python-catkin-pkg\n"
+NO_CONFLICT = "Package: python3-catkin-pkg\nConflicts: python-catkin-pkg\n"
+
+
+@pytest.mark.parametrize(
+    ("shows", "release", "begins"),
+    [
+        (CONFLICTS, "bookworm", "another archive's python3-catkin-pkg, such as packages.ros.org's"),
+        (NO_CONFLICT, "bookworm", "ROS 1 is in Debian's archive"),
+        (NO_CONFLICT, "jammy", "ROS 1 is in Ubuntu's archive"),
+        (NO_CONFLICT, "noble", "Ubuntu 24.04 has no ROS 1; install ROS One"),
+        (NO_CONFLICT, "bullseye", "ROS 1 is in the archives of Debian"),
+    ],
+)
+def test_installer_advises_what_works_here(shows, release, begins, tmp_path):
+    stand_in(tmp_path, "apt-cache", f"printf '{shows}'\n")
+    done = install(["--advice"], tmp_path, os_release=f"VERSION_CODENAME={release}\n")
+    what, fix = done.stdout.splitlines()
+    assert what.startswith(begins)
+    if shows == CONFLICTS:
+        assert "Pin: release o=Debian" in fix and "/etc/apt/preferences.d" in fix
+    else:
+        assert fix == ("make deps" if "archive\n" in done.stdout else "make docker-run")
+
+
+def test_installer_says_that_another_archive_keeps_catkin_out(tmp_path):
+    become(tmp_path, "root")
+    stand_in(tmp_path, "apt-get", 'case "$*" in *install*) exit 100 ;; esac\n')
+    stand_in(tmp_path, "apt-cache", f"printf 'Package: no-such-package\\n{CONFLICTS}'\n")
+    path = tmp_path / "list.txt"
+    path.write_text("no-such-package\n")
+    said = install([str(path)], tmp_path).stderr
+    assert "another archive's python3-catkin-pkg" in said and "\nfix: printf 'Package:" in said
+
+
+@pytest.mark.parametrize("distribution", ["one", "noetic"])
+def test_ros_in_opt_needs_no_packages(distribution, tmp_path):
+    (tmp_path / distribution).mkdir()
+    (tmp_path / distribution / "setup.bash").touch()
+    path = tmp_path / "list.txt"
+    path.write_text("no-such-package\n")
+    done = install([str(path)], tmp_path, opt_ros=str(tmp_path))
+    assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
 
 
 def become(folder, user):
@@ -165,17 +224,25 @@ def become(folder, user):
         stand_in(folder, "sudo", 'exec "$@" 3>&-\n')
 
 
+ANYWHERE_ELSE = (
+    "ROS 1 is in the archives of Debian 14, 13 and 12 and of Ubuntu 22.04;"
+    " elsewhere use the container"
+)
+
+
 def stand_in(folder, name, script):
     """Put a shell script in a program's place."""
     (folder / name).write_text("#!/bin/sh\n" + script)
     (folder / name).chmod(0o755)
 
 
-def install(lists, folder, path=None):
+def install(lists, folder, path=None, os_release="ID=other\n", opt_ros="/no/such/folder"):
     """Run the installer with `folder` first on PATH, or with that PATH alone."""
+    (folder / "os-release").write_text(os_release)
+    system = {"MRP_OS_RELEASE": str(folder / "os-release"), "MRP_OPT_ROS": opt_ros}
     return subprocess.run(
         ["/bin/bash", str(WORKSPACE / "tools" / "install_packages.sh"), *lists],
-        env={**os.environ, "PATH": path or f"{folder}:{os.environ['PATH']}"},
+        env={**os.environ, **system, "PATH": path or f"{folder}:{os.environ['PATH']}"},
         capture_output=True,
         text=True,
     )

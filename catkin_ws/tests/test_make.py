@@ -92,6 +92,36 @@ def test_a_passing_test_passes_make_test(copy):
 
 
 @pytest.mark.quick
+@pytest.mark.parametrize("distribution", ["one", "noetic"])
+def test_ros_in_opt_is_sourced(distribution, tmp_path):
+    """A made-up setup.bash, which ends what sources it: nothing is built."""
+    (tmp_path / distribution).mkdir()
+    (tmp_path / distribution / "setup.bash").write_text("echo I am $BASH_SOURCE; exit 7\n")
+    done = make("docs", f"SITE={tmp_path}/site", MRP_OPT_ROS=str(tmp_path))
+    assert f"I am {tmp_path}/{distribution}/setup.bash" in done.stdout
+    assert done.returncode != 0
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize(
+    ("says", "fix"),
+    [
+        ("Cannot connect to the Docker daemon at unix:///x. Is it running?", True),
+        ("failed to connect to the docker API at unix:///var/run/docker.sock", True),
+        ("Error response from daemon: client version 1.41 is too old.", False),
+        ("permission denied while trying to connect to the Docker daemon socket", False),
+    ],
+)
+def test_what_docker_says_reaches_the_user(says, fix, tmp_path):
+    docker = tmp_path / "docker"
+    docker.write_text(f"#!/bin/sh\necho '{says}' >&2\necho more >&2\nexit 1\n")
+    docker.chmod(0o755)
+    said = make("need-docker", PATH=f"{tmp_path}:/usr/bin:/bin").stdout.splitlines()
+    assert said[0] == f"error: 'docker info' says: {says}"
+    assert ("fix: start Docker's engine" in said) == fix
+
+
+@pytest.mark.quick
 def test_docker_check_is_in_bounds():
     """It only says what it would do: where there is Docker, `make docker-harm` tests the bounds."""
     said = make("docker-check", "--dry-run", f"PKG={ROOT}/catkin_ws/src/mrp").stdout

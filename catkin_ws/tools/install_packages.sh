@@ -1,26 +1,74 @@
 #!/bin/bash
 # SPDX-License-Identifier: BSD-3-Clause
-# Usage: install_packages.sh LIST...
+# Usage: install_packages.sh LIST... | --advice
 # Installs the Debian packages of the lists that are not installed yet. The first line of a list is a
 # comment that says what they are for. Each other line is a package, or alternatives: "a | b" is
 # satisfied by either. Does nothing if all are there.
+# --advice prints what works on this system: a line that says what, and a command if there is one.
 set -euo pipefail
-
-container="Run it in the container instead: make docker-run"
 
 fail() {
   echo "error: $*" >&2
   exit 1
 }
 
-# A system with ROS Noetic's own packages has what it needs in /opt/ros.
-[ ! -e /opt/ros/noetic/setup.bash ] || exit 0
+# Debian's name of this system's release; that of Ubuntu's, of which Linux Mint, say, is made.
+release() {
+  # shellcheck source=/dev/null
+  (. "${MRP_OS_RELEASE:-/etc/os-release}" && echo "${UBUNTU_CODENAME:-${VERSION_CODENAME:-}}") 2> /dev/null || true
+}
+
+# packages.ros.org has a python3-catkin-pkg that is newer than Debian's, and keeps Debian's catkin out.
+is_in_conflict() {
+  command -v apt-cache > /dev/null &&
+    apt-cache show --no-all-versions python3-catkin-pkg 2> /dev/null |
+    grep -qE '^(Conflicts|Breaks):(.*[ ,])?catkin([ ,(]|$)'
+}
+
+# Print what works on this system, and the command for it.
+advice() {
+  local vendor=Debian
+  [ "$(release)" != jammy ] || vendor=Ubuntu
+  if is_in_conflict; then
+    echo "another archive's python3-catkin-pkg, such as packages.ros.org's, keeps $vendor's catkin out"
+    # shellcheck disable=SC2028  # printf expands them
+    echo "printf 'Package: python3-catkin-pkg*\nPin: release o=$vendor\nPin-Priority: 1001\n' |" \
+      "sudo tee /etc/apt/preferences.d/catkin && sudo apt-get install --allow-downgrades python3-catkin-pkg"
+    return
+  fi
+  case $(release) in
+    bookworm | trixie | forky | jammy) printf '%s\n' "ROS 1 is in $vendor's archive" "make deps" ;;
+    noble) echo "Ubuntu 24.04 has no ROS 1; install ROS One (https://ros.packages.techfak.net), or use" \
+      "the container"; echo "make docker-run" ;;
+    *) echo "ROS 1 is in the archives of Debian 14, 13 and 12 and of Ubuntu 22.04; elsewhere use the" \
+      "container"; echo "make docker-run" ;;
+  esac
+}
+
+if [ "$1" = --advice ]; then
+  advice
+  exit
+fi
+
+# Say what is wrong, and what works here.
+fail_on_system() {
+  { read -r what; read -r fix; } < <(advice)
+  [ "$fix" != "make deps" ] || fix="make docker-run"  # it has just failed
+  echo "error: $*; $what" >&2
+  echo "fix: $fix" >&2
+  exit 1
+}
+
+# A system with ROS One or ROS Noetic has what it needs there.
+for distribution in one noetic; do
+  [ ! -e "${MRP_OPT_ROS:-/opt/ros}/$distribution/setup.bash" ] || exit 0
+done
 
 # rootless.sh has laid them over the system, whose dpkg does not know them.
 [ -z "${MRP_HAS_PACKAGES:-}" ] || exit 0
 
 if ! command -v apt-get > /dev/null || ! command -v dpkg-query > /dev/null; then
-  fail "this system has no apt-get; ROS 1 comes from Debian's packages. $container"
+  fail_on_system "this system has no apt-get"
 fi
 
 declare -A installed
@@ -83,7 +131,9 @@ for line in "${lines[@]}"; do
       continue 2
     fi
   done
-  fail "no package archive of this system has '${line// / or }'. $container"
+  # shellcheck disable=SC2086  # these are several packages
+  said=$(apt-cache show $line 2>&1 > /dev/null | grep -vE '^[NW]: |^E: No packages found' | head -n 1) || true
+  fail_on_system "no package archive of this system has '${line// / or }'${said:+ (apt-cache says: $said)}"
 done
 
 packages=(install --no-install-recommends "${packages[@]}")
@@ -111,6 +161,7 @@ install() {
   fi
 }
 install "${packages[@]}" || {
-  grep -vE '^(dl|pm)status:' "$log" | tail -n 30 >&2
+  grep -vE '^(dl|pm)status:' "$log" | tail -n 30 >&2 || true
+  ! is_in_conflict || fail_on_system "apt-get could not install the packages; its own message is above"
   fail "apt-get could not install the packages; its own message is above"
 }

@@ -80,13 +80,13 @@ def test_docker_up_shows_all_and_docker_down_takes_it_away(built):
 
 
 def make_docker_build(folder, *programs):
-    """Run make docker-build where these are the only programs; return what it says."""
+    """Run make docker-build where these are the only programs; return its errors, and fixes."""
     for program in programs:
         (folder / program).symlink_to(shutil.which(program))
     path = f"PATH={folder}"
     done = run("make", "-C", ROOT, "docker-build", path, check=False)
     assert done.returncode == 2
-    return [line for line in done.stdout.splitlines() if line.startswith("error:")]
+    return [line for line in done.stdout.splitlines() if line.startswith(("error:", "fix:"))]
 
 
 def test_without_docker(tmp_path):
@@ -97,9 +97,9 @@ def test_without_docker(tmp_path):
 
 def test_without_engine(tmp_path, monkeypatch):
     monkeypatch.setenv("DOCKER_HOST", f"unix://{tmp_path}/no-socket")
-    assert make_docker_build(tmp_path, "bash", "docker") == [
-        "error: Docker's engine does not answer: start it; 'docker info' says more"
-    ]
+    error, fix = make_docker_build(tmp_path, "bash", "docker")
+    assert error.startswith("error: 'docker info' says: ") and "no-socket" in error
+    assert fix == "fix: start Docker's engine"
 
 
 def test_docker_view_shows_the_four_nodes():
