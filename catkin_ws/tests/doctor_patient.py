@@ -31,8 +31,10 @@ sys.exit(doctor.examine(doctor.this_machine()._replace(**fields)))
 # What the doctor says where all is well.
 WELL = {
     "packages": "all 3 of run.txt and tools.txt are installed",
+    "CMake": "CMAKE_POLICY_VERSION_MINIMUM is set",
     "python3": "/usr/bin/python3 imports catkin_pkg and rospy",
     "installation": "ROS comes from Debian",
+    "localhost": "localhost is this machine",
     "host name": "not in use, because ROS_HOSTNAME is set",
     "ROS_HOSTNAME and ROS_IP": "ROS_HOSTNAME=localhost is this machine",
     "ROS_MASTER_URI": "http://localhost:{port} is on this machine",
@@ -52,9 +54,9 @@ NEEDING_PACKAGES = {
 TAKE_OUT = "take its line out of ~/.bashrc (grep -n setup ~/.bashrc) and open a new terminal"
 
 LINE = re.compile(r"(\[OK\]   |\[FAIL\] |\[--\]   )([^:]+): (.*)")
-MEND = "       mend: "
+FIX = "       fix: "
 WHY = "       why:  pages/why.html#"
-Check = collections.namedtuple("Check", "status text mends")
+Check = collections.namedtuple("Check", "status text fixes")
 
 
 class Report:
@@ -67,8 +69,8 @@ class Report:
         self.why = {}  # title -> the entry of the page why
         title = None
         for line in lines:
-            if line.startswith(MEND):
-                self.checks[title].mends.append(line[len(MEND) :])
+            if line.startswith(FIX):
+                self.checks[title].fixes.append(line[len(FIX) :])
             elif line.startswith(WHY):
                 self.why[title] = line[len(WHY) :]
             else:
@@ -79,9 +81,9 @@ class Report:
         """Return title -> text of the checks with that status."""
         return {title: c.text for title, c in self.checks.items() if c.status == status}
 
-    def assert_only_failure(self, title, text, *mends, skipped=None):
+    def assert_only_failure(self, title, text, *fixes, skipped=None):
         skipped = skipped or {}
-        assert self.checks[title] == Check("FAIL", text, list(mends)), self.output
+        assert self.checks[title] == Check("FAIL", text, list(fixes)), self.output
         assert self.of("--") == (skipped or {}), self.output
         assert set(self.of("OK")) == set(WELL) - set(skipped) - {title}, self.output
         assert list(self.why) == [title], self.output
@@ -104,8 +106,11 @@ class Patient:
         self.write("devel/lib/mrp/subscriber_cpp_node", "")
         self.script = self.workspace / "tools" / "doctor.py"
         self.script.parent.mkdir()
-        for part in (DOCTOR, DOCTOR.with_name("doctor_network.py")):
-            shutil.copy(part, self.script.parent)
+        for part in ("doctor.py", "doctor_network.py", "install_packages.sh"):
+            shutil.copy(DOCTOR.with_name(part), self.script.parent)
+        for part in ("__init__.py", "releases.py"):
+            name = f"src/mrp_check/src/mrp_check/{part}"
+            self.write(name, (WORKSPACE / name).read_text())
         # The tests about python3 take the real one; it imports rospy slowly.
         python3 = self.write("stand_in/python3", "#!/bin/sh\nexit 0\n", mode=0o755)
         self.port = port
@@ -113,6 +118,7 @@ class Patient:
         self.env = {
             "PATH": f"{os.path.dirname(python3)}:{REAL_PATH}",
             "HOME": str(folder),
+            "CMAKE_POLICY_VERSION_MINIMUM": "3.5",
             "ROS_DISTRO": "Debian",
             "ROS_HOSTNAME": "localhost",
             "ROS_MASTER_URI": self.uri,
@@ -139,8 +145,13 @@ class Patient:
         assert run.stderr == ""
         return Report(run.returncode, run.stdout)
 
-    def noetic(self):
-        """Make ROS Noetic proper the one that this shell knows; return the facts for it."""
-        (self.folder / "ros" / "noetic").mkdir(parents=True)
-        self.env["ROS_DISTRO"] = "noetic"
+    def system(self, **fields):
+        """Return a file like /etc/os-release, with these fields."""
+        text = "".join(f'{name}="{value}"\n' for name, value in fields.items())
+        return self.write("os-release", text)
+
+    def noetic(self, name="noetic"):
+        """Make ROS Noetic, or ROS One, the one that this shell knows; return the facts for it."""
+        (self.folder / "ros" / name).mkdir(parents=True)
+        self.env["ROS_DISTRO"] = name
         return {"opt_ros": self.folder / "ros", "dpkg_query": "/no/dpkg-query"}

@@ -8,6 +8,7 @@ import subprocess
 
 import pytest
 from doctor_patient import NEEDING_PACKAGES, PYTHON, REAL_PATH, TAKE_OUT, WELL, Check
+from mrp_check import releases
 from mrp_testing.waiting import DEADLINE
 
 pytestmark = pytest.mark.slow
@@ -19,7 +20,7 @@ def test_all_well(patient):
     report = patient.examine()
     well = {title: text.format(port=patient.port) for title, text in WELL.items()}
     assert list(report.checks.items()) == [(t, Check("OK", well[t], [])) for t in well]
-    assert (report.summary, report.code) == ("12 checks, 0 failed", 0)
+    assert (report.summary, report.code) == ("14 checks, 0 failed", 0)
 
 
 @pytest.mark.quick
@@ -28,7 +29,7 @@ def test_every_failure_is_counted(patient):
     patient.env.update(ROS_HOSTNAME="192.0.2.1", ROS_MASTER_URI="http://localhost")
     report = patient.examine()
     assert list(report.of("FAIL")) == ["ROS_HOSTNAME and ROS_IP", "ROS_MASTER_URI", "scripts"]
-    assert (report.summary, report.code) == ("12 checks, 3 failed", 1)
+    assert (report.summary, report.code) == ("14 checks, 3 failed", 1)
 
 
 # packages
@@ -40,24 +41,65 @@ def test_package_missing(patient):
     patient.write("apt/tools.txt", "no-such-one | no-such-other # neither\n")
     expected = "expected all of run.txt and tools.txt; found "
     found = "no no-such-one | no-such-other, no no-such-package"
-    patient.examine(debian_version="13.1").assert_only_failure(
-        "packages", expected + found, "make deps", skipped=NEEDING_PACKAGES
-    )
+    for name in (*(one.name for one in releases.RELEASES.values()), "jammy"):
+        os_release = patient.system(ID="any", VERSION_CODENAME=name)
+        patient.examine(os_release=os_release).assert_only_failure(
+            "packages", expected + found, "make deps", skipped=NEEDING_PACKAGES
+        )
 
 
 @pytest.mark.parametrize(
-    "facts", [{"debian_version": "bookworm/sid"}, {"dpkg_query": "/no/dpkg-query"}]
+    ("fields", "advice"),
+    [
+        (
+            {"ID": "ubuntu", "VERSION_CODENAME": "noble"},
+            "Ubuntu 24.04 has no ROS 1; install ROS One (https://ros.packages.techfak.net),"
+            " or use the container",
+        ),
+        (
+            {"ID": "linuxmint", "VERSION_CODENAME": "wilma", "UBUNTU_CODENAME": "noble"},
+            "Ubuntu 24.04 has no ROS 1; install ROS One (https://ros.packages.techfak.net),"
+            " or use the container",
+        ),
+        (
+            {"ID": "fedora", "VERSION_ID": "44"},
+            f"ROS 1 is in the archives of Debian {releases.supported()} and of Ubuntu 22.04;"
+            " elsewhere use the container",
+        ),
+    ],
 )
-def test_system_without_ros(patient, facts):
+def test_system_without_ros(patient, fields, advice):
     patient.write("apt/run.txt", "no-such-package\n")
-    patient.write("apt/tools.txt", "no-such-other-package\n")
-    patient.examine(**facts).assert_only_failure(
+    patient.examine(os_release=patient.system(**fields)).assert_only_failure(
         "packages",
-        "expected Debian 13 or 12, which have ROS packages; "
-        "found another system, without 2 of the 2 packages",
+        f"expected all of run.txt and tools.txt; found that {advice}",
         "make docker-run",
         skipped=NEEDING_PACKAGES,
     )
+
+
+@pytest.mark.quick
+def test_what_dpkg_says_reaches_the_user(patient):
+    said = "dpkg-query: error: failed to open package info file: Permission denied"
+    query = patient.write("dpkg-query", f"#!/bin/sh\necho '{said}' >&2\nexit 2\n", mode=0o755)
+    text = patient.examine(dpkg_query=query).checks["packages"].text
+    assert text.endswith(f"({said})")
+
+
+# CMake
+
+
+@pytest.mark.parametrize("number", releases.RELEASES)
+def test_cmake_4_needs_a_variable_in_ones_own_workspace(patient, number):
+    del patient.env["CMAKE_POLICY_VERSION_MINIMUM"]
+    release = releases.RELEASES[number]
+    os_release = patient.system(ID="debian", VERSION_CODENAME=release.name)
+    found = patient.examine(os_release=os_release).checks["CMake"]
+    if number < 14:
+        assert found == Check("OK", "this system's takes all that ROS asks for", [])
+    else:
+        text = "make does not need it, but catkin_make in your own workspace: Debian 14's CMake 4.3"
+        assert found == Check("--", text, ["export CMAKE_POLICY_VERSION_MINIMUM=3.5"])
 
 
 @pytest.mark.quick
@@ -72,12 +114,13 @@ def test_list_of_packages_missing(patient):
     )
 
 
-def test_packages_do_not_matter_with_noetic(patient):
+@pytest.mark.parametrize("name", ["noetic", "one"])
+def test_packages_do_not_matter_with_noetic(patient, name):
     patient.write("apt/run.txt", "no-such-package\n")
-    report = patient.examine(**patient.noetic())
-    assert report.of("--") == {"packages": f"skipped: ROS comes from {patient.folder}/ros/noetic"}
-    assert report.checks["installation"].text == f"ROS comes from {patient.folder}/ros/noetic"
-    assert (report.summary, report.code) == ("12 checks, 0 failed", 0)
+    report = patient.examine(**patient.noetic(name))
+    assert report.of("--") == {"packages": f"skipped: ROS comes from {patient.folder}/ros/{name}"}
+    assert report.checks["installation"].text == f"ROS comes from {patient.folder}/ros/{name}"
+    assert (report.summary, report.code) == ("14 checks, 0 failed", 0)
 
 
 # python3
@@ -155,9 +198,9 @@ def test_rospy_hidden(patient):
 def test_noetic_not_sourced(patient):
     hide_rospy(patient)
     report = patient.examine(**patient.noetic())
-    mend = f"source {patient.folder}/ros/noetic/setup.bash"
-    assert report.checks["python3"] == Check("FAIL", HIDDEN_ROSPY, [mend])
-    assert (report.summary, report.code) == ("12 checks, 1 failed", 1)
+    fix = f"source {patient.folder}/ros/noetic/setup.bash"
+    assert report.checks["python3"] == Check("FAIL", HIDDEN_ROSPY, [fix])
+    assert (report.summary, report.code) == ("14 checks, 1 failed", 1)
 
 
 # installation
@@ -266,7 +309,7 @@ def test_script_not_executable(patient, name):
         f"expected every script to be executable; found that these are not: {path}",
         f"chmod +x {path}",
     )
-    subprocess.run(report.checks["scripts"].mends[0], shell=True, check=True)
+    subprocess.run(report.checks["scripts"].fixes[0], shell=True, check=True)
     assert patient.examine().code == 0
 
 

@@ -96,7 +96,7 @@ def test_not_sourced(patient):
         "not sourced: make does not need it, but rosrun and roslaunch do",
         [f"source {patient.workspace}/devel/setup.bash"],
     )
-    assert (report.summary, report.code) == ("12 checks, 0 failed", 0)
+    assert (report.summary, report.code) == ("14 checks, 0 failed", 0)
 
 
 @pytest.mark.parametrize(

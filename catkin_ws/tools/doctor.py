@@ -19,44 +19,57 @@ import subprocess
 import sys
 
 # `make doctor` has Python pass over all that the user's shell says, and with it this folder.
-sys.path.insert(0, os.path.dirname(os.path.realpath(__file__)))
+TOOLS = os.path.dirname(os.path.realpath(__file__))
+sys.path[:0] = [TOOLS, os.path.join(os.path.dirname(TOOLS), "src", "mrp_check", "src")]
 
-from doctor_network import UNRESOLVED, host_problem, master, master_pid
+from doctor_network import UNRESOLVED, host_problem, master, master_pid  # noqa: E402
+from mrp_check import releases  # noqa: E402
 
 PYTHON_TIMEOUT = 20  # seconds: from a slow disk it takes a few to import rospy
+LOCALHOST = "localhost"
 
 # What the checks look at: the environment, the folder catkin_ws, and facts of the machine.
-Machine = collections.namedtuple(
-    "Machine", "env workspace host_name debian_version dpkg_query opt_ros"
-)
+Machine = collections.namedtuple("Machine", "env workspace host_name os_release dpkg_query opt_ros")
 
-# What a check returns. mend: the command that mends it; a second one is on a line of its own.
-Result = collections.namedtuple("Result", "status text mend", defaults=[""])
+# What a check returns. fix: the command that fixes it; a second one is on a line of its own.
+Result = collections.namedtuple("Result", "status text fix", defaults=[""])
 ok = functools.partial(Result, "OK")
 note = functools.partial(Result, "--")
 
 
-def fail(expected, found, mend):
-    return Result("FAIL", f"expected {expected}; found {found}", mend)
+def fail(expected, found, fix):
+    return Result("FAIL", f"expected {expected}; found {found}", fix)
 
 
 def check_packages(machine):
     """The Debian packages that building and running need are installed."""
-    if noetic(machine):
-        return note(f"skipped: ROS comes from {noetic(machine)}")
+    if ros_folder(machine):
+        return note(f"skipped: ROS comes from {ros_folder(machine)}")
     lines = set()
     for name in ("run.txt", "tools.txt"):
         with open(os.path.join(machine.workspace, "apt", name), errors="replace") as file:
             lines.update(line.split("#")[0].strip() for line in file)
     lines = sorted(lines - {""})
-    there = installed(machine, re.findall(r"[^\s|]+", " ".join(lines)))
+    there, problem = installed(machine, re.findall(r"[^\s|]+", " ".join(lines)))
     missing = [line for line in lines if there.isdisjoint(re.split(r"[\s|]+", line))]
     if not missing:
         return ok(f"all {len(lines)} of run.txt and tools.txt are installed")
-    if machine.debian_version.split(".")[0] in ("12", "13") and os.path.exists(machine.dpkg_query):
-        return fail("all of run.txt and tools.txt", "no " + ", no ".join(missing), "make deps")
-    found = f"another system, without {len(missing)} of the {len(lines)} packages"
-    return fail("Debian 13 or 12, which have ROS packages", found, "make docker-run")
+    advice, fix = advice_for(machine)
+    found = "no " + ", no ".join(missing) if fix == "make deps" else f"that {advice}"
+    found += f" ({problem})" if problem else ""
+    return fail("all of run.txt and tools.txt", found, fix)
+
+
+def check_cmake(machine):
+    """CMake takes what catkin asks for. make sees to it, but not in a workspace of your own."""
+    if machine.env.get(releases.CMAKE_VARIABLE):
+        return ok(f"{releases.CMAKE_VARIABLE} is set")
+    number = releases.here(machine.os_release)
+    if not number or number < releases.GONE["cmake"].since:
+        return ok("this system's takes all that ROS asks for")
+    name = f"Debian {number}'s CMake {releases.RELEASES[number].cmake}"
+    fix = f"export {releases.CMAKE_VARIABLE}={releases.CMAKE_VALUE}"
+    return note(f"make does not need it, but catkin_make in your own workspace: {name}", fix)
 
 
 def check_python(machine):
@@ -76,23 +89,24 @@ def check_python(machine):
             return ok(f"{python} imports catkin_pkg and rospy")
         error = run.stderr.decode(errors="replace").strip().split("\n")[-1] or "nothing"
     if os.path.realpath(os.path.dirname(python)) != os.path.realpath("/usr/bin"):
-        # CMake remembers its python3: PATH alone does not mend a folder that it has configured.
-        mend = f"export PATH=/usr/bin:$PATH\ncatkin_make -C {shlex.quote(machine.workspace)}"
-        mend += " -DPYTHON_EXECUTABLE=/usr/bin/python3"
-    elif noetic(machine):
-        mend = f"source {noetic(machine)}/setup.bash"
+        # CMake remembers its python3: PATH alone does not fix a folder that it has configured.
+        fix = f"export PATH=/usr/bin:$PATH\ncatkin_make -C {shlex.quote(machine.workspace)}"
+        fix += " -DPYTHON_EXECUTABLE=/usr/bin/python3"
+    elif ros_folder(machine):
+        fix = f"source {ros_folder(machine)}/setup.bash"
     else:  # the packages are there, so other modules come before theirs
-        mend = "unset PYTHONPATH PYTHONHOME; export PYTHONNOUSERSITE=1"
-    return fail(expected, f"{python}, which says: {error}", mend)
+        fix = "unset PYTHONPATH PYTHONHOME; export PYTHONNOUSERSITE=1"
+    return fail(expected, f"{python}, which says: {error}", fix)
 
 
 def check_installation(machine):
-    """This shell knows one ROS, /opt/ros/noetic if it exists, else Debian's; and one package mrp.
+    """This shell knows one ROS, /opt/ros/one or noetic if there is one, else Debian's; and one mrp.
 
     Another ROS on the disk does no harm until a shell sources it. But Debian's needs no sourcing:
     beside noetic, a shell that has not sourced noetic would take Debian's.
     """
-    mine, distro = noetic(machine), "noetic" if noetic(machine) else "Debian"
+    mine = ros_folder(machine)
+    distro = os.path.basename(mine) if mine else "Debian"
     copies = ("mrp/package.xml", "*/mrp/package.xml", "share/mrp")  # as sources, as built
     wrong = []
     if (machine.env.get("ROS_DISTRO") or distro) != distro:
@@ -108,9 +122,9 @@ def check_installation(machine):
             elif any(glob.glob(os.path.join(glob.escape(path), mrp)) for mrp in copies):
                 wrong.append(f"{path} in {name}, which has another mrp")
     if wrong:
-        mend = "take its line out of ~/.bashrc (grep -n setup ~/.bashrc) and open a new terminal"
-        return fail(f"this shell to know one ROS, {distro}, and one mrp", "; ".join(wrong), mend)
-    debian = sorted(installed(machine, ["ros-environment", "python3-rospy"]))
+        fix = "take its line out of ~/.bashrc (grep -n setup ~/.bashrc) and open a new terminal"
+        return fail(f"this shell to know one ROS, {distro}, and one mrp", "; ".join(wrong), fix)
+    debian = sorted(installed(machine, ["ros-environment", "python3-rospy"])[0])
     if mine and debian:
         remove = "sudo apt-get remove " + " ".join(debian)
         return fail(f"no ROS but {mine}", "Debian's " + " and ".join(debian) + " too", remove)
@@ -118,6 +132,17 @@ def check_installation(machine):
     return ok(
         f"ROS comes from {mine or 'Debian'}" + "".join(f"; {path} is not in use" for path in others)
     )
+
+
+def check_localhost(machine):
+    """localhost is this machine by IPv4, as the master and make run take it; ROS_IPV6 is not on."""
+    if machine.env.get("ROS_IPV6") == "on":
+        return fail("IPv4, which all nodes understand", "ROS_IPV6=on", "unset ROS_IPV6")
+    problem = host_problem(LOCALHOST)
+    if problem:
+        fix = f'echo "127.0.0.1 {LOCALHOST}" | sudo tee -a /etc/hosts'
+        return fail(f"{LOCALHOST} to be this machine", f"that it {problem}", fix)
+    return ok(f"{LOCALHOST} is this machine")
 
 
 def check_host_name(machine):
@@ -128,10 +153,10 @@ def check_host_name(machine):
     problem = host_problem(machine.host_name)
     if not problem:
         return ok(f"{machine.host_name} is this machine")
-    mend = "export ROS_HOSTNAME=localhost"
+    fix = "export ROS_HOSTNAME=localhost"
     if problem == UNRESOLVED:
-        mend = 'echo "127.0.1.1 $(hostname)" | sudo tee -a /etc/hosts'
-    return fail(f"{machine.host_name} to be this machine", f"that it {problem}", mend)
+        fix = 'echo "127.0.1.1 $(hostname)" | sudo tee -a /etc/hosts'
+    return fail(f"{machine.host_name} to be this machine", f"that it {problem}", fix)
 
 
 def check_address(machine):
@@ -180,8 +205,8 @@ def check_master_port(machine):
     except OSError as error:
         expected = f"port {port} to be free, or a ROS master to answer at {uri}"
         found = f"'{error.strerror}' (ss -ltnp 'sport = :{port}' shows the program that has it)"
-        mend = f"ROS_MASTER_URI=http://localhost:{port + 1 if port < 65535 else port - 1} make run"
-        return fail(expected, found, mend)
+        fix = f"ROS_MASTER_URI=http://localhost:{port + 1 if port < 65535 else port - 1} make run"
+        return fail(expected, found, fix)
     return ok(f"{port} is free")
 
 
@@ -195,10 +220,8 @@ def check_scripts(machine):
                 if script.read(2) == b"#!" and not os.access(path, os.X_OK):
                     plain.append(path)
     if plain:
-        mend = "chmod +x " + " ".join(map(shlex.quote, plain))
-        return fail(
-            "every script to be executable", "that these are not: " + ", ".join(plain), mend
-        )
+        fix = "chmod +x " + " ".join(map(shlex.quote, plain))
+        return fail("every script to be executable", "that these are not: " + ", ".join(plain), fix)
     return ok("every script is executable")
 
 
@@ -248,7 +271,7 @@ def check_shell(machine):
     Half sourced is a failure: a line after it in ~/.bashrc, say, has set one of the two anew.
     """
     devel, src = machine.workspace + "/devel", machine.workspace + "/src"
-    mend = "source " + shlex.quote(os.path.join(devel, "setup.bash"))
+    fix = "source " + shlex.quote(os.path.join(devel, "setup.bash"))
     has_devel = devel in map(os.path.realpath, folders(machine.env, "CMAKE_PREFIX_PATH"))
     paths = list(map(os.path.realpath, folders(machine.env, "ROS_PACKAGE_PATH")))
     has_src = src in paths
@@ -256,23 +279,25 @@ def check_shell(machine):
         later = [path for path in paths[: paths.index(src)] if packages(path) & packages(src)]
         if later:
             expected = "this workspace to be sourced after those with packages of the same names"
-            return fail(expected, "before it " + ", ".join(later), mend)
+            return fail(expected, "before it " + ", ".join(later), fix)
         return ok("devel/setup.bash is sourced")
     if not has_devel and not has_src:
-        return note("not sourced: make does not need it, but rosrun and roslaunch do", mend)
+        return note("not sourced: make does not need it, but rosrun and roslaunch do", fix)
     expected = f"{devel} in CMAKE_PREFIX_PATH and {src} in ROS_PACKAGE_PATH"
-    return fail(expected, "only the " + ("first" if has_devel else "second"), mend)
+    return fail(expected, "only the " + ("first" if has_devel else "second"), fix)
 
 
 # Title, check, the title of the check that must be well before this one has more to say, and the
 # entry of the page why about what a tool prints if it is not well.
 CHECKS = [
     ("packages", check_packages, None, "command-not-found"),
+    ("CMake", check_cmake, None, releases.GONE["cmake"].why),
     ("python3", check_python, "packages", "no-rospy"),
     ("installation", check_installation, "packages", "no-opt-ros"),
-    ("host name", check_host_name, None, "own-name-unknown"),
-    ("ROS_HOSTNAME and ROS_IP", check_address, None, "node-unreachable"),
-    ("ROS_MASTER_URI", check_master_uri, None, "no-master"),
+    ("localhost", check_localhost, None, "own-name-unknown"),
+    ("host name", check_host_name, "localhost", "own-name-unknown"),
+    ("ROS_HOSTNAME and ROS_IP", check_address, "localhost", "node-unreachable"),
+    ("ROS_MASTER_URI", check_master_uri, "localhost", "no-master"),
     ("master's port", check_master_port, "ROS_MASTER_URI", "port-in-use"),
     ("scripts", check_scripts, None, "script-not-executable"),
     ("build", check_build, "packages", "setup-not-there"),
@@ -293,20 +318,31 @@ def text_of(path):
     return ""
 
 
-def noetic(machine):
-    """Return the folder of ROS Noetic proper, or None where there is none."""
-    folder = os.path.join(machine.opt_ros, "noetic")
-    return folder if os.path.isdir(folder) else None
+def ros_folder(machine):
+    """Return the folder of ROS One or ROS Noetic, or None where ROS is Debian's."""
+    paths = [os.path.join(machine.opt_ros, name) for name in ("one", "noetic")]
+    return next(filter(os.path.isdir, paths), None)
 
 
 def installed(machine, packages):
-    """Return those of the Debian packages that are installed: none where there is no dpkg."""
+    """Return those of the Debian packages that are installed, and what dpkg-query finds wrong."""
     query = [machine.dpkg_query, "-W", "-f", "${Package} ${db:Status-Status}\n", *packages]
     try:
-        run = subprocess.run(query, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
-    except OSError:
-        return set()
-    return set(re.findall(r"^(\S+) installed$", run.stdout.decode(errors="replace"), re.MULTILINE))
+        run = subprocess.run(query, capture_output=True)
+    except OSError as error:
+        return set(), str(error)
+    found = re.findall(r"^(\S+) installed$", run.stdout.decode(errors="replace"), re.MULTILINE)
+    said = run.stderr.decode(errors="replace").splitlines()
+    wrong = [line for line in said if "no packages found matching" not in line]
+    return set(found), "".join(wrong[:1])
+
+
+def advice_for(machine):
+    """Return what works on this system, and the command for it, as the installer says it."""
+    command = ["bash", os.path.join(machine.workspace, "tools", "install_packages.sh"), "--advice"]
+    env = {"PATH": "/usr/bin:/bin", "MRP_OS_RELEASE": machine.os_release}
+    said = subprocess.run(command, env=env, capture_output=True, text=True).stdout.splitlines()
+    return said or ("", "make docker-run")
 
 
 def folders(env, name):
@@ -320,10 +356,10 @@ def is_inside(path, folder):
 
 
 def this_machine():
-    debian = text_of("/etc/debian_version").strip() or "none"
     workspace = os.path.dirname(os.path.dirname(os.path.realpath(__file__)))
     host_name = socket.gethostname()
-    return Machine(os.environ, workspace, host_name, debian, "/usr/bin/dpkg-query", "/opt/ros")
+    os_release = "/etc/os-release"
+    return Machine(os.environ, workspace, host_name, os_release, "/usr/bin/dpkg-query", "/opt/ros")
 
 
 def examine(machine):
@@ -335,9 +371,9 @@ def examine(machine):
         try:
             result = note(f"skipped: needs {needed}") if needed in blocked else check(machine)
         except OSError as error:  # a file of the project is missing or unreadable
-            mend = f"git -C {shlex.quote(machine.workspace)} checkout -- "
-            mend += shlex.quote(str(error.filename))
-            result = fail(f"to read {error.filename}", f"'{error.strerror}'", mend)
+            fix = f"git -C {shlex.quote(machine.workspace)} checkout -- "
+            fix += shlex.quote(str(error.filename))
+            result = fail(f"to read {error.filename}", f"'{error.strerror}'", fix)
         if result.status == "FAIL" or needed in blocked:
             blocked.add(title)
         failed += result.status == "FAIL"
@@ -345,8 +381,8 @@ def examine(machine):
         if colours:
             tag = f"\033[{colours[result.status]}m{tag}\033[0m"
         print(f"{tag}{title}: {result.text}")
-        for command in result.mend.splitlines():
-            print(f"       mend: {command}")
+        for command in result.fix.splitlines():
+            print(f"       fix: {command}")
         if result.status == "FAIL":
             print(f"       why:  pages/why.html#{why}")
     print(f"{len(CHECKS)} checks, {failed} failed")

@@ -7,24 +7,29 @@ import xmlrpc.client
 
 DEFAULT_MASTER_URI = "http://localhost:11311"
 MASTER_TIMEOUT = 3  # seconds
+CONNECT_TIMEOUT = 2  # seconds
 UNRESOLVED = "does not resolve"
 
 
 def host_problem(host):
-    """Say what is wrong with a host that should be this machine; None if it is."""
-    try:
-        found = socket.getaddrinfo(host, None, socket.AF_INET, socket.SOCK_DGRAM)
-    except (OSError, UnicodeError):
-        return UNRESOLVED
-    for *_, address in found:
+    """Say what is wrong with a host that should be this machine; None if it is.
+
+    As a node of ROS, it listens on all IPv4 addresses, and is called by its name.
+    """
+    if re.fullmatch(r"0[0-9.]*", host):  # Linux takes it for this machine, and others do not
+        return "is no machine's address"
+    with socket.create_server(("0.0.0.0", 0)) as listener:
+        address = host, listener.getsockname()[1]
         try:
-            with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
-                probe.bind(address)  # only an address of this machine can be bound, or one ...
-            if 0 < int(address[0].split(".")[0]) < 224:  # ... that is no machine's
-                return None
-        except OSError:
-            pass
-    return "is another machine"
+            with socket.create_connection(address, CONNECT_TIMEOUT) as caller:
+                listener.settimeout(CONNECT_TIMEOUT)
+                connection, peer = listener.accept()
+                connection.close()
+                return None if peer == caller.getsockname() else "is another machine"
+        except (socket.gaierror, UnicodeError):
+            return UNRESOLVED
+        except OSError as error:
+            return f"cannot be connected to: {error.strerror or error}"
 
 
 def master(env):
