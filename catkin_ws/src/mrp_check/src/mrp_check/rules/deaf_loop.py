@@ -58,10 +58,20 @@ def _findings(case: Case) -> Iterator[Finding]:
         if direct and direct.asked is not None and direct.stopped_in is None:
             continue  # another finding says that it did not end
         for file, text in texts.items():
-            loops = [*_loops(text)]
+            text = uses.without_texts(text)
+            loops = [one for one in _loops(text) if not _asks_elsewhere(text, one)]
             for loop in loops:
                 yield from _of(case, (name, file), loop, bool(node and node.is_up))
             yield from _keyboard(case, (name, file), text, loops)
+
+
+def _asks_elsewhere(text: str, loop: _Loop) -> bool:
+    """Return whether what a loop asks is a function of the same source, which asks ros::ok()."""
+    for name in re.findall(r"\b(\w+)\s*\(", loop.asks):
+        for head in re.finditer(rf"\b{name}\s*\([^;{{}}()]*\)\s*(?:const\s*)?(?=\{{)", text):
+            if _ASKS.search(braced(text, head.end())):
+                return True
+    return False
 
 
 def _of(case: Case, place: tuple[str, str], loop: _Loop, is_up: bool) -> Iterator[Finding]:

@@ -13,7 +13,7 @@ from mrp_check.contract.requirements import ANY, Rule
 from mrp_check.sources import uses
 from mrp_check.sources.python_source import Source
 
-_HOME = re.compile(r"/(?:home|Users)/[\w.-]+/[^\s\"'<>;:]*")
+_HOME = re.compile(r"/(?:home|Users)/(?![A-Z_]+/)[\w.-]+/[^\s\"'<>;:]*")
 _PARAMETERS = (".yaml", ".yml", ".ini")
 _COMMENT = re.compile(r"(?m)(?:^|[ \t])#.*$")
 _CPP_TEXT = re.compile(r'"(?:[^"\\\n]|\\.)*"')

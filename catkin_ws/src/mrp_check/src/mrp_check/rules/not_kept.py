@@ -7,7 +7,7 @@ from __future__ import annotations
 import ast
 from typing import Iterator
 
-from mrp_check.contract.finding import HABIT, HINT, Finding
+from mrp_check.contract.finding import HABIT, Finding
 from mrp_check.contract.requirements import Rule
 from mrp_check.sources.python_rule import PythonRule, of_sources
 
@@ -36,17 +36,7 @@ class NotKept(PythonRule):
         for node in self.source.nodes(ast.Expr):
             call = node.value
             name = self.source.dotted(call.func) if isinstance(call, ast.Call) else None
-            if name in _CALLING:
-                yield self.finding(
-                    "lifetime",
-                    f"What {name}() returns is not kept. rospy keeps it going all the same; but"
-                    " nothing can stop it.",
-                    node,
-                    certainty=HINT,
-                    expected="a member, such as self.timer or self.subscriber",
-                    fix="Keep it as a member.",
-                )
-            elif name == "rospy.Publisher":
+            if name == "rospy.Publisher":
                 yield self.finding(
                     "lifetime",
                     "What rospy.Publisher() returns is not kept: nothing can publish with it.",

@@ -8,7 +8,7 @@ import inspect
 import re
 from typing import Iterator
 
-from mrp_check.contract.finding import Finding
+from mrp_check.contract.finding import CERTAIN, Finding
 from mrp_check.contract.requirements import Rule
 from mrp_check.contract.words import nearest, perhaps
 from mrp_check.sources.python_facts import argument
@@ -178,6 +178,7 @@ class Calls(PythonRule):
                 "rospy.Timer() takes a rospy.Duration, not a number: the timer's thread ends with"
                 " an error, and nothing is ever called.",
                 node,
+                certainty=CERTAIN,
                 expected="rospy.Timer(rospy.Duration(0.5), ...)",
                 fix="Write rospy.Duration(...) around the number.",
                 change=(self.written(period) + ",", f"rospy.Duration({self.written(period)}),"),
@@ -216,6 +217,7 @@ class Calls(PythonRule):
             f"{called.name}() is called here, once, and what it returns, nothing, is handed"
             f" over to {taker}(): it is never called again.",
             callback,
+            certainty=CERTAIN,
             expected=f"{name}, without brackets",
             fix=f"Write {name} for {name}(...).",
             change=(self.written(callback), self.written(callback.func)),
@@ -246,6 +248,7 @@ class Calls(PythonRule):
                 f" {_count(max(0, least - bound))}. Python ends the call with a TypeError,"
                 " each time.",
                 function,
+                certainty=CERTAIN,
                 expected=f"{count} parameter{s}" + (" besides self" if bound else ""),
                 fix=f"Give {name} the parameter{s} that it is called with.",
                 why="timer-callback" if taker == "rospy.Timer" else "bad-callback",

@@ -20,7 +20,7 @@ from mrp_check.running.words import code_text, last_words
 from mrp_check.sources import asked, uses
 from mrp_check.student.package import Package
 
-_ARGUMENTS = "arguments on its command line"
+_ARGUMENTS, _PARAMETER = "arguments on its command line", "a parameter"
 # What a node says that stands before an empty keyboard, screen or command line, what it waits for,
 # and what must stand in the line that raised, where anything else raises the same error, too.
 _WAITS = (
@@ -29,7 +29,7 @@ _WAITS = (
     (r"termios\.error|Inappropriate ioctl for device", "the keyboard", ""),
     (r"(?i)cannot open display|could not connect to display|no display name", "a screen", ""),
     (r"(?i)can.t open camera|VIDEOIO|/dev/(video|tty|input)\w*", "a device", ""),
-    (r"KeyError: ", "a parameter", "param"),
+    (r"KeyError: ", _PARAMETER, "param"),
     (r"IndexError: list index|ValueError: ", "arguments", "sys.argv["),
 )
 # Beside the line at which a program ends, it misses some of the arguments that it counts.
@@ -162,7 +162,9 @@ def _of_start(case: Case, node: Node, finding: Finding) -> bool:
         if said:
             if reads not in _source(node, finding):
                 continue
-            finding.certainty = HABIT if what == "a parameter" else HINT
+            if what == _PARAMETER and _launched(case, node):
+                return False  # its own launch file does not give it, either
+            finding.certainty = HABIT if what == _PARAMETER else HINT
             finding.message = f"{node.name} waits for {what}: {said.strip()[:200]}"
             return what == _ARGUMENTS
     if not any("Error:" in line for line in lines) and misses_arguments(node, finding):
@@ -183,6 +185,12 @@ def _of_start(case: Case, node: Node, finding: Finding) -> bool:
         finding.certainty = HINT
         finding.message = f"{node.name} exits with code 0: {last_words(lines) or 'without a word'}"
     return False
+
+
+def _launched(case: Case, node: Node) -> bool:
+    """Return whether a launch file starts a node, and it comes up under none."""
+    files = [one.file for one in case.observed.launches if node.name in one.nodes.values()]
+    return any(files) and _works_under(case, node) is None
 
 
 def _works_under(case: Case, node: Node) -> str | None:

@@ -10,7 +10,7 @@ from mrp_check.case import Case
 from mrp_check.confined.places import Kind
 from mrp_check.contract.finding import HABIT, HINT, Finding
 from mrp_check.contract.requirements import ANY, Rule
-from mrp_check.contract.words import last_part, nearest
+from mrp_check.contract.words import nearest
 from mrp_check.sources import asked, uses
 from mrp_check.sources.asked import Said
 
@@ -52,7 +52,8 @@ def _findings(case: Case) -> Iterator[Finding]:
     sources = sorted(case.package.of_kind("cpp", "header", "python"))
     beside = [one for one in asked.of(case.package, sources) if one.what in _GIVES]
     every = [one for found in said.values() for one in found] + beside
-    params = {last_part(name) for launch in case.launches for name in launch.params}
+    # Who reads gains has all of gains/p, too.
+    params = {part for one in case.launches for name in one.params for part in name.split("/")}
     services = {one.base for one in every if one.what == "offers"}
     given = params | {one.base for one in every if one.what == "sets"} | _OF_ROSCORE
     own = uses.made(case.package)

@@ -26,7 +26,14 @@ _LAUNCHED = re.compile(r'\bpkg\s*=\s*"([A-Za-z]\w*)"|\$\(find\s+([A-Za-z]\w*)\s*
 _WORDS = re.compile(r"<!--.*?-->|<(description|url)\b.*?</\1>|#[^\n]*", re.DOTALL)
 _XML_COMMENT = re.compile(r"<!--.*?-->", re.DOTALL)
 _PYTHON_COMMENT = re.compile(r"^[ \t]*#[^\n]*", re.MULTILINE)
-_COMMENT = re.compile(r"/\*.*?\*/|//[^\n]*", re.DOTALL)
+# The tokens of C++ in which others may seem to begin: a comment, a raw text, a text, a character.
+_TOKEN = re.compile(
+    r"(?P<comment>/\*.*?\*/|//[^\n]*)"
+    r'|R"(?P<end>[^()\\\s]{0,16})\(.*?\)(?P=end)"'
+    r'|"(?:\\.|[^"\\\n])*"'
+    r"|'(?:\\.|[^'\\\n])+'",
+    re.DOTALL,
+)
 
 # They come with roscpp or rospy: whoever does not name them has them all the same.
 _LOOSE = set(
@@ -164,7 +171,14 @@ def is_header(header: str) -> bool:
 
 def without_comments(text: str) -> str:
     """Return a C++ source in which spaces stand for comments."""
-    return _COMMENT.sub(blank, text)
+    return _TOKEN.sub(lambda match: blank(match) if match["comment"] else match.group(), text)
+
+
+def without_texts(code: str) -> str:
+    """Return a C++ source without comments in which spaces stand for what texts say."""
+    return _TOKEN.sub(
+        lambda match: f"{match.group()[0]}{blank(match)[2:]}{match.group()[-1]}", code
+    )
 
 
 def blank(match: re.Match[str]) -> str:
