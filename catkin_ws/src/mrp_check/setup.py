@@ -4,4 +4,9 @@
 from catkin_pkg.python_setup import generate_distutils_setup
 from setuptools import find_packages, setup
 
-setup(**generate_distutils_setup(packages=find_packages("src"), package_dir={"": "src"}))
+FILES = {"mrp_check.confined.hook": ["*.cpp"]}
+setup(
+    **generate_distutils_setup(
+        packages=find_packages("src"), package_dir={"": "src"}, package_data=FILES
+    )
+)

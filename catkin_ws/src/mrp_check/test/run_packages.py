@@ -13,6 +13,8 @@ catkin_package()
 include_directories(${catkin_INCLUDE_DIRS})
 add_executable(asks src/asks.cpp)
 target_link_libraries(asks ${catkin_LIBRARIES})
+add_executable(fast src/fast.cpp)
+target_link_libraries(fast ${catkin_LIBRARIES})
 """
 _DEPENDS = "".join(
     f"  <depend>{name}</depend>\n" for name in ("actionlib", "geometry_msgs", "std_srvs", "tf2_ros")
@@ -35,6 +37,8 @@ _LAUNCH = """\
     <param name="rate" value="5"/>
   </node>
   <node pkg="some_pkg" type="asks" name="asks"/>
+  <node pkg="some_pkg" type="hurries.py" name="hurries"/>
+  <node pkg="some_pkg" type="fast" name="fast"/>
 </launch>
 """
 _HEAD = "#!/usr/bin/env python3\nimport rospy\n"
@@ -203,6 +207,33 @@ rate = rospy.Rate(rospy.get_param("rate"))
 while not rospy.is_shutdown():
     rate.sleep()
 """
+# Nothing keeps its loop waiting.
+_HURRIES = """\
+rospy.init_node("hurries")
+rate = rospy.Rate(10)
+while not rospy.is_shutdown():
+    count = rospy.get_time()
+"""
+_HURRIES_CPP = """\
+#include <ros/ros.h>
+
+int main(int argc, char** argv)
+{
+  ros::init(argc, argv, "fast");
+  ros::NodeHandle node;
+  ros::Rate rate(10);
+  while (ros::ok())
+  {
+    ros::spinOnce();
+    // sleep
+  }
+}
+"""
+# No launch file starts it: so all run together once more.
+_UNLAUNCHED = """\
+rospy.init_node("unlaunched")
+rospy.spin()
+"""
 _ASKS = """\
 #include <ros/ros.h>
 #include <std_msgs/String.h>
@@ -247,6 +278,8 @@ _RIGHT = {
     "number.py": [("Int32", "String")],
     "once.py": [("queue_size=10", "queue_size=10, latch=True")],
     "rate.py": [('"rate"))', '"~rate"))')],
+    "hurries.py": [("    count = rospy.get_time()\n", "    rate.sleep()\n")],
+    "fast.cpp": [("// sleep", "rate.sleep();")],
     "asks.cpp": [("key > 0", "key >= 0")],
 }
 _SOURCES = {
@@ -263,6 +296,9 @@ _SOURCES = {
     "once.py": _ONCE,
     "hears_once.py": _HEARS_ONCE,
     "rate.py": _RATE,
+    "unlaunched.py": _UNLAUNCHED,
+    "hurries.py": _HURRIES,
+    "fast.cpp": _HURRIES_CPP,
     "asks.cpp": _ASKS,
 }
 

@@ -270,7 +270,7 @@ def test_a_file_that_is_too_large_costs_nothing(uploads):
     one = Package(made)
     assert ("rosbag.bag" in one.files, one.left_out) == (False, ["rosbag.bag"])
     case = types.SimpleNamespace(package=one, model=types.SimpleNamespace(relayed=list))
-    (finding,) = text.RULE.findings(case)
+    (finding,) = text.RULE.ask(case)
     assert (finding.severity, finding.file) == (NOTE, "rosbag.bag")
 
 

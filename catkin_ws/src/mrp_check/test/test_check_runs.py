@@ -17,7 +17,11 @@ FOUND = [
     (ERROR, "callbacks", "scripts/service.py: succes=", "while it answers a service"),
     (ERROR, "warnings", "scripts/frames.py: logwarn", "though both are published"),
     (ERROR, "type", "scripts/number.py: Int32", "nothing arrives"),
-    (ERROR, "starts", "scripts/rate.py: get_param", "'float' and 'dict'"),
+    (ERROR, "starts", "scripts/rate.py: get_param", "It dies under launch/all.launch"),
+    (ERROR, "spin", "src/asks.cpp: spinOnce", "calls no callback"),
+    (ERROR, "topic", "scripts/once.py: rospy.Publisher", "no subscriber is connected yet"),
+    (WARNING, "spin", "scripts/hurries.py: while", "keeps a processor busy"),
+    (WARNING, "spin", "src/fast.cpp: while", "keeps a processor busy"),
     (NOTE, "warnings", "scripts/caller.py: logerr", "of its own, such as: it failed"),
 ]
 

@@ -10,7 +10,7 @@ from mrp_check.confined.places import Kind, Place
 from mrp_check.confined.seen import Registration, Seen
 from mrp_check.contract.finding import ERROR, HABIT, HINT, NOTE, WARNING, Finding
 from mrp_check.rules import deaf_loop, deaf_python, meeting, same_name, starts
-from mrp_check.running.observing import Launched
+from mrp_check.running.observing import Launched, Observed
 from mrp_check.sources.facts import Facts
 from mrp_check.sources.python_source import Source
 
@@ -276,6 +276,8 @@ def test_a_launch_file_gives_a_node_no_arguments(arguments, certainty, file):
     node = types.SimpleNamespace(name="a", direct=direct, not_up=[said], package=package)
     started = Started("some_pkg", "a", "a", "/", "", [], [], arguments or "", "", "a.launch", 2)
     launches = [] if arguments is None else [types.SimpleNamespace(nodes=[started])]
-    case = types.SimpleNamespace(nodes={"a": node}, package=package, launches=launches, built=True)
+    case = types.SimpleNamespace(
+        nodes={"a": node}, package=package, launches=launches, built=True, observed=Observed()
+    )
     starts.weigh_start(case, node, said)
     assert (said.certainty, said.file) == (certainty, file)

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import re
 
-from mrp_check.contract.finding import ERROR, NOTE, Finding
+from mrp_check.contract.finding import ERROR, NOTE, SEEN, Finding
 from mrp_check.sources import uses
 
 # What keeps a node from running at all, or from being itself.
@@ -81,6 +81,9 @@ def told_once(findings, facts=None, nodes=None, has_contract=True):
         # A rule about a source knows no node; one about the node that it makes says the same again.
         same = finding.node in of_nodes or finding.file and None in of_nodes
         if same and finding.severity != NOTE:
+            for one in kept:  # what a source says was seen, too
+                if finding.certainty == SEEN and (one.id, one.file, one.line) == what[:3]:
+                    one.certainty = SEEN
             continue
         of_nodes.add(finding.node)
         kept.append(finding)

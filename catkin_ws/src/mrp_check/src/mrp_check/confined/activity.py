@@ -101,6 +101,19 @@ def processor_seconds(pid: Optional[int]) -> Optional[float]:
     return times and times.user + times.system
 
 
+def runnable(pid: Optional[int]) -> Dict[str, float]:
+    """Return for how many seconds each thread of a process ran, or waited for a processor."""
+    found = {}
+    for path in glob.glob(f"/proc/{pid}/task/*/schedstat"):
+        try:
+            with open(path) as file:
+                ran, waited, _ = file.read().split()
+        except OSError:
+            continue  # the thread has ended
+        found[path] = (int(ran) + int(waited)) / 1e9
+    return found
+
+
 def _waits_for_disk(pid: int) -> bool:
     try:
         return bool(psutil.Process(pid).status() == psutil.STATUS_DISK_SLEEP)

@@ -4,12 +4,20 @@
 import re
 import signal
 import time
-from typing import List, Optional
+from typing import Dict, List, Optional
 
 import rospy
 
 from mrp_check.confined import apart, crossing, messages, variables, written
-from mrp_check.confined.activity import BUSY, TICK, Activity, is_over, processor_seconds, wait
+from mrp_check.confined.activity import (
+    BUSY,
+    TICK,
+    Activity,
+    is_over,
+    processor_seconds,
+    runnable,
+    wait,
+)
 from mrp_check.confined.exchange import Exchange
 from mrp_check.confined.observe import Observer
 from mrp_check.confined.plans import TOLD, Common, DirectNode, DirectPlan
@@ -23,6 +31,8 @@ _SENDING = 100  # messages that may wait to be sent
 _RECENT = 100  # lines in which one that was just logged is looked for
 # What a node subscribes to by itself.
 _OF_ROS = ("/clock", "/tf", "/tf_static")
+_STARTING = 0.5  # seconds after it has registered in which a node may still be starting
+_WATCHED = 1.5  # seconds, at least, in which it is seen how busy it is
 
 
 def run(plan: DirectPlan, observer: Observer, starter: apart.Starter) -> DirectResult:
@@ -33,12 +43,14 @@ def run(plan: DirectPlan, observer: Observer, starter: apart.Starter) -> DirectR
 
     def send() -> None:
         for node in nodes:
+            node.watch()
             node.send()
             node.send_paced()
             node.exchange.step(node.name())
 
     wait(plan.common, nodes, _Node.is_up, _Node.is_settled, send)
     observer.ask_types()
+    latched = observer.latched()
     observer.release()
     running = [node for node in nodes if node.program.poll() is None]
     for node in running:
@@ -60,7 +72,7 @@ def run(plan: DirectPlan, observer: Observer, starter: apart.Starter) -> DirectR
         result, program = results[node.key], node.program
         result.code, result.lines = program.poll(), program.all_lines()
         result.line_count = program.line_count
-    return DirectResult(results, left, observer.seen_since(began))
+    return DirectResult(results, left, observer.seen_since(began), latched)
 
 
 class _Node:
@@ -81,6 +93,9 @@ class _Node:
         self.sent_at = 0.0
         self.asked: Optional[float] = None
         self.was_registered = False
+        self.registered: Optional[float] = None  # when it was first seen so
+        self.began: Dict[str, float] = {}  # what its threads had run when it had started
+        self.busy: Optional[float] = None
         self.publisher: Optional[rospy.Publisher] = None
         for name, value in plan.params.items():
             rospy.set_param(name, value)
@@ -98,6 +113,18 @@ class _Node:
         records = seen.publications + seen.subscriptions + seen.services
         names = [one.node for one in records]
         return next((name for name in names if name.startswith(inside)), None)
+
+    def watch(self) -> None:
+        """Look when the node has started."""
+        now = time.monotonic()
+        if self.registered is None and self.name():
+            self.registered = now
+        if self.registered and not self.began and now - self.registered > _STARTING:
+            self.registered, self.began = now, runnable(self.program.pid)
+
+    def _is_watched(self) -> bool:
+        """Return whether it is known how busy the node is."""
+        return bool(self.began) and time.monotonic() - (self.registered or 0) > _WATCHED
 
     # --- What it is sent
 
@@ -176,6 +203,8 @@ class _Node:
             return self.is_up()
         if self.plan.example or not self.exchange.is_done(name):
             return self.exchange.is_done(name)
+        if not self.plan.is_wrap and not self._is_watched():
+            return False
         silent = now - (self.activity.last(name) or now) > self.silence
         if silent and self.activity.is_idle(self.program.pid):
             return True
@@ -203,6 +232,10 @@ class _Node:
         """Send it the signal that it is to end on."""
         self.was_registered = self._is_registered()
         self.asked = time.monotonic()
+        if self._is_watched():
+            ran = runnable(self.program.pid)
+            used = [ran[thread] - self.began.get(thread, 0) for thread in ran]
+            self.busy = max(used, default=0) / (self.asked - (self.registered or 0))
         self.program.send(number)
 
     def is_ending(self, seconds: float) -> bool:
@@ -231,6 +264,7 @@ class _Node:
             result.stopped_in = ended and ended - self.asked
             result.killed = ended is None
         result.still_registered = self.was_registered and self._is_registered()
+        result.busy = self.busy
         result.events = self.events()
         self.exchange.result(result)
         return result

@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The nodes as a launch file starts them, and roslaunch ends them."""
 
+import os
 import re
 import signal
 import time
 from typing import Dict, List, Optional
 
 from mrp_check.confined import apart, variables
-from mrp_check.confined.activity import TICK, Activity, is_over, wait
+from mrp_check.confined.activity import TICK, Activity, is_over, processor_seconds, wait
 from mrp_check.confined.observe import Observer
 from mrp_check.confined.plans import LaunchNode, LaunchPlan
 from mrp_check.confined.program import Program, left_behind
@@ -15,6 +16,7 @@ from mrp_check.confined.seen import LaunchResult
 
 _DIED = re.compile(r"\[(?P<name>\S+)-\d+\] process has (?P<how>died|finished cleanly)")
 _STARTED = re.compile(r"process\[(?P<name>\S+)-\d+\]: started with pid \[(?P<pid>\d+)\]")
+_SAYS_SO = 3.0  # seconds in which roslaunch says that a process has ended
 _NOT_STARTED = re.compile(r"cannot launch node of type \[(?P<type>[^\]]*)\]")
 
 
@@ -30,7 +32,8 @@ def run(plan: LaunchPlan, observer: Observer, starter: apart.Starter) -> LaunchR
 
     ending = wait(plan.common, plan.nodes, launch.is_up, launch.is_settled, has_ended)
     waited = launch.waited()
-    latched = _latched(observer)
+    latched = observer.latched()
+    called_back = launch.called_back()
     observer.release()
     asked, code = time.monotonic(), roslaunch.poll()
     roslaunch.send(signal.SIGINT)
@@ -49,15 +52,10 @@ def run(plan: LaunchPlan, observer: Observer, starter: apart.Starter) -> LaunchR
         lines=roslaunch.all_lines(),
         latched=latched,
         waited=waited,
+        called_back=called_back,
+        sees_callbacks=variables.CALLBACKS in plan.common.environment,
         seen=observer.seen_since(roslaunch.started),
     )
-
-
-def _latched(observer: Observer) -> Dict[str, List[str]]:
-    """Return topic -> the nodes that latch it."""
-    nodes = [name for name in observer.nodes() if observer.is_registered(name)]
-    topics = {one.topic for one in observer.seen.publications} - {"/rosout"}
-    return {topic: [name for name in nodes if observer.is_latched(name, topic)] for topic in topics}
 
 
 class _Launch:
@@ -66,6 +64,7 @@ class _Launch:
     def __init__(self, plan: LaunchPlan, roslaunch: Program, observer: Observer) -> None:
         self.plan, self.roslaunch, self.observer = plan, roslaunch, observer
         self.activity = Activity(observer)
+        self._gone: Dict[int, float] = {}  # process id -> when it was first seen to be gone
 
     def begin(self) -> None:
         """Look which nodes have begun to publish."""
@@ -77,13 +76,29 @@ class _Launch:
         nodes = self.plan.nodes
         return {node.path: self.activity.waited(node.path, self._pid(node)) for node in nodes}
 
+    def called_back(self) -> List[str]:
+        """Return the roscpp nodes that have called a callback: see hook/callbacks.cpp."""
+        file = self.plan.common.environment.get(variables.CALLBACKS)
+        started = [_STARTED.search(text) for _, _, text in list(self.roslaunch.lines)]
+        found = [one for one in started if one and file]
+        return ["/" + one["name"] for one in found if os.path.exists(f"{file}.{one['pid']}")]
+
     def is_up(self, node: LaunchNode) -> bool:
         return self._has_died(node) or self.activity.is_up_or_stuck(node.path, self._pid(node))
+
+    def _has_just_ended(self, node: LaunchNode) -> bool:
+        """Return whether a node's process is gone, and roslaunch may be about to say so."""
+        pid = self._pid(node)
+        if pid is None or processor_seconds(pid) is not None:
+            return False
+        return time.monotonic() - self._gone.setdefault(pid, time.monotonic()) < _SAYS_SO
 
     def is_settled(self, node: LaunchNode) -> bool:
         """Return whether no more has to be waited for from a node."""
         if self._has_died(node):
             return True
+        if self._has_just_ended(node):
+            return False
         last = self.activity.last(node.path)
         if last is None:
             return self.is_up(node)

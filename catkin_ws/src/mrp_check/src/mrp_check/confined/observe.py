@@ -163,7 +163,11 @@ class Observer:
         """Return what was seen, with times from the beginning on."""
 
         def records(items: Iterable[Record]) -> List[Record]:
-            return [dataclasses.replace(item, time=item.time - began) for item in list(items)]
+            found = [dataclasses.replace(item, time=item.time - began) for item in list(items)]
+            for one in found:
+                if isinstance(one, Registration) and one.answered:
+                    one.answered -= began
+            return found
 
         found = self.seen
         return Seen(
@@ -227,6 +231,15 @@ class Observer:
         """
         answer = self._shake_hands(node, topic)
         return answer is not None and answer.get("latching") == "1"
+
+    def latched(self) -> Dict[str, List[str]]:
+        """Return topic -> the nodes that latch it."""
+        found: Dict[str, List[str]] = {}
+        for one in {(one.topic, one.node) for one in list(self.seen.publications)}:
+            topic, node = one
+            if topic != "/rosout" and self.is_registered(node) and self.is_latched(node, topic):
+                found.setdefault(topic, []).append(node)
+        return found
 
     def _shake_hands(self, node: str, topic: str) -> Optional[Dict[str, str]]:
         """Subscribe for a moment; return what the publisher says of it, or None."""
@@ -327,6 +340,7 @@ class _Master(rosmaster.master_api.ROSMasterHandler):  # type: ignore[misc]  # i
             registration = Registration(caller_id, topic, topic_type, now, heard=False)
             self._observer.seen.publications.append(registration)
             registration.heard = self._observer.hold(caller_id, topic)
+            registration.answered = time.monotonic()
         return answer
 
     def registerSubscriber(  # noqa: N802

@@ -20,6 +20,7 @@ class Registration:
 
     heard: whether the observer was connected to a publisher; if not, nothing is known of what it
         publishes
+    answered: when the node had the master's answer: before, it has published nothing
     """
 
     node: str
@@ -27,6 +28,7 @@ class Registration:
     type: str
     time: float
     heard: bool = True
+    answered: float = 0.0
 
 
 @dataclasses.dataclass(frozen=True)
@@ -104,6 +106,7 @@ class LaunchResult:
     code: its exit code (negative: killed by that signal), if it had ended before it was asked to
     latched: topic -> the nodes that latch it
     waited: node -> which part of the time in which it published it waited for a processor
+    called_back: the roscpp nodes of which a subscriber's callback was called, if sees_callbacks
     lines: what it printed
     """
 
@@ -116,6 +119,8 @@ class LaunchResult:
     left: List[Left] = dataclasses.field(default_factory=list)
     latched: Dict[str, List[str]] = dataclasses.field(default_factory=dict)
     waited: Dict[str, float] = dataclasses.field(default_factory=dict)
+    called_back: List[str] = dataclasses.field(default_factory=list)
+    sees_callbacks: bool = False
 
     def until_asked(self, after: float = _AFTER) -> List[str]:
         """Return the lines that were printed before it was asked to end, or just then.
@@ -144,6 +149,8 @@ class Alone:
     ended_after: when it ended without being asked
     killed: whether it had to be
     still_registered: whether the master still knew it after its end
+    busy: which part of the time its busiest thread ran, or would have if it had had a processor,
+        since it had registered and until it was asked to end; None if that was too short
     lines: what it printed, as far as it is kept; line_count: of all that it printed
     answers: full name of a service -> what it answered to each call that was made
     requests: the same of a service that it calls -> what it asked
@@ -158,6 +165,7 @@ class Alone:
     ended_after: Optional[float] = None
     killed: bool = False
     still_registered: bool = False
+    busy: Optional[float] = None
     events: List[Event] = dataclasses.field(default_factory=list)
     lines: List[Line] = dataclasses.field(default_factory=list)
     line_count: int = 0
@@ -168,8 +176,9 @@ class Alone:
 
 @dataclasses.dataclass
 class DirectResult:
-    """What came of a DirectPlan. nodes: by the keys of the plan"""
+    """What came of a DirectPlan. nodes: by the keys of the plan; latched: as of a LaunchResult"""
 
     nodes: Dict[str, Alone] = dataclasses.field(default_factory=dict)
     left: List[Left] = dataclasses.field(default_factory=list)
     seen: Seen = dataclasses.field(default_factory=Seen)
+    latched: Dict[str, List[str]] = dataclasses.field(default_factory=dict)

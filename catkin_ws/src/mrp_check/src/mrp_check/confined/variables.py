@@ -15,6 +15,7 @@ HEADERS = "MRP_CHECK_HEADERS"
 APART = "MRP_CHECK_APART"
 MARK = "MRP_CHECK_RUN"
 HOOK = "MRP_CHECK_HOOK"  # hook/sitecustomize.py has it, too: it can import nothing of this
+CALLBACKS = "MRP_CHECK_CALLBACKS"  # the same of hook/callbacks.cpp
 
 HOSTNAME = "ROS_HOSTNAME"
 MASTER = "ROS_MASTER_URI"

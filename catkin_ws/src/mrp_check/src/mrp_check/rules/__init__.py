@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from mrp_check.rules import (
     arguments,
+    busy,
     callbacks,
     cmake,
     compile,
@@ -45,6 +46,7 @@ from mrp_check.rules import (
     message_fields,
     messages,
     methods,
+    no_callback,
     node_name,
     node_start,
     not_called,
@@ -123,7 +125,6 @@ _FILES = (
     arguments,
     same_name,
     goals,
-    first_message,
     long_loop,
     methods,
     ignored,
@@ -137,6 +138,9 @@ _FILES = (
     own_name,
     raised,
     launched,
+    busy,
+    no_callback,
+    first_message,
     topic,
     meeting,
     examples,

@@ -79,7 +79,7 @@ def _error(case: Case, launched: Launched, name: str, found: Traceback) -> Itera
     if kind == "KeyboardInterrupt" or case.nodes[name].not_up:
         return  # that is Ctrl-C; or it has been said
     source = case.package.line(place[0], place[1])
-    if "sys.argv[" in source:
+    if "sys.argv[" in source and not launched.file:
         said = f"{name} waits for arguments on its command line: {kind}: {text}"
         yield Finding("starts", said, *place, certainty=HINT, node=name)
         return

@@ -17,6 +17,7 @@ from mrp_check.running.traces import ROS_TOPICS
 
 _ALIKE = 0.85
 _TOGETHER = "When all nodes run together"
+_BY_ITSELF = "Started by itself"
 
 
 class End(typing.NamedTuple):
@@ -66,7 +67,7 @@ def _graphs(case: Case) -> Iterator[tuple[Graph, set[str]]]:
     if direct:
         alone = {one.name: key for key, one in direct.nodes.items() if one.name}
         # Each ran in a namespace of its own.
-        graph = _graph("Started by itself", direct.seen, alone, _outside)
+        graph = _graph(_BY_ITSELF, direct.seen, alone, _outside)
         yield graph, {*alone.values()} - together
 
 
@@ -133,7 +134,11 @@ def _alone(case: Case, graph: Graph, end: End, published: set[str]) -> Iterator[
         )
         return
     other = near[0]
-    is_sure = is_like(other, end) and (other.topic not in heard or not _is_moved(other, end))
+    # Under their own launch file, both are without a partner: what one says, the other should hear.
+    is_own = graph.where not in (_TOGETHER, _BY_ITSELF) and other.topic not in heard
+    is_sure = (
+        is_own or is_like(other, end) and (other.topic not in heard or not _is_moved(other, end))
+    )
     digits = [re.sub(r"\d", "", one.topic) for one in (other, end)]
     yield Finding(
         "topic",

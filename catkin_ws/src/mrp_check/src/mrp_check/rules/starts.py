@@ -157,16 +157,20 @@ def _without_arguments(case: Case, node: Node) -> Started | None:
 def _of_start(case: Case, node: Node, finding: Finding) -> bool:
     """Do so; return whether it waits for arguments on its command line."""
     lines = [text for _, _, text in node.direct.lines] if node.direct else []
+    dies = _dies_under(case, node)
     for shape, what, reads in _WAITS:
+        if dies and what in (_ARGUMENTS, "arguments", _PARAMETER):
+            continue  # its launch file should give them
         said = next((text for text in lines if re.search(shape, text)), None)
         if said:
             if reads not in _source(node, finding):
                 continue
-            if what == _PARAMETER and _launched(case, node):
-                return False  # its own launch file does not give it, either
             finding.certainty = HABIT if what == _PARAMETER else HINT
             finding.message = f"{node.name} waits for {what}: {said.strip()[:200]}"
             return what == _ARGUMENTS
+    if dies:
+        finding.message += f" It dies under {dies}, too."
+        return False
     if not any("Error:" in line for line in lines) and misses_arguments(node, finding):
         finding.certainty = HINT
         finding.message = f"{node.name} {_WAITS_FOR_ARGUMENTS}."
@@ -187,10 +191,14 @@ def _of_start(case: Case, node: Node, finding: Finding) -> bool:
     return False
 
 
-def _launched(case: Case, node: Node) -> bool:
-    """Return whether a launch file starts a node, and it comes up under none."""
-    files = [one.file for one in case.observed.launches if node.name in one.nodes.values()]
-    return any(files) and _works_under(case, node) is None
+def _dies_under(case: Case, node: Node) -> str | None:
+    """Return a launch file of the package under which a node dies, whatever it says then."""
+    for launched in case.observed.launches:
+        codes = ends(launched.seen.until_asked(0))
+        paths = [path for path, name in launched.nodes.items() if name == node.name]
+        if launched.file and any(codes.get(path) for path in paths):
+            return launched.file
+    return None
 
 
 def _works_under(case: Case, node: Node) -> str | None:

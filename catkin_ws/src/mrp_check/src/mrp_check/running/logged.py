@@ -11,6 +11,7 @@ from typing import Iterator, NamedTuple
 from mrp_check.confined.seen import DirectResult, Line, Log, Seen
 from mrp_check.contract.words import last_part
 from mrp_check.running.observing import Observed
+from mrp_check.running.traces import ends
 from mrp_check.student.package import Package
 
 # The entries that explain error texts: a folder of the whole workspace, which a package lacks that
@@ -32,42 +33,46 @@ class Run(NamedTuple):
     where: in the words of a message, such as "under launch/all.launch"
     logs: its lines on /rosout before it was asked to end
     lines: what was printed until then, by all nodes of a launch file
+    path: the node's full name in it
     seen: what was seen of all nodes; asked: when they were to end
+    ended: the node's exit code, if it has ended by itself
+    latched: topic -> the nodes that latch it
     """
 
     node: str
     where: str
+    path: str
     logs: list[Log]
     lines: list[Line]
     seen: Seen
     asked: float
+    ended: int | None
+    latched: dict[str, list[str]]
 
 
 def runs(observed: Observed) -> Iterator[Run]:
     """Yield each node's runs: under the launch files, and by itself."""
+    launches = [("under " + (one.file or ""), one.nodes, one.seen) for one in observed.launches]
     if observed.launch:
         paths = {started.path: name for name, started in observed.started.items()}
-        launch = observed.launch
-        yield from _runs("under the launch file", paths, launch.seen, launch.lines, launch.asked)
-    for launched in observed.launches:
-        where = f"under {launched.file}" if launched.file else "together with the other nodes"
-        seen = launched.seen
-        yield from _runs(where, launched.nodes, seen.seen, seen.lines, seen.asked)
+        launches.append(("under the launch file", paths, observed.launch))
+    for where, paths, launch in launches:
+        before = [line for line in launch.lines if line[0] < launch.asked]
+        codes = ends(text for _, _, text in before)
+        for path, node in paths.items():
+            logs = [one for one in launch.seen.logs if one.node == path and one.time < launch.asked]
+            said = where if where != "under " else "together with the other nodes"
+            rest = launch.seen, launch.asked, codes.get(path), launch.latched
+            yield Run(node, said, path, logs, before, *rest)
     direct = observed.direct or DirectResult()
-    for name, alone in direct.nodes.items():
-        asked = alone.asked or alone.ended_after or 0.0
+    for node, alone in direct.nodes.items():
         if alone.name:
-            paths = {alone.name: name}
-            yield from _runs("started by itself", paths, direct.seen, alone.lines, asked)
-
-
-def _runs(
-    where: str, paths: dict[str, str], seen: Seen, lines: list[Line], asked: float
-) -> Iterator[Run]:
-    before = [line for line in lines if line[0] < asked]
-    for path, node in paths.items():
-        logs = [log for log in seen.logs if log.node == path and log.time < asked]
-        yield Run(node, where, logs, before, seen, asked)
+            path, asked = alone.name, alone.asked or alone.ended_after or 0.0
+            logs = [one for one in direct.seen.logs if one.node == path and one.time < asked]
+            before = [line for line in alone.lines if line[0] < asked]
+            ended = alone.code if alone.ended_after is not None else None
+            rest = direct.seen, asked, ended, direct.latched
+            yield Run(node, "started by itself", path, logs, before, *rest)
 
 
 def is_own(package: Package, log: Log) -> bool:

@@ -10,8 +10,11 @@ import re
 import shlex
 import signal
 import tempfile
+import xml.etree.ElementTree as ElementTree
 import xml.sax.saxutils
 from typing import Mapping
+
+import yaml
 
 from mrp_check import sandbox
 from mrp_check.confined import plans, variables
@@ -45,6 +48,7 @@ class Planner:
     params: those of that file
     environment: of the nodes
     messages: what messages.definitions() says of the package's own
+    preload: the library that sees the callbacks of roscpp's subscribers; or None
     """
 
     workspace: Workspace
@@ -54,6 +58,7 @@ class Planner:
     params: dict[str, object]
     environment: dict[str, str]
     messages: dict[str, list[str]]
+    preload: pathlib.Path | None = None
 
     @property
     def period(self) -> float:
@@ -98,6 +103,9 @@ class Planner:
     ) -> plans.LaunchPlan:
         """Return the plan for a launch file without a contract; all lines come to the screen."""
         common = self._common(self.spec.shutdown.seconds + _ROSLAUNCH_SECONDS)
+        if self.preload:
+            common.environment["LD_PRELOAD"] = str(self.preload)
+            common.environment[variables.CALLBACKS] = f"{common.writable[0]}/callbacks"
         return plans.LaunchPlan(
             common=dataclasses.replace(common, seconds=seconds),
             command=["roslaunch", "--screen", str(file)],
@@ -136,6 +144,30 @@ class Planner:
         path = self.workspace.given / "of_spec.launch"
         path.write_text("\n".join(["<launch>", *lines, "</launch>", ""]))
         return path
+
+    def write_launch_file_of_all(self, nodes: Mapping[str, str]) -> pathlib.Path:
+        """Write a launch file that starts all these nodes, each as the package's launch files do,
+        if one of them starts it; return its path.
+
+        nodes: full name -> node of the spec
+        """
+        root = ElementTree.Element("launch")
+        for name, value in self.params.items() if self.started else ():
+            ElementTree.SubElement(root, "rosparam", param=name).text = yaml.safe_dump(value)
+        for path, node in nodes.items():
+            space, _, own = path.rpartition("/")
+            words = {"pkg": self.workspace.package.name, "type": self.executables[node].name}
+            element = ElementTree.SubElement(root, "node", words, name=own, ns=space or "/")
+            started = self.started.get(node)
+            if started:
+                element.set("args", started.arguments)
+                for source, target in started.remaps:
+                    ElementTree.SubElement(element, "remap", {"from": source, "to": target})
+                for name, given in started.env:
+                    ElementTree.SubElement(element, "env", name=name, value=given)
+        file = self.workspace.given / "of_all.launch"
+        file.write_bytes(ElementTree.tostring(root))
+        return file
 
     # --- Each by itself
 
