@@ -93,7 +93,7 @@ def model_of(package):
     text = package.text("CMakeLists.txt")
     calls = cmake.parsed(text, "CMakeLists.txt")
     model = cmake.Model(package.root, calls, complete=True)
-    uses.is_ros_package.cache_clear()
+    uses.is_installed.cache_clear()
     return model
 
 

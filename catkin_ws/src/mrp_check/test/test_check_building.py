@@ -176,12 +176,12 @@ def test_definitions_that_this_machine_has_not_are_not_the_students_fault(tmp_pa
             (tmp_path / name / "msg" / file).touch()
     monkeypatch.setattr(configuring.resources, "SHARES", (tmp_path,))
     monkeypatch.setattr(configuring.uses, "SHARES", (tmp_path,))
-    configuring.uses.is_ros_package.cache_clear()
+    configuring.uses.is_installed.cache_clear()
     without = configuring.without_definitions
     assert without(said.format("Goal", "some_msgs")) == "some_msgs"
     assert without(said.format("Nun", "own_msgs")) is None
     assert without(said.format("Goal", "sone_msgs")) is None
-    configuring.uses.is_ros_package.cache_clear()
+    configuring.uses.is_installed.cache_clear()
 
 
 def test_a_header_that_this_machine_has_not_is_no_misspelt_one(tmp_path, monkeypatch):
@@ -290,7 +290,7 @@ def test_an_old_cmake_adds_the_ending_of_a_source(version, is_there, tmp_path):
 def test_a_package_of_which_debian_keeps_the_headers_apart_is_not_here(tmp_path, monkeypatch):
     monkeypatch.setattr(compiler.uses, "SHARES", (tmp_path / "share",))
     monkeypatch.setattr(compiler.uses, "debian_packages", lambda: {"libfar-srvs-dev"})
-    compiler.uses.is_ros_package.cache_clear()
+    compiler.uses.is_installed.cache_clear()
     (tmp_path / "share" / "far_srvs").mkdir(parents=True)
     (tmp_path / "share" / "far_srvs" / "package.xml").touch()
     package = check_rules.make(tmp_path / "some_pkg")
@@ -299,7 +299,7 @@ def test_a_package_of_which_debian_keeps_the_headers_apart_is_not_here(tmp_path,
     (tmp_path / "include" / "far_srvs").mkdir(parents=True)
     (tmp_path / "include" / "far_srvs" / "Trigger.h").touch()
     assert compiler.absent(package, [problem]) == {}
-    compiler.uses.is_ros_package.cache_clear()
+    compiler.uses.is_installed.cache_clear()
 
 
 @pytest.mark.parametrize(

@@ -24,7 +24,7 @@ from mrp_check.report import contract, diff
 from mrp_check.rules import REQUIREMENTS, RULES
 from mrp_check.running.planning import ENOUGH
 from mrp_check.scratch import scratch_folder
-from mrp_check.sources import python_modules
+from mrp_check.sources import python_modules, uses
 from mrp_check.student.package import Package
 
 
@@ -54,6 +54,8 @@ def check(
     rules = [rule for rule in RULES if rule.only != (ANY if spec else CONTRACT)]
     asked = {id_ for rule in rules for id_ in rule.ids if not spec or spec.asks(id_)}
     ids = [id_ for id_ in REQUIREMENTS if id_ in asked and (id_ in only or not only)]
+    uses.SIBLINGS.clear()
+    uses.SIBLINGS.update(one.name for one in package.siblings)
     with contextlib.nullcontext(kept) if kept else scratch_folder() as folder:
         case = (Case if spec else AnyCase)(package, spec, folder, timeout, progress)
         if isinstance(case, AnyCase) and write:

@@ -33,7 +33,7 @@ from mrp_check.report import (
 )
 from mrp_check.rules import REQUIREMENTS
 from mrp_check.scratch import kept_folder, scratch_folder
-from mrp_check.student import submissions
+from mrp_check.student import siblings, submissions
 from mrp_check.student.package import Package
 
 EXIT_CODES = {MET: 0, FINDINGS: 1, UNCHECKED: 2}
@@ -156,7 +156,7 @@ def run(options):
                 needed = "without" if options.class_ else "with"
                 name = name.replace("_", "-")
                 raise CannotCheck(f"--{name} goes {needed} --class.")
-        run_one = write_contract if options.write_contract else run_package
+        run_one = write_contract if options.write_contract else run_packages
         result = run_class(options) if options.class_ else run_one(options)
     except (PackageError, SpecError, CannotCheck, ClusterError, OSError) as error:
         print(f"check: {error}", file=sys.stderr)
@@ -238,6 +238,28 @@ def unpacked(options, scratch):
     return path
 
 
+def run_packages(options):
+    """Check a package, or each package of a workspace; return the worst verdict."""
+    path = pathlib.Path(options.path)
+    is_one = not path.is_dir() or options.package or (path / "package.xml").exists()
+    paths = [] if is_one or not options.any else siblings.packages_in(path)
+    if len(paths) < 2:
+        return run_package(options)
+    verdicts = []
+    for number, one in enumerate(paths):
+        print("\n" * bool(number) + f"{console.plain(str(one))}:")
+        files = {name: getattr(options, name) for name in OF_PACKAGE}
+        named = {name: _with_name(file, one.name) for name, file in files.items() if file}
+        verdicts.append(run_package(argparse.Namespace(**{**vars(options), **named, "path": one})))
+    return max(verdicts, key=(MET, UNCHECKED, FINDINGS).index)
+
+
+def _with_name(file, name):
+    """Return a file's path with a package's name in it."""
+    path = pathlib.Path(file)
+    return str(path.with_name(f"{path.stem}-{printable(name)}{path.suffix}"))
+
+
 def run_package(options):
     """Check a package, write its reports, and return its verdict. Raises CannotCheck."""
     progress = console.Progress(sys.stderr, time.monotonic() if options.timing else None)
@@ -246,6 +268,10 @@ def run_package(options):
         contract = None if options.any else spec.read(spec.find(options.spec), REQUIREMENTS)
         with scratch_folder() as scratch, contextlib.ExitStack() as stack:
             package = Package(unpacked(options, scratch))
+            if options.any:
+                package.siblings = siblings.needed(package)
+            for one in package.siblings:
+                print(f"check: builds {one.name} with {package.name}.", file=sys.stderr)
             say_how_apart()
             kept = None
             if scratch not in package.root.parents:  # what was unpacked is not there again

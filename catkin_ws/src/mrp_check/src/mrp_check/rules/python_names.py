@@ -82,6 +82,8 @@ class Names(PythonRule):
         if missing is None:
             return
         self.not_imported.append(name.split(".")[-1])
+        if missing.split(".")[0] in uses.SIBLINGS:
+            return  # it is built with the package: the run shows whether it has that
         if missing in OF_PYTHON_2:
             yield self._renamed(node, missing)
             return

@@ -149,8 +149,17 @@ def debian_packages() -> set[str]:
     return names if len(names) >= _ALL else set()
 
 
-@functools.lru_cache(maxsize=None)
+# The names of the packages that are built with the package under check.
+SIBLINGS: set[str] = set()
+
+
 def is_ros_package(name: str) -> bool:
+    """Return whether a ROS package of that name is on this machine, or beside the package."""
+    return name in SIBLINGS or is_installed(name)
+
+
+@functools.lru_cache(maxsize=None)
+def is_installed(name: str) -> bool:
     """Return whether this machine has a ROS package of that name."""
     return any((pathlib.Path(share) / name / "package.xml").is_file() for share in SHARES)
 

@@ -65,6 +65,7 @@ class Package:
     name: as package.xml says, or the folder's name if package.xml cannot be read
     files: the paths of its files, relative to root, with "/" between folders, in order
     left_out: the paths of files that are too large to be looked at
+    siblings: the packages beside it that are built with it
     not_utf8: the same of those whose paths are not UTF-8: they are not looked at either
 
     Raises PackageError if there is no such folder, no package.xml, or too much of it.
@@ -79,6 +80,7 @@ class Package:
         self._bytes: dict[str, bytes] = {}
         self.left_out: list[str] = []
         self.not_utf8: list[str] = []
+        self.siblings: list[Package] = []
         self.files = self._list()
         self._known = {*self.files}
         if "package.xml" not in self.files:

@@ -81,12 +81,20 @@ class Workspace:
         # Before it is copied: it may change then.
         self._read_by_cmake = _digest(package, _BUILT)
         self._read_by_all = self._read_by_cmake if writes else _digest(package, (*_BUILT, "cmake"))
+        for sibling in package.siblings:
+            self._read_by_cmake += _digest(sibling, ())
+            self._read_by_all += _digest(sibling, ())
         kept = self._take_kept()
         self.configured = kept and kept["configured"]
         if not self.configured and self.folder.exists():
             confine.remove(self.folder)
         self.folder.mkdir(mode=0o700, exist_ok=True)
         copied = [path for path in package.files if self._copy(path)]
+        for sibling in package.siblings if not self.configured else ():
+            folder = self.folder / "src" / printable(sibling.root.resolve().name)
+            for path in sibling.files if not folder.exists() else ():
+                (folder / path).parent.mkdir(parents=True, exist_ok=True)
+                shutil.copy(sibling.root / path, folder / path)
         changed = {package.kind(path) for path in copied if self.configured}
         self.compiles_again = bool(changed & {"cpp", "header"})
         is_made = writes or not changed <= _NOT_MADE
