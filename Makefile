@@ -45,6 +45,7 @@ PACKAGES_test-browser := $(PACKAGES_view) check docs cluster test browser
 PACKAGES_bench := $(PACKAGES_build) bench
 PACKAGES_docs := docs
 PACKAGES_docs-book := docs book
+PACKAGES_deb := build deb
 PACKAGES_lint := $(PACKAGES_test-all) lint
 
 # `make run` builds only the tutorial, and `make lab` adds the labs. What has been built stays built. With -j,
@@ -216,6 +217,11 @@ test-browser: packages-test-browser $(BUILT_WHOLE) docs catkin_ws/build/dask/bin
 	@$(IN_WORKSPACE) $(ALONE) source devel/setup.bash; \
 	/usr/bin/python3 -m pytest -n 2 --dist loadgroup --junit-xml=$(RESULTS)/browser.xml tests/browser
 	@echo "Look at the pages: $(SCREENSHOTS)"
+
+.PHONY: deb
+deb: packages-deb  ## make Debian packages of the four nodes (mrp) and of the checker (mrp-check)
+	@$(IN_ENVIRONMENT) catkin_ws/tools/make_debs.sh catkin_ws/build/debs
+	@echo "Install one with: apt install ./catkin_ws/build/debs/NAME.deb"
 
 .PHONY: doctor
 doctor:  ## find what keeps the tutorial from running on this machine
