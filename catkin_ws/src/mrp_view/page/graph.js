@@ -3,11 +3,11 @@
 
 import { byId, html, setText, styleOf, svg } from "./dom.js";
 
-const LEGIBLE = 0.8; // the smallest scale: a larger graph scrolls
+const LEGIBLE = 0.75; // the smallest scale: a larger graph scrolls
 const MOST_PULSES = 60;
 const PULSE = 450; // milliseconds along one edge
 const calm = matchMedia("(prefers-reduced-motion: reduce)");
-const STATES = { dead: "dead", silent: "does not answer", unknown: "not asked yet" };
+const STATES = { dead: "dead", silent: "doesn't answer", unknown: "not asked yet" };
 
 const lastPart = (name) => name.slice(name.lastIndexOf("/") + 1);
 
@@ -28,7 +28,7 @@ export class Graph {
     this.edges.clear();
     this.badges.clear();
     const instead = layout.error ? html("p", { class: "fault" }, layout.error)
-      : !graph.nodes.length && html("p", {}, "No node to show yet.");
+      : !graph.nodes.length && html("p", {}, "No nodes to show.");
     if (instead) {
       this.size = null;
       this.place.replaceChildren(instead);
@@ -75,7 +75,9 @@ export class Graph {
   fit() {
     const picture = this.place.querySelector("svg");
     if (!picture || !this.size) return;
-    const scale = Math.max(LEGIBLE, Math.min(1.25, this.place.clientWidth / (this.size.width + 4)));
+    const { paddingLeft, paddingRight } = getComputedStyle(this.place);
+    const room = this.place.clientWidth - parseFloat(paddingLeft) - parseFloat(paddingRight);
+    const scale = Math.max(LEGIBLE, Math.min(1.25, room / (this.size.width + 4)));
     picture.style.width = `${Math.floor((this.size.width + 4) * scale)}px`;
   }
 
@@ -234,8 +236,9 @@ export class Graph {
   }
 }
 
+export const count = (number, word) => `${number} ${word}${number === 1 ? "" : "s"}`;
+
 function describe(graph) {
-  const count = (number, word) => `${number} ${word}${number === 1 ? "" : "s"}`;
   return `Graph of ${count(graph.nodes.length, "node")} and ${count(graph.topics.length, "topic")}`;
 }
 

@@ -4,7 +4,7 @@
 import { Connection } from "./connection.js";
 import { byId, html, setText } from "./dom.js";
 import { saveCsv, savePng, saveSvg } from "./export.js";
-import { Graph } from "./graph.js";
+import { count, Graph } from "./graph.js";
 import { LogView } from "./log.js";
 import { History, showPlot } from "./plot.js";
 import { keyOfLink, keyOfSender, showLinks, showSenders } from "./tables.js";
@@ -129,10 +129,10 @@ function showCounts() {
 function showFindings() {
   const items = findings.map((one) => {
     const item = html("li", { class: `finding ${one.kind}` }, `${one.text}. `);
-    if (latest?.tutorial) item.append(html("a", { href: `tutorial/${one.page}` }, "What the tutorial says of it"));
+    if (latest?.tutorial) item.append(html("a", { href: `tutorial/${one.page}` }, "Read more in the tutorial"));
     return item;
   });
-  if (!items.length) items.push(html("li", {}, "Nothing out of the ordinary."));
+  if (!items.length) items.push(html("li", {}, "Everything looks normal."));
   byId("findings").replaceChildren(...items);
 }
 
@@ -162,12 +162,13 @@ function choose() {
 function showStatus() {
   const words = [];
   const master = latest?.master;
-  if (state !== "live") words.push("The connection to the viewer is lost. This page tries again by itself; what it shows is from before.");
-  else if (paused) words.push("Paused. ROS goes on.");
+  if (state !== "live") words.push("The connection to the viewer is lost. This page tries to reconnect; what you see is from before.");
+  else if (paused) words.push("Paused here. The nodes keep running.");
   if (state === "live" && master) {
-    if (master.state === "here") words.push(`Master ${master.uri}: ${latest.graph.nodes.length} nodes, ${latest.graph.topics.length} topics.`);
-    else if (master.state === "gone") words.push(`The master ${master.uri} does not answer. The graph is from before; nodes that are connected go on talking.`);
-    else words.push(`No master at ${master.uri} yet. This page waits for it: start one, for example with make run.`);
+    if (master.state === "here") words.push(`Master ${master.uri}: ${count(latest.graph.nodes.length, "node")}, ${count(latest.graph.topics.length, "topic")}.`);
+    else if (master.state === "gone") words.push(`The master ${master.uri} doesn't answer. Below are the nodes that answered last; nodes that are connected don't need it.`);
+    else if (master.state === "ended") words.push(`The nodes have ended, and so has the master. Waiting for a master at ${master.uri}: start one, for example with make run.`);
+    else words.push(`No master at ${master.uri} yet. This page is waiting for one: try make run in another terminal.`);
   }
   setText(byId("status"), words.join(" ") || "Connected to the viewer.");
   document.body.dataset.state = state !== "live" ? "lost" : master?.state ?? "";
@@ -176,7 +177,7 @@ function showStatus() {
 byId("pause").addEventListener("click", () => {
   paused = !paused;
   byId("pause").setAttribute("aria-pressed", String(paused));
-  setText(byId("pause"), paused ? "Go on" : "Pause");
+  setText(byId("pause"), paused ? "Resume" : "Pause");
   connection.tell();
   showStatus();
 });

@@ -40,8 +40,8 @@ class Table {
   }
 }
 
-const senders = new Table("senders", "No message yet.");
-const links = new Table("links", "No connection yet.");
+const senders = new Table("senders", "No messages yet.");
+const links = new Table("links", "No connections yet.");
 
 export const keyOfSender = (one) => `${one.topic}\n${one.from}`;
 export const keyOfLink = (one) => `${one.topic}\n${one.from}\n${one.to}`;
@@ -60,7 +60,7 @@ export function showSenders(rows, shares) {
     let missing = "no counter";
     if (one.missing) {
       missing = String(one.missing[0]);
-      if (one.missing[1]) missing += `, began anew ${one.missing[1]} ×`;
+      if (one.missing[1]) missing += `, restarted ${one.missing[1]} ×`;
     }
     const share = shares.get(key) ?? 1;
     const row = senders.set(key, [

@@ -1,6 +1,6 @@
 #!/usr/bin/env python
 # SPDX-License-Identifier: BSD-3-Clause
-"""Shows the graph and the messages of a running system in a browser, live.
+"""Show the graph and the messages of a running system in a browser, live.
 
 It listens to all topics, asks the master and the nodes what they know, and publishes nothing. It
 needs no master to start: it waits for one.
@@ -28,20 +28,35 @@ def options(arguments):
     parser = argparse.ArgumentParser(
         prog="view_node.py", description=__doc__.split("\n")[0], allow_abbrev=False
     )
-    parser.add_argument("--address", default="127.0.0.1", help="to listen on; 0.0.0.0: on all")
-    parser.add_argument("--port", type=int, default=8765, help="0: any that is free")
     parser.add_argument(
-        "--name", action="append", default=[], help="of this host, under which it may be asked for"
+        "--address", default="127.0.0.1", help="address to listen on; 0.0.0.0: on all"
+    )
+    parser.add_argument("--port", type=int, default=8765, help="0: any free port")
+    parser.add_argument(
+        "--name", action="append", default=[], help="additional host name that may request the page"
     )
     parser.add_argument(
         "--settle",
         type=float,
         default=2.0,
-        help="seconds for which nobody must have come to a topic before the viewer listens to it",
+        help="subscribe once a topic has been stable for this long, in seconds",
     )
-    parser.add_argument("--graph-only", action="store_true", help="listen to no topic")
+    parser.add_argument("--graph-only", action="store_true", help="do not subscribe to any topic")
     parser.add_argument("--tutorial", default="", help="folder of the tutorial's pages")
     return parser.parse_args(arguments)
+
+
+def forwarded_names(port):
+    """Return the name under which GitHub Codespaces forwards a port: [] outside of it."""
+    space = os.environ.get("CODESPACE_NAME")
+    domain = os.environ.get("GITHUB_CODESPACES_PORT_FORWARDING_DOMAIN", "app.github.dev")
+    return [f"{space}-{port}.{domain}"] if space else []
+
+
+def url(address, port):
+    """Return what to open in a browser of this machine. address: that the server listens on"""
+    address = {"0.0.0.0": "127.0.0.1", "::": "::1", "": "127.0.0.1"}.get(address, address)
+    return f"http://[{address}]:{port}/" if ":" in address else f"http://{address}:{port}/"
 
 
 class ViewNode:
@@ -57,7 +72,7 @@ class ViewNode:
             self.listener,
             chosen.address,
             chosen.port,
-            chosen.name,
+            [*chosen.name, *forwarded_names(chosen.port)],
             page,
             tutorial if tutorial and tutorial.is_dir() else None,
         )
@@ -72,8 +87,7 @@ class ViewNode:
             signal.signal(number, self.on_signal)
         self.view.start()
         self.watcher.start()
-        host = self.view.address if self.view.address != "0.0.0.0" else "127.0.0.1"
-        print(f"Open http://{host}:{self.view.port}/ (Ctrl-C ends it)", flush=True)
+        print(f"Open {url(self.view.address, self.view.port)} (Ctrl-C ends it)", flush=True)
         self.loop.start()
         self.ends = True
         self.watcher.stop()
@@ -87,21 +101,23 @@ class ViewNode:
         self.loop.add_callback_from_signal(self.loop.stop)
 
     def on_shutdown(self):
-        """Is called by rospy, which ends the node when another one takes its name."""
+        """Stop, called by rospy: it ends the node when another one takes its name."""
         if not self.ends:
             self.fault = (
-                f"another node has taken the name {self.name}: "
-                "start one of the two with another one, by __name:=..."
+                f"another node has taken the name {self.name}. "
+                "Give one of the two another name: __name:=..."
             )
             self.loop.add_callback(self.loop.stop)
 
     def on_look(self, watcher):
-        """Is called after each look at the graph, in the watcher's thread."""
+        """Show what was seen, called after each look at the graph in the watcher's thread."""
         if watcher.master == "here" and not self.is_node:
             # Nothing of it may go to /rosout: it would be shown, and so on.
             rospy.init_node(self.name.rsplit("/", 1)[-1], disable_signals=True, disable_rosout=True)
             rospy.on_shutdown(self.on_shutdown)
             self.is_node = True
+        if watcher.master == "ended":
+            self.listener.end()
         if watcher.master == "here" and not self.graph_only:
             try:
                 self.listener.register_again(watcher.seen, watcher.proxy)

@@ -47,6 +47,25 @@ def test_host(host, listens_on, allowed):
 )
 def test_origin(origin, allowed):
     assert access.allowed_origin(origin, "localhost:8765") == allowed
+    assert not access.allowed_origin("http://localhost:8765", "127.0.0.1:8765")
+
+
+NAME = "lab-8765.app.github.dev"
+HERE = ("localhost:8765", "127.0.0.1:8765", "[::1]:8765")
+
+
+@pytest.mark.parametrize("host", [NAME, NAME.upper(), f"{NAME}:443", *HERE])
+def test_origin_where_a_port_is_forwarded(host):
+    """One of the two headers may be rewritten on the way, and nothing else is let in."""
+    for origin in (f"https://{NAME}", f"http://{NAME}:8765", *("http://" + one for one in HERE)):
+        assert access.allowed_origin(origin, host, [NAME]), origin
+    other_port = (
+        "http://localhost:1234"  # another page of this machine, or the forwarder's own port
+    )
+    assert access.allowed_origin(other_port, host, [NAME]) == (host not in HERE)
+    for origin in ("https://evil.example", f"https://{NAME}.evil.example", "http://8.8.8.8:8765"):
+        assert not access.allowed_origin(origin, host, [NAME]), origin
+        assert not access.allowed_origin(f"https://{NAME}", origin.partition("//")[2], [NAME])
 
 
 def test_policies_allow_nothing_inline_but_by_its_hash():

@@ -176,6 +176,20 @@ class TestFaults(unittest.TestCase):
                             page.wait_for_finding("forgotten")
             self.assertEqual(viewer.stop(), 0, str(viewer))
 
+    def test_whole_system_has_ended(self):
+        """After Ctrl-C on roslaunch nothing is called dead, restarted, or still publishing."""
+        env = {"ROS_MASTER_URI": f"http://localhost:{free_port()}"}
+        with Viewer("--settle", "0", extra_env=env) as viewer, Client(viewer.address) as page:
+            with PubSub(extra_env=env) as launched:
+                page.wait_for(lambda: (TOPIC, PUBLISHERS[0]) in page.rows, "messages")
+                page.kinds.clear()
+                self.assertEqual(launched.stop(), 0)
+            page.wait_for(lambda: page.graph["master"]["state"] == "ended", "the end")
+            self.assertEqual(page.states(), {})
+            self.assertFalse(page.kinds & {"dead", "forgotten"}, page.kinds)
+            with PubSub(extra_env=env):
+                page.wait_for(lambda: page.states().get(PUBLISHERS[0]) == "alive", "a new start")
+
     def stop_master(self, page, port, env):
         uri = env["ROS_MASTER_URI"]
         pid = rosgraph.Master("/test_faults", master_uri=uri).getPid()

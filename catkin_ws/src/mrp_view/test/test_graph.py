@@ -212,7 +212,14 @@ def found(seen, rows=(), counts=None):
     }
 
 
-ROW = {"topic": "/t", "from": "/pub", "gone": False, "rate": 1.0, "missing": [0, 0]}
+ROW = {
+    "topic": "/t",
+    "from": "/pub",
+    "gone": False,
+    "forgotten": False,
+    "rate": 1.0,
+    "missing": [0, 0],
+}
 
 
 def test_findings():
@@ -221,7 +228,7 @@ def test_findings():
     dead.reports["/pub"].state = DEAD
     assert "/pub died" in found(dead)["dead"]["text"]
     assert "gap" in found(observed(), rows=[{**ROW, "missing": [3, 0]}])
-    assert "forgotten" in found(observed(), rows=[{**ROW, "gone": True}])
+    assert "forgotten" in found(observed(), rows=[{**ROW, "forgotten": True}])
     assert "none" not in found(observed(connected=False))
     assert "latched" in found(observed(latched={("/t", "/pub")}, sender_types={}))
 

@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The viewer as a program: its port, its name, its part in the graph; any text, any browser."""
 
+import http.client
+import re
 import unittest
 
 import rospy
@@ -9,7 +11,29 @@ import rostest
 from mrp_testing.graph import Graph
 from mrp_testing.process import Process
 from mrp_testing.viewer import TOPIC, Client, PubSub, Viewer
+from mrp_testing.waiting import wait_until
 from std_msgs.msg import Header, String
+
+
+def peak_memory(pid):
+    """Return the most memory that a process has had, in bytes."""
+    with open(f"/proc/{pid}/status") as text:
+        return int(re.search(r"VmHWM:\s+(\d+)", text.read())[1]) * 1024
+
+
+def status(port, path, host, origin=None):
+    """Return the status of the answer to a request with these headers."""
+    headers = {"Host": host}
+    if origin:
+        headers.update(Origin=origin, Connection="Upgrade", Upgrade="websocket")
+        headers.update(
+            {"Sec-WebSocket-Version": "13", "Sec-WebSocket-Key": "AAAAAAAAAAAAAAAAAAAAAA=="}
+        )
+    connection = http.client.HTTPConnection("127.0.0.1", port, timeout=20)
+    connection.request("GET", path, headers=headers)
+    answer = connection.getresponse().status
+    connection.close()
+    return answer
 
 
 class TestProgram(unittest.TestCase):
@@ -46,6 +70,44 @@ class TestProgram(unittest.TestCase):
             )
         string.unregister()
         header.unregister()
+
+    def test_message_that_is_too_large_is_not_decoded(self):
+        """Its bytes are not kept either: the viewer's memory grows by less than the message."""
+        publisher = rospy.Publisher("large", String, queue_size=1)
+        key = ("/large", rospy.get_name())
+        with Viewer("--settle", "0") as viewer, Client(viewer.address) as page:
+            wait_until(publisher.get_num_connections, viewer.__str__)
+            before = peak_memory(viewer.pid)
+            publisher.publish("x" * 50_000_000)
+            page.wait_for(lambda: page.rows.get(key, {}).get("value"), "the message")
+            self.assertEqual(page.rows[key]["value"], "50 MB, not decoded")
+            publisher.publish("small")
+            page.wait_for(lambda: page.rows[key]["value"] == "small", "the next message")
+            self.assertEqual(page.rows[key]["count"], 2)
+            self.assertLess(peak_memory(viewer.pid) - before, 50_000_000)
+        publisher.unregister()
+
+    def test_printed_address_can_be_opened(self):
+        for address, printed in (("::1", "[::1]"), ("::", "[::1]"), ("0.0.0.0", "127.0.0.1")):
+            with Viewer("--address", address) as viewer, Client(viewer.address) as page:
+                self.assertRegex(viewer.address, rf"^http://{re.escape(printed)}:\d+/$")
+                page.wait_for(lambda: page.ticks, "a message")
+
+    def test_hosts_and_origins_where_a_port_is_forwarded(self):
+        """Each combination, asked over HTTP and over the WebSocket."""
+        name = "lab-8765.app.github.dev"
+        with Viewer("--name", name) as viewer:
+            port = int(viewer.address.rstrip("/").rpartition(":")[2])
+            names, here = [name], [f"localhost:{port}", f"127.0.0.1:{port}"]
+            others = ["evil.example", f"192.0.2.1:{port}"]
+            for host in (*names, *here, *others):
+                self.assertEqual(status(port, "/", host), 403 if host in others else 200, host)
+                for origin in (*names, *here, "localhost:1", *others):
+                    open_ = host not in others and origin not in others
+                    if origin == "localhost:1":
+                        open_ = host in names
+                    answer = status(port, "/socket", host, "http://" + origin)
+                    self.assertEqual(answer, 101 if open_ else 403, (host, origin))
 
     def test_browser_that_says_anything_is_closed(self):
         with Viewer() as viewer:

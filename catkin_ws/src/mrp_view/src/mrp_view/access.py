@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Who may ask for the page: see allowed_host, and the headers that each answer gets."""
+"""Decide who may ask for the page, and which headers each answer gets."""
 
 import base64
 import hashlib
@@ -55,12 +55,33 @@ def allowed_host(host, listens_on, names=()):
         return False
 
 
-def allowed_origin(origin, host):
-    """Say if a WebSocket may be opened: by a page that this server has served at that Host."""
-    return origin is not None and origin.lower() in (
-        "http://" + host.lower(),
-        "https://" + host.lower(),
-    )
+def allowed_origin(origin, host, names=()):
+    """Say if a WebSocket may be opened: by a page that this server has served at that Host.
+
+    What forwards a port, such as Codespaces, rewrites one of the two headers: so with a name that
+    the user has allowed, each of them may be that name or this machine's loopback. But no other
+    page of this machine may open it: beside a Host that is loopback, the port must be the same.
+    """
+    match = re.fullmatch(r"(https?)://([^/?#@]+)", (origin or "").lower())
+    if not match:
+        return False
+    scheme, at = match.groups()
+    if at == host.lower():
+        return True
+    names = {one.lower() for one in names}
+    if not names:
+        return False
+    by, to = host_name(at), host_name(host)
+    if by in names:
+        return to in names or is_loopback(to)
+    if is_loopback(by) and is_loopback(to):
+        return _port(at, scheme) == _port(host, scheme)
+    return is_loopback(by) and to in names
+
+
+def _port(at, scheme):
+    match = re.search(r":(\d+)$", at)
+    return match[1] if match else {"http": "80", "https": "443"}[scheme]
 
 
 def policy_of(html):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Counts of what one publisher sends on one topic: exact, however few messages are looked at."""
+"""Count what one publisher sends on one topic: exactly, however few messages are looked at."""
 
 import collections
 import struct
@@ -62,6 +62,7 @@ class Sender:
     def __init__(self, counter=None, stamp_of=None):
         self.count = 0
         self.size = 0
+        self.last = 0.0  # when the last message came, in seconds since the epoch
         self.latency = None  # seconds, of the last message that had a stamp
         self._read, modulus, self.counted = counter or (None, 1, None)
         self._gaps = Gaps(modulus) if counter else None
@@ -71,15 +72,17 @@ class Sender:
         self._rate = 0.0
         self._lock = threading.Lock()
 
-    def add(self, now, raw, clock):
-        """Count a raw message. now: seconds since the epoch; clock(): ROS's time, for the latency.
+    def add(self, now, raw, clock, size=None):
+        """Count a raw message. now: seconds since the epoch; clock(): ROS's time, for the latency;
+        size: in bytes, if raw is only the beginning of it: then only the size is kept.
 
         A publisher may send what is no message of its type: then nothing in it is looked at.
         """
         with self._lock:
             self.count += 1
-            self.size = len(raw)
-            self._samples.append((now, raw))
+            self.last = now
+            self.size = len(raw) if size is None else size
+            self._samples.append((now, raw if self.size == len(raw) else self.size))
             try:
                 if self._gaps is not None:
                     self._gaps.add(self._read(raw))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What there is to learn from what is on the screen, and which page of the tutorial explains it."""
+"""Find what there is to learn from the screen, and which page of the tutorial explains it."""
 
 import collections
 
@@ -47,9 +47,9 @@ def findings(graph, counts, rows, viewer):
 def _of_nodes(nodes):
     dead = [one["name"] for one in nodes if one["state"] == "dead"]
     if len(dead) > 1:
-        yield "dead", f"{_names(dead)} died without taking themselves off the master's list"
+        yield "dead", f"{_names(dead)} died without telling the master"
     elif dead:
-        yield "dead", f"{dead[0]} died without taking itself off the master's list"
+        yield "dead", f"{dead[0]} died without telling the master"
 
 
 def _of_links(links):
@@ -63,40 +63,40 @@ def _of_counts(counts):
         if one["dropped"]:
             yield (
                 "dropped",
-                f"{one['to']} has dropped {one['dropped']} of {one['received']} messages: its "
+                f"{one['to']} dropped {one['dropped']} of {one['received']} messages, because its "
                 f"queue was full ({where})",
             )
         elif one["missing"]:
             yield (
                 "missing",
-                f"{one['missing']} of {one['sent']} messages {where} have not come out of "
-                "its queue: dropped, or still under way",
+                f"{one['missing']} of {one['sent']} messages {where} haven't reached the callback: "
+                "they were dropped, or are still on their way",
             )
 
 
 def _of_topics(topics):
     latched = [one["name"] for one in topics if one["latched"] and one["name"] not in _LOG]
     if latched:
-        yield "latched", f"latched: who comes late to {_names(latched)} gets the last message"
+        yield "latched", f"{_names(latched)} is latched: a late subscriber gets the last message"
 
 
 def _of_islands(edges):
     for names in _islands(edges):
-        yield "islands", f"{len(names)} islands, as their topics are private: {_names(names)}"
+        yield "islands", f"{len(names)} islands, because their topics are private: {_names(names)}"
 
 
 def _of_rows(rows):
     for row in rows:
-        if row["gone"] and row["rate"]:
+        if row["forgotten"]:
             yield (
                 "forgotten",
-                f"{row['from']} goes on publishing {row['topic']}, but the master does not know "
-                "it: it has been restarted since",
+                f"{row['from']} still publishes {row['topic']}, but the master doesn't know it. "
+                "Was the master restarted?",
             )
         if row["missing"] and row["missing"][0]:
             yield (
                 "gap",
-                f"{row['missing'][0]} values are missing in what {row['from']} counts on "
+                f"{row['missing'][0]} values are missing from what {row['from']} counts on "
                 f"{row['topic']}",
             )
 

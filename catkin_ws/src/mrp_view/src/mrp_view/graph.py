@@ -48,6 +48,7 @@ class NodeReport:
     uri: Optional[str] = None
     state: str = UNKNOWN
     why: str = ""
+    failures: int = 0  # questions in a row that found nobody
     outbound: List = dataclasses.field(default_factory=list)  # of reports.End
     inbound: List = dataclasses.field(default_factory=list)
     sent_before: Dict = dataclasses.field(default_factory=dict)  # (topic, peer) -> messages
@@ -100,7 +101,7 @@ class Observation:
         return self.reports[node].state if node in self.reports else UNKNOWN
 
     def connected(self, topic, publisher, subscriber):
-        """Say if two nodes are connected; None if none of both says anything."""
+        """Say if two nodes are connected; None if neither says anything."""
         if self.viewer in (publisher, subscriber):
             return True
         answers = []
@@ -151,7 +152,7 @@ def link(seen, topic, publisher, subscriber):
     """Return (state, why) of what should be a connection.
 
     "ok"; "mismatch": the types differ; "none": both live, and are not connected; "waiting": not
-    yet; "dead": one of the two is; "unknown": none of the two says.
+    yet; "dead": one of the two is; "unknown": neither node says.
     """
     if DEAD in (seen.state(publisher), seen.state(subscriber)):
         return "dead", ""
@@ -159,7 +160,7 @@ def link(seen, topic, publisher, subscriber):
     if connected:
         return "ok", ""
     if connected is None:
-        return "unknown", "none of the two answers"
+        return "unknown", "neither node answers"
     refused = seen.refusals.get((topic, publisher, subscriber))
     if refused:
         return "mismatch", (

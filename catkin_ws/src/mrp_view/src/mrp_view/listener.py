@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Subscribes to all that somebody publishes, counts what comes, and looks into some of it."""
+"""Subscribe to everything that is published, count what comes, and look into some of it."""
 
 import collections
 import threading
@@ -8,6 +8,8 @@ import time
 import rosgraph
 import rospy
 from rosgraph_msgs.msg import Log
+from rospy.exceptions import TransportTerminated
+from rospy.impl.tcpros_pubsub import TCPROSSub
 
 from mrp_view import fields, rpc
 from mrp_view.counting import Sender
@@ -18,7 +20,41 @@ LOG_LINES = 500  # that are kept
 _LEVELS = {1: "DEBUG", 2: "INFO", 4: "WARN", 8: "ERROR", 16: "FATAL"}
 _LONGEST_LINE = 2000  # characters
 _LARGE = 100_000  # bytes: larger messages are looked into only once a second
+_TOO_LARGE = 8_000_000  # bytes: larger messages are not decoded, and not kept
+_BEGINNING = 1000  # bytes
+_STILL = 1.0  # seconds after which a publisher that the master no longer knows has not just ended
 _FORGET = 60  # seconds for which what a topic's senders sent is shown after the topic has gone
+
+
+class Raw(rospy.AnyMsg):
+    """A message of any type. raw: its bytes; of one that is too large only the first ones, which
+    have its header. size: in bytes."""
+
+    def deserialize(self, data):
+        self.raw, self.size = data, len(data)
+        return self
+
+
+def _read_messages(self, b, msg_queue, sock):
+    """Read as rospy does, but leave out what is too large: rospy would hold two copies of it."""
+    size = int.from_bytes(b.getbuffer()[:4], "little")
+    if size <= _TOO_LARGE or self.recv_data_class is not Raw:
+        super(TCPROSSub, self).read_messages(b, msg_queue, sock)
+        return
+    message = Raw().deserialize(bytes(b.getbuffer()[4 : 4 + _BEGINNING]))
+    message.size = size
+    left = size + 4 - b.tell()
+    while left:
+        part = len(sock.recv(min(left, self.buff_size)))
+        if not part:
+            raise TransportTerminated("the publisher ended in the middle of a message")
+        left -= part
+    b.seek(0)
+    b.truncate(0)
+    msg_queue.append(message)
+
+
+TCPROSSub.read_messages = _read_messages
 
 
 class _Heard:
@@ -37,6 +73,7 @@ class _Heard:
         self.value = self.why or ""
         self.number = None
         self.looked = 0.0  # when it was looked into a large message
+        self.unknown_since = None  # when the master no longer knew it
 
 
 class Listener:
@@ -91,11 +128,15 @@ class Listener:
         self._forget(others, now)
         self._known = {(topic, one) for topic, names in seen.publishers.items() for one in names}
 
+    def end(self):
+        """Take over that all publishers have ended."""
+        self._known = set()
+
     def _subscribe(self, topic):
         callback = self._log_line if topic == LOG_TOPIC else self._count
         # It must not lose what it counts: neither a queue that drops, nor a small buffer.
         self._subscribers[topic] = rospy.Subscriber(
-            topic, rospy.AnyMsg, callback, callback_args=topic, buff_size=2**18
+            topic, Raw, callback, callback_args=topic, buff_size=2**18
         )
 
     def _forget(self, topics, now):
@@ -128,7 +169,7 @@ class Listener:
         heard = self._heard.get((topic, header.get("callerid")))
         if heard is None or heard.md5sum != header.get("md5sum"):
             heard = self._new(topic, header)
-        heard.sender.add(now, message._buff, rospy.get_time)
+        heard.sender.add(now, message.raw, rospy.get_time, message.size)
 
     def _new(self, topic, header):
         with self._lock:
@@ -140,7 +181,7 @@ class Listener:
         self._count(message, topic)
         if message._connection_header.get("md5sum") != Log._md5sum:
             return
-        log = Log().deserialize(message._buff)
+        log = Log().deserialize(message.raw)
         refused = refusal(log.name, log.msg)
         with self._lock:
             if refused:
@@ -174,12 +215,17 @@ class Listener:
             all_heard = sorted(self._heard.items())
             known = set(self._known)
         return [
-            self._row(topic, publisher, heard, (topic, publisher) not in known, now)
+            self._row(topic, publisher, heard, (topic, publisher) in known, now)
             for (topic, publisher), heard in all_heard
         ]
 
-    def _row(self, topic, publisher, heard, gone, now):
+    def _row(self, topic, publisher, heard, known, now):
         sender = heard.sender
+        if known:
+            heard.unknown_since = None
+        elif heard.unknown_since is None:
+            heard.unknown_since = now
+        forgotten = not known and sender.last - heard.unknown_since > _STILL
         count, raw_samples = sender.take()
         if sender.size > _LARGE and now - heard.looked < 1:
             raw_samples = []
@@ -190,7 +236,8 @@ class Listener:
             "topic": topic,
             "from": publisher,
             "type": heard.type,
-            "gone": gone,
+            "gone": not known,
+            "forgotten": forgotten,
             "count": count,
             "size": sender.size,
             "rate": round(sender.rate(now), 2),
@@ -204,6 +251,9 @@ class Listener:
 
     def _sample(self, heard, at, raw):
         """Return (time, number or None, text) of a raw message, and remember what it says."""
+        if isinstance(raw, int):
+            heard.value, heard.number = f"{raw / 1e6:.0f} MB, not decoded", None
+            return round(at, 4), None, heard.value
         if heard.message_class is None:
             return at, None, f"{heard.why} ({len(raw)} bytes)"
         try:

@@ -38,8 +38,8 @@ class _Guarded:
         if not access.allowed_host(self.request.host, view.address, view.names):
             self.set_status(403)
             self.finish(
-                "This address is not one under which the page is served. Open the address that "
-                "was printed, or start view_node.py with --name.\n"
+                "The viewer doesn't serve its page under this address. Open the address that it "
+                "printed, or start it with --name and the name in your address bar.\n"
             )
 
     def write_error(self, status_code, **kwargs):
@@ -75,7 +75,9 @@ class Socket(_Guarded, tornado.websocket.WebSocketHandler):
         self.graph_sent = None
 
     def check_origin(self, origin):
-        return access.allowed_origin(origin, self.request.host)
+        return access.allowed_origin(
+            origin, self.request.host, self.application.settings["view"].names
+        )
 
     def prepare(self):
         super().prepare()

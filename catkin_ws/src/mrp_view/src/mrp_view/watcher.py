@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Looks at the master and at each node, over and over, in threads of its own."""
+"""Look at the master and at each node, over and over, in threads of its own."""
 
 import concurrent.futures
 import socket
@@ -12,6 +12,7 @@ from mrp_view.graph import ALIVE, DEAD, SILENT, NodeReport, Observation
 LOOK = 0.5  # seconds from one look at the master to the next
 ASK = 1.0  # seconds from one question to a node to the next
 TIMEOUT = 1.0  # seconds that a node, or the master, may take to answer
+PATIENCE = 2  # questions in a row that must fail before a node is called dead
 _STATISTICS = 25  # questions a second for counts, of all nodes together
 _WORKERS = 16
 
@@ -24,7 +25,8 @@ class Watcher:
 
     lock: to be held while `seen` is read
     proxy: the master's, for on_look
-    master: "here", "gone", or "never" as long as there has been none
+    master: "here"; "never" as long as there has been none; "gone" while nodes go on without it;
+        "ended" when they have ended, too
     """
 
     def __init__(self, master_uri, viewer, on_look):
@@ -72,8 +74,7 @@ class Watcher:
             for node in nodes - set(self._proxies):
                 uris[node] = self.proxy.call("lookupNode", node)
         except rpc.ERRORS as error:
-            self.master = "never" if self.master == "never" else "gone"
-            self.why = str(error)
+            self._without_master(str(error))
             return
         with self.lock:
             self.master = "here"
@@ -88,6 +89,20 @@ class Watcher:
                 del self.seen.reports[node]
                 self._proxies.pop(node, None)
                 self._asked.pop(node, None)
+
+    def _without_master(self, why):
+        """Keep the nodes that still answer: if none does, the whole system has ended."""
+        with self.lock:
+            self.why = why
+            if self.master == "never":
+                return
+            states = [self.seen.state(node) for node in self.seen.nodes() - {self.seen.viewer}]
+            self.master = "gone" if ALIVE in states or SILENT in states else "ended"
+            if self.master == "ended":
+                self.seen.publishers, self.seen.subscribers, self.seen.services = {}, {}, []
+                self.seen.reports.clear()
+                self._proxies.clear()
+                self._asked.clear()
 
     def _move(self, node, uri):
         self._proxies[node] = rpc.Proxy(uri, TIMEOUT)
@@ -115,6 +130,10 @@ class Watcher:
             with self.lock:
                 report = self.seen.reports.get(node)
                 if report is not None and self._proxies.get(node) is proxy:
+                    # A node that ends stops answering a moment before it leaves the master's list.
+                    report.failures = report.failures + 1 if state == DEAD else 0
+                    if state == DEAD and report.failures < PATIENCE and self.master == "here":
+                        return
                     report.state, report.why = state, why
                     if ends is not None:
                         if with_counts:
@@ -160,5 +179,5 @@ class Watcher:
                         self._move(node, uri)
             except rpc.ERRORS:
                 pass
-            return DEAD, f"nobody answers at {proxy.uri}: {error}", ([], [])
-        return SILENT, f"{proxy.uri} does not answer: {error}", None
+            return DEAD, f"nothing answers at {proxy.uri}: {error}", ([], [])
+        return SILENT, f"{proxy.uri} doesn't answer: {error}", None
