@@ -22,9 +22,9 @@ import rospkg
 import why
 from front_door import environment, make
 from mrp_check import releases
-from mrp_check.building import configuring, cpp_words
-from mrp_check.rules import launch_file
-from mrp_check.sources import python_read
+from mrp_check.build import configuring, cpp_words
+from mrp_check.code import python_read
+from mrp_check.rules.files import launch_file
 from mrp_testing.master import uri_of
 from mrp_testing.ports import free_port
 from mrp_testing.process import LIVE, Process

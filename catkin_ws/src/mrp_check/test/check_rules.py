@@ -5,32 +5,31 @@ import os
 import pathlib
 import types
 
-from mrp_check import case, sandbox
+from mrp_check import sandbox
+from mrp_check.case import case
+from mrp_check.code import facts, node, python_facts, python_read, uses
 from mrp_check.contract import spec
-from mrp_check.rules import (
-    REQUIREMENTS,
+from mrp_check.package import cmake, manifest
+from mrp_check.package.package import Package
+from mrp_check.rules import REQUIREMENTS
+from mrp_check.rules.code import (
     callbacks,
-    counter,
     early_callback,
     lifetime,
     message_fields,
-    node_name,
     node_start,
     not_called,
     not_kept,
     python_names,
-    queue,
     responses,
     rospy_calls,
     spin,
-    swapped_sources,
     typed,
     unbound,
     unpacked,
 )
-from mrp_check.sources import facts, node, python_facts, python_read, uses
-from mrp_check.student import cmake, manifest
-from mrp_check.student.package import Package
+from mrp_check.rules.contract import counter, node_name, queue, swapped_sources
+from mrp_check.verdict.severity import severity
 
 MANIFEST = """<?xml version="1.0"?>
 <package format="3">
@@ -124,7 +123,9 @@ def python_findings(folder, source, **others):
 
 def of(rule, one):
     """Yield what a rule finds; it has to name each of its ids, as the checker asks for them."""
-    yield from rule.ask(one)
+    for finding in rule.ask(one):
+        finding.severity = severity(finding.certainty, has_contract=True)
+        yield finding
 
 
 def node_findings(package, model, found):

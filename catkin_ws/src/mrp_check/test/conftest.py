@@ -7,8 +7,9 @@ import textwrap
 import uuid
 
 import pytest
-from mrp_check import confine, sandbox
+from mrp_check import sandbox
 from mrp_check.contract import resources
+from mrp_check.sandbox import confine
 from mrp_testing.process import processes_with
 
 

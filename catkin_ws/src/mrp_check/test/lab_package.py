@@ -6,10 +6,10 @@ topic; so many defects are seen in one run.
 """
 
 import check_rules
+from mrp_check.code.facts import Facts
 from mrp_check.contract import spec
+from mrp_check.package.package import Package
 from mrp_check.rules import RULES
-from mrp_check.sources.facts import Facts
-from mrp_check.student.package import Package
 
 MAIN = """
 

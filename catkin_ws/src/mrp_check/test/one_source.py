@@ -4,9 +4,9 @@
 import types
 
 import check_rules
+from mrp_check.code.facts import Facts
+from mrp_check.code.python_source import Source
 from mrp_check.contract.finding import ERROR, WARNING
-from mrp_check.sources.facts import Facts
-from mrp_check.sources.python_source import Source
 
 SPEC = types.SimpleNamespace(
     is_contract=False, topics={}, nodes={}, install=False, shutdown=types.SimpleNamespace(seconds=5)

@@ -5,11 +5,11 @@ import types
 
 import check_rules
 import pytest
+from mrp_check.code import uses
 from mrp_check.contract.finding import ERROR, WARNING
-from mrp_check.rules import cmake, messages, package_name, targets
-from mrp_check.sources import uses
-from mrp_check.student import manifest
-from mrp_check.student.package import Package
+from mrp_check.package import manifest
+from mrp_check.package.package import Package
+from mrp_check.rules.files import cmake, messages, package_name, targets
 from one_source import case, lines_of
 
 pytestmark = pytest.mark.quick

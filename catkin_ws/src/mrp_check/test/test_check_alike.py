@@ -9,10 +9,9 @@ import zipfile
 
 import pytest
 from check_rules import hand_in
+from mrp_check.classroom import alike, class_table, classroom
 from mrp_check.cli import check as check_command
-from mrp_check.cli import classroom
 from mrp_check.contract import packages, spec
-from mrp_check.report import alike, class_table
 from test_check_class import Tags
 
 pytestmark = pytest.mark.slow

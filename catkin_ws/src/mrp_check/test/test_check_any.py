@@ -11,14 +11,14 @@ import any_packages
 import check_rules
 import jsonschema
 import pytest
-from mrp_check import check
 from mrp_check.cli import check as command
+from mrp_check.code import executables
 from mrp_check.contract.finding import ERROR, NOTE, WARNING
 from mrp_check.contract.spec import Node
+from mrp_check.package.package import Package
 from mrp_check.report import console, json_
-from mrp_check.running import observing
-from mrp_check.sources import executables
-from mrp_check.student.package import Package
+from mrp_check.run import observing
+from mrp_check.verdict import check
 from mrp_testing import scratch
 
 pytestmark = pytest.mark.slow

@@ -7,10 +7,10 @@ import types
 import check_rules
 import pytest
 from check_rules import CMAKE, MANIFEST
-from mrp_check.building import compiler, configuring, cpp_words, stubs
-from mrp_check.rules import cmake as cmake_rule
-from mrp_check.rules import compile as compile_rule
-from mrp_check.student.package import Package
+from mrp_check.build import compiler, configuring, cpp_words, stubs
+from mrp_check.package.package import Package
+from mrp_check.rules.files import cmake as cmake_rule
+from mrp_check.rules.run import compile as compile_rule
 
 pytestmark = pytest.mark.quick
 

@@ -2,10 +2,10 @@
 """One cause is reported once: what follows from it is its consequence, and nothing else is."""
 
 import pytest
-from mrp_check import causes
+from mrp_check.code.facts import Facts
 from mrp_check.contract.finding import Finding
-from mrp_check.running import words
-from mrp_check.sources.facts import Facts
+from mrp_check.run import words
+from mrp_check.verdict import causes
 
 pytestmark = pytest.mark.quick
 

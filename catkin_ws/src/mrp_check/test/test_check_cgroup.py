@@ -8,7 +8,8 @@ import pathlib
 import subprocess
 
 import pytest
-from mrp_check import confine, sandbox
+from mrp_check import sandbox
+from mrp_check.sandbox import confine
 
 pytestmark = pytest.mark.quick
 

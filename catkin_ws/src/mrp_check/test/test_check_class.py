@@ -11,13 +11,13 @@ import threading
 
 import pytest
 from check_rules import ASKED, hand_in
-from mrp_check import check
+from mrp_check.classroom import class_table, classroom
 from mrp_check.cli import check as check_command
-from mrp_check.cli import classroom
 from mrp_check.contract import errors, spec
 from mrp_check.contract.verdict import unchecked
-from mrp_check.report import class_table, json_
-from mrp_check.student import package
+from mrp_check.package import package
+from mrp_check.report import json_
+from mrp_check.verdict import check
 from mrp_testing.waiting import DEADLINE
 
 pytestmark = pytest.mark.quick

@@ -18,7 +18,7 @@ from check_rules import hand_in
 from mrp_check.confined import cpp_headers, variables
 from mrp_check.contract import resources
 from mrp_check.contract.packages import lay_out
-from mrp_check.student.package import MAX_BYTES
+from mrp_check.package.package import MAX_BYTES
 from mrp_testing.cluster import cluster, worker
 from mrp_testing.process import Process, processes_with
 from mrp_testing.waiting import wait_until

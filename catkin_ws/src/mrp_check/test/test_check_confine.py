@@ -16,9 +16,10 @@ import uuid
 
 import psutil
 import pytest
-from mrp_check import confine, sandbox
-from mrp_check.building.catkin import Catkin
+from mrp_check import sandbox
+from mrp_check.build.catkin import Catkin
 from mrp_check.confined import variables
+from mrp_check.sandbox import confine
 from mrp_testing.process import processes_with
 from mrp_testing.waiting import wait_until
 

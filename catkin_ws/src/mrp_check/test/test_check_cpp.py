@@ -9,10 +9,10 @@ import subprocess
 import check_rules
 import pytest
 from check_rules import told
+from mrp_check.code import facts as facts_
+from mrp_check.code import reading
 from mrp_check.confined import cpp_headers, crossing
 from mrp_check.confined.places import Answer, Kind, Task
-from mrp_check.sources import facts as facts_
-from mrp_check.sources import reading
 from mrp_testing.workspace import WORKSPACE
 
 # One worker of pytest builds for all of these tests.

@@ -8,15 +8,15 @@ import types
 
 import check_rules
 import pytest
-from mrp_check.building import compiler
+from mrp_check.build import compiler
+from mrp_check.code.facts import Facts
 from mrp_check.confined import crossing, plans
 from mrp_check.confined.launch_dump import Started
 from mrp_check.confined.places import Kind, Place
 from mrp_check.confined.seen import Alone, DirectResult, Event
-from mrp_check.rules import launch_remap
-from mrp_check.running.observing import Observed
-from mrp_check.sources.facts import Facts
-from mrp_check.student.launch import Launch
+from mrp_check.package.launch import Launch
+from mrp_check.rules.contract import launch_remap
+from mrp_check.run.observing import Observed
 
 pytestmark = pytest.mark.quick
 

@@ -8,10 +8,10 @@ import types
 import check_rules
 import pytest
 from check_rules import CMAKE, MANIFEST, file_findings, told
-from mrp_check.rules import cmake as cmake_rule
-from mrp_check.rules import dependencies, manifest, messages, package_name, targets, text
-from mrp_check.sources import uses
-from mrp_check.student import cmake
+from mrp_check.code import uses
+from mrp_check.package import cmake
+from mrp_check.rules.files import cmake as cmake_rule
+from mrp_check.rules.files import dependencies, manifest, messages, package_name, targets, text
 
 pytestmark = pytest.mark.quick
 

@@ -6,10 +6,11 @@ import types
 import check_rules
 import pytest
 from mrp_check import releases
+from mrp_check.code import asked, uses
 from mrp_check.contract.finding import ERROR, NOTE, WARNING
-from mrp_check.rules import (
+from mrp_check.package import manifest
+from mrp_check.rules.files import (
     cmake,
-    compile,
     definitions,
     messages,
     package_name,
@@ -17,8 +18,7 @@ from mrp_check.rules import (
     scripts,
     undeclared,
 )
-from mrp_check.sources import asked, uses
-from mrp_check.student import manifest
+from mrp_check.rules.run import compile
 from one_source import SPEC, case, lines_of
 
 pytestmark = pytest.mark.quick

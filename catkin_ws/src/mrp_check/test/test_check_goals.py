@@ -3,7 +3,7 @@
 
 import check_rules
 import pytest
-from mrp_check.rules import goals
+from mrp_check.rules.code import goals
 from one_source import case
 
 pytestmark = pytest.mark.quick

@@ -3,21 +3,20 @@
 
 import check_rules
 import pytest
-from mrp_check.rules import (
+from mrp_check.code import python_read
+from mrp_check.package.cmake import parsed
+from mrp_check.rules.code import (
     arguments,
-    cmake,
     goals,
     long_loop,
     methods,
     not_called,
     not_kept,
     rospy_calls,
-    scripts,
     typed,
-    waiting,
 )
-from mrp_check.sources import python_read
-from mrp_check.student.cmake import parsed
+from mrp_check.rules.files import cmake, scripts
+from mrp_check.rules.run import waiting
 from one_source import AROUND, case, lines_of
 
 pytestmark = pytest.mark.quick

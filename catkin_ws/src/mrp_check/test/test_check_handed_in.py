@@ -13,13 +13,14 @@ import handed_in
 import pytest
 from check_rules import MANIFEST, hand_in
 from handed_in import FILES, below, entry, tar, zip_
-from mrp_check import check
+from mrp_check.classroom import archive
 from mrp_check.cli import check as check_command
 from mrp_check.contract.finding import NOTE
 from mrp_check.contract.verdict import unchecked
-from mrp_check.rules import text
-from mrp_check.student import archive, manifest
-from mrp_check.student.package import MAX_BYTES, Package
+from mrp_check.package import manifest
+from mrp_check.package.package import MAX_BYTES, Package
+from mrp_check.rules.files import text
+from mrp_check.verdict import check
 from test_check_class import Room
 
 pytestmark = pytest.mark.quick
@@ -190,8 +191,8 @@ REFUSED = {
 @pytest.mark.parametrize("name", REFUSED)
 @pytest.mark.usefixtures("open_folders")
 def test_what_is_refused_is_named(uploads, monkeypatch, name):
-    monkeypatch.setattr("mrp_check.student.archive._FREE", 1_000_000)
-    monkeypatch.setattr("mrp_check.student.archive._MOST_ENTRIES", 50)
+    monkeypatch.setattr("mrp_check.classroom.archive._FREE", 1_000_000)
+    monkeypatch.setattr("mrp_check.classroom.archive._MOST_ENTRIES", 50)
     make, says = REFUSED[name]
     make(uploads / name)
     assert says in reason(uploads)
@@ -199,7 +200,7 @@ def test_what_is_refused_is_named(uploads, monkeypatch, name):
 
 def test_all_archives_of_a_submission_are_counted_together(uploads, monkeypatch):
     """A zip of zips, as a known bomb is: each by itself is small enough."""
-    monkeypatch.setattr("mrp_check.student.archive._MOST_UNPACKED", 10_000)
+    monkeypatch.setattr("mrp_check.classroom.archive._MOST_UNPACKED", 10_000)
     inner = uploads / "inner"
     zip_(inner, {f"mrp/{number}": os.urandom(4000) for number in range(2)})
     zip_(uploads / "anna.zip", {f"{number}.zip": inner.read_bytes() for number in range(2)})
@@ -208,7 +209,7 @@ def test_all_archives_of_a_submission_are_counted_together(uploads, monkeypatch)
 
 
 def test_a_packed_tar_is_read_up_to_a_limit(uploads, monkeypatch):
-    monkeypatch.setattr("mrp_check.student.formats._MOST_PASSED", 1_000_000)
+    monkeypatch.setattr("mrp_check.classroom.formats._MOST_PASSED", 1_000_000)
     tar(uploads / "anna.tgz", {"zeros": b"\0" * 2_000_000, **below("mrp")})
     assert "it unpacks to more than" in reason(uploads)
 

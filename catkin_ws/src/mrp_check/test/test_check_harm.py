@@ -6,10 +6,11 @@ import textwrap
 import pytest
 from check_rules import ISOLATIONS
 from lab_package import PUBLISHERS, findings_of, make_package, spec_of
-from mrp_check import check, sandbox
+from mrp_check import sandbox
 from mrp_check.contract.finding import ERROR
 from mrp_check.contract.verdict import MET
-from mrp_check.student.package import Package
+from mrp_check.package.package import Package
+from mrp_check.verdict import check
 from mrp_testing.process import processes_with
 
 pytestmark = [pytest.mark.slow, pytest.mark.usefixtures("open_folders")]

@@ -6,11 +6,12 @@ import os
 import check_sets
 import pytest
 from check_rules import ISOLATIONS
-from mrp_check import check, sandbox
-from mrp_check.building import headers
+from mrp_check import sandbox
+from mrp_check.build import headers
 from mrp_check.confined import gcc_headers, variables
 from mrp_check.contract import spec
-from mrp_check.student.package import Package
+from mrp_check.package.package import Package
+from mrp_check.verdict import check
 
 NODE = "src/publisher_cpp_node.cpp"
 # g++ sees the error in a header of ROS's.

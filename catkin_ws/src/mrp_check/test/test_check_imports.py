@@ -12,19 +12,17 @@ PACKAGE = pathlib.Path(__file__).resolve().parents[1] / "src" / "mrp_check"
 
 # From the bottom up. Whatever runs with a student's code (confined) imports only itself.
 LAYERS = (
-    ("confined", "contract"),
+    ("confined", "contract", "releases"),
     ("sandbox",),
-    ("confine",),
-    ("student", "scratch"),
-    ("sources",),
-    ("building",),
-    ("running",),
+    ("package",),
+    ("code",),
+    ("build",),
+    ("run",),
     ("case",),
-    ("any_case",),
-    ("evidence",),
     ("rules",),
-    ("report", "causes", "suppression"),
-    ("check",),
+    ("report",),
+    ("verdict",),
+    ("classroom",),
     ("learning",),
     ("cli",),
 )

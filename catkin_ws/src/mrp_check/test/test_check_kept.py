@@ -9,10 +9,10 @@ import tempfile
 
 import check_sets
 import pytest
-from mrp_check import check
 from mrp_check.contract import spec
-from mrp_check.scratch import kept_folder
-from mrp_check.student.package import Package
+from mrp_check.package.package import Package
+from mrp_check.sandbox.scratch import kept_folder
+from mrp_check.verdict import check
 
 pytestmark = [pytest.mark.slow, pytest.mark.usefixtures("open_folders")]
 

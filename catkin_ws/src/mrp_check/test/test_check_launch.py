@@ -8,15 +8,9 @@ import check_rules
 import pytest
 from check_rules import PUB_SUB, told
 from mrp_check.confined import launch_dump
-from mrp_check.rules import (
-    launch_file,
-    launch_gone,
-    launch_group,
-    launch_nodes,
-    launch_output,
-    launch_remap,
-)
-from mrp_check.student import launch as launching
+from mrp_check.package import launch as launching
+from mrp_check.rules.contract import launch_group, launch_output, launch_remap
+from mrp_check.rules.files import launch_file, launch_gone, launch_nodes
 
 pytestmark = pytest.mark.slow  # each test imports roslaunch anew, in a process of its own
 

@@ -3,9 +3,9 @@
 
 import pytest
 from check_rules import MANIFEST
-from mrp_check.building import linker
-from mrp_check.student import cmake
-from mrp_check.student.package import Package
+from mrp_check.build import linker
+from mrp_check.package import cmake
+from mrp_check.package.package import Package
 
 pytestmark = pytest.mark.quick
 

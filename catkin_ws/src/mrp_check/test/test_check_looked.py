@@ -6,7 +6,7 @@ import types
 import check_rules
 import pytest
 from mrp_check.contract.finding import NOTE
-from mrp_check.rules import (
+from mrp_check.rules.code import (
     arguments,
     early_callback,
     goals,
@@ -16,11 +16,11 @@ from mrp_check.rules import (
     python_names,
     responses,
     rospy_calls,
-    targets,
     typed,
     unbound,
     unpacked,
 )
+from mrp_check.rules.files import targets
 from one_source import case, lines_of
 
 pytestmark = pytest.mark.quick

@@ -9,11 +9,10 @@ import zipfile
 
 import pytest
 from check_rules import ASKED, hand_in
-from mrp_check import check
+from mrp_check.classroom import by_hand, class_table, classroom, mail, moodle, moved
 from mrp_check.cli import check as check_command
-from mrp_check.cli import classroom
-from mrp_check.contract import by_hand, errors, spec
-from mrp_check.report import class_table, mail, moodle, moved
+from mrp_check.contract import errors, spec
+from mrp_check.verdict import check
 from test_check_class import SPEC_FILE, Room, Tags
 
 pytestmark = pytest.mark.quick

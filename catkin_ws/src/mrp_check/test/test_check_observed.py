@@ -12,22 +12,16 @@ import check_rules
 import psutil
 import pytest
 from lab_package import OF_RUN, findings_of, make_package, spec_of
-from mrp_check import check, sandbox
+from mrp_check import sandbox
+from mrp_check.code.facts import Facts
 from mrp_check.confined import activity
-from mrp_check.confined.seen import (
-    Alone,
-    DirectResult,
-    LaunchResult,
-    Message,
-    Registration,
-    Seen,
-)
+from mrp_check.confined.seen import Alone, DirectResult, LaunchResult, Message, Registration, Seen
 from mrp_check.contract.errors import CannotCheck
 from mrp_check.contract.finding import ERROR, NOTE
+from mrp_check.package.package import Package
 from mrp_check.rules import REQUIREMENTS
-from mrp_check.running import behaviour, observing, planning, starting
-from mrp_check.sources.facts import Facts
-from mrp_check.student.package import Package
+from mrp_check.run import behaviour, observing, planning, starting
+from mrp_check.verdict import check
 from mrp_testing.waiting import wait_until
 
 pytestmark = pytest.mark.slow

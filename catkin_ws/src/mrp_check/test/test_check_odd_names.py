@@ -10,14 +10,15 @@ import tarfile
 import check_rules
 import pytest
 from mrp_check import sandbox
+from mrp_check.classroom import alike, class_table, mail, moodle
+from mrp_check.classroom.fingerprints import Code
 from mrp_check.cli import check as command
 from mrp_check.contract import spec
 from mrp_check.contract.finding import Finding
 from mrp_check.contract.verdict import BROKEN, FINDINGS, Report
-from mrp_check.report import alike, class_table, github, json_, mail, moodle
-from mrp_check.rules import text
-from mrp_check.student.fingerprints import Code
-from mrp_check.student.package import Package
+from mrp_check.package.package import Package
+from mrp_check.report import github, json_
+from mrp_check.rules.files import text
 
 ODD = os.fsdecode(b"gr\xfc\xdfe")
 ANN = "J%FCrgen_12_assignsubmission_file_"

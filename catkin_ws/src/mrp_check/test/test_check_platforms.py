@@ -9,12 +9,13 @@ import zipfile
 import jsonschema
 import pytest
 from check_rules import ASKED, hand_in
+from mrp_check.classroom import class_table, gradescope, mail, moodle
+from mrp_check.classroom.by_hand import ByHand
 from mrp_check.cli import check as check_command
 from mrp_check.contract import spec
-from mrp_check.contract.by_hand import ByHand
 from mrp_check.contract.finding import SEEN, Finding
 from mrp_check.contract.verdict import BROKEN, FINDINGS, MET, UNCHECKED, Report, public, unchecked
-from mrp_check.report import class_table, console, gradescope, html, json_, mail, moodle
+from mrp_check.report import console, html, json_
 
 pytestmark = pytest.mark.quick
 

@@ -7,9 +7,9 @@ import types
 import check_rules
 import pytest
 from check_rules import told
+from mrp_check.code import executables, facts, node, python_facts, python_read, uses
 from mrp_check.confined.places import Kind, Place
-from mrp_check.rules import starts
-from mrp_check.sources import executables, facts, node, python_facts, python_read, uses
+from mrp_check.rules.run import starts
 
 pytestmark = pytest.mark.quick
 

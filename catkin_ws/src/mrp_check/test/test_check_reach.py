@@ -10,7 +10,8 @@ import socket
 import subprocess
 
 import pytest
-from mrp_check import confine, sandbox
+from mrp_check import sandbox
+from mrp_check.sandbox import confine
 
 pytestmark = [pytest.mark.slow, pytest.mark.usefixtures("open_folders")]
 

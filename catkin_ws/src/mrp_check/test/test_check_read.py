@@ -6,13 +6,15 @@ import types
 import check_rules
 import pytest
 from check_rules import MANIFEST
-from mrp_check.building import configuring, placeholders
+from mrp_check.build import configuring, placeholders
+from mrp_check.code.facts import Facts
 from mrp_check.confined.places import Kind, Place
 from mrp_check.confined.seen import LaunchResult, Seen
 from mrp_check.contract.finding import ERROR, NOTE, WARNING
-from mrp_check.rules import arguments, definitions, launched, waiting
-from mrp_check.sources.facts import Facts
-from mrp_check.student.cmake import Model
+from mrp_check.package.cmake import Model
+from mrp_check.rules.code import arguments
+from mrp_check.rules.files import definitions
+from mrp_check.rules.run import launched, waiting
 
 pytestmark = pytest.mark.quick
 

@@ -11,12 +11,12 @@ import xml.etree.ElementTree as ElementTree
 
 import jsonschema
 import pytest
-from mrp_check import check
 from mrp_check.cli import check as check_command
 from mrp_check.contract.finding import Finding
 from mrp_check.report import annotation, console, github, json_, junit, sarif
 from mrp_check.report import html as html_report
 from mrp_check.rules import REQUIREMENTS
+from mrp_check.verdict import check
 from mrp_testing.workspace import WORKSPACE
 
 pytestmark = pytest.mark.quick

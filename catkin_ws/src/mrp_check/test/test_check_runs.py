@@ -3,9 +3,9 @@
 
 import pytest
 import run_packages
-from mrp_check import check
 from mrp_check.contract.finding import ERROR, NOTE, WARNING
-from mrp_check.running import logged
+from mrp_check.run import logged
+from mrp_check.verdict import check
 
 pytestmark = pytest.mark.slow
 

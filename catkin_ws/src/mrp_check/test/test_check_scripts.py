@@ -6,7 +6,7 @@ import types
 import check_rules
 import pytest
 from check_rules import CMAKE, file_findings, told
-from mrp_check.rules import scripts
+from mrp_check.rules.files import scripts
 
 pytestmark = pytest.mark.quick
 

@@ -8,7 +8,7 @@ import pytest
 from mrp_check import rules
 from mrp_check.contract.finding import CERTAIN, HABIT, HINT, READ, SEEN, Finding
 from mrp_check.contract.requirements import Rule
-from mrp_check.contract.severity import severity, weigh
+from mrp_check.verdict.severity import severity, weigh
 
 pytestmark = pytest.mark.quick
 

@@ -7,8 +7,8 @@ import json
 import check_rules
 import pytest
 from mrp_check.cli import check as command
-from mrp_check.student import siblings
-from mrp_check.student.package import Package
+from mrp_check.package import siblings
+from mrp_check.package.package import Package
 
 _MSGS = """\
 cmake_minimum_required(VERSION 3.10)

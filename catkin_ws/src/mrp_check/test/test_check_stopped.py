@@ -11,7 +11,7 @@ import uuid
 
 import pytest
 from check_rules import hand_in
-from mrp_check import check
+from mrp_check.verdict import check
 from mrp_testing.process import processes_with
 from mrp_testing.waiting import wait_until
 

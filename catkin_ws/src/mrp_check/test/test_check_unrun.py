@@ -5,14 +5,15 @@ import types
 
 import check_rules
 import pytest
+from mrp_check.code.facts import Facts
+from mrp_check.code.python_source import Source
 from mrp_check.confined.launch_dump import Started
 from mrp_check.confined.places import Kind, Place
 from mrp_check.confined.seen import Registration, Seen
 from mrp_check.contract.finding import ERROR, HABIT, HINT, NOTE, WARNING, Finding
-from mrp_check.rules import deaf_loop, deaf_python, meeting, same_name, starts
-from mrp_check.running.observing import Launched, Observed
-from mrp_check.sources.facts import Facts
-from mrp_check.sources.python_source import Source
+from mrp_check.rules.code import same_name
+from mrp_check.rules.run import deaf_loop, deaf_python, meeting, starts
+from mrp_check.run.observing import Launched, Observed
 
 pytestmark = pytest.mark.quick
 

@@ -5,9 +5,9 @@ import pathlib
 
 import check_rules
 import pytest
-from mrp_check import check
 from mrp_check.contract.finding import ERROR, WARNING
-from mrp_check.student.package import Package
+from mrp_check.package.package import Package
+from mrp_check.verdict import check
 
 pytestmark = pytest.mark.slow
 

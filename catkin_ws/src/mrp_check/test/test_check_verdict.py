@@ -8,15 +8,16 @@ import re
 import check_rules
 import jsonschema
 import pytest
-from mrp_check import check, suppression
-from mrp_check.case import Case
+from mrp_check.case.case import Case
+from mrp_check.classroom import class_table
 from mrp_check.contract.errors import CannotCheck
 from mrp_check.contract.finding import SEEN, Finding
 from mrp_check.contract.requirements import Rule
-from mrp_check.contract.severity import weigh
-from mrp_check.report import class_table, console, json_, junit
+from mrp_check.report import console, json_, junit
 from mrp_check.report import html as html_report
 from mrp_check.rules import RULES
+from mrp_check.verdict import check, suppression
+from mrp_check.verdict.severity import weigh
 
 pytestmark = pytest.mark.quick
 

@@ -4,11 +4,11 @@
 import check_rules
 import pytest
 from check_rules import CMAKE, MANIFEST, told
+from mrp_check.code import executables
 from mrp_check.confined.launch_dump import Started
-from mrp_check.rules import cmake, dependencies, launch_nodes, messages, scripts
-from mrp_check.sources import executables
-from mrp_check.student.cmake import Model, parsed
-from mrp_check.student.launch import Launch
+from mrp_check.package.cmake import Model, parsed
+from mrp_check.package.launch import Launch
+from mrp_check.rules.files import cmake, dependencies, launch_nodes, messages, scripts
 
 pytestmark = pytest.mark.quick
 

@@ -7,12 +7,12 @@ import threading
 
 import check_sets
 import pytest
-from mrp_check import check
 from mrp_check.cli import learn
 from mrp_check.contract import defects, packages
 from mrp_check.contract.finding import WARNING, Finding
 from mrp_check.learning import plain, watch
 from mrp_check.learning.exercise import Course
+from mrp_check.verdict import check
 from mrp_testing.waiting import DEADLINE, wait_until
 
 pytestmark = pytest.mark.quick

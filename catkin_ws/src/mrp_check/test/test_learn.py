@@ -9,12 +9,12 @@ import check_sets
 import pexpect
 import pyte
 import pytest
-from mrp_check import check
 from mrp_check.cli import learn
 from mrp_check.confined import variables
 from mrp_check.contract import defects, spec
 from mrp_check.learning.exercise import Course
-from mrp_check.student.package import Package
+from mrp_check.package.package import Package
+from mrp_check.verdict import check
 from mrp_testing import compiler_cache
 from mrp_testing.process import Process, processes_with
 from mrp_testing.waiting import wait_until, within

@@ -10,31 +10,31 @@ import signal
 import sys
 import time
 
-from mrp_check import check, sandbox
-from mrp_check.cli import classroom, cluster, marking
-from mrp_check.contract import by_hand, spec
+from mrp_check import sandbox
+from mrp_check.classroom import (
+    alike,
+    by_hand,
+    class_table,
+    classroom,
+    cluster,
+    gradescope,
+    mail,
+    marking,
+    moodle,
+    moved,
+    submissions,
+)
+from mrp_check.contract import spec
 from mrp_check.contract.errors import CannotCheck, ClusterError, PackageError, SpecError
 from mrp_check.contract.finding import ERROR
 from mrp_check.contract.verdict import FINDINGS, MET, UNCHECKED, public, unchecked
 from mrp_check.contract.words import printable
-from mrp_check.report import (
-    alike,
-    class_table,
-    console,
-    github,
-    gradescope,
-    html,
-    json_,
-    junit,
-    mail,
-    moodle,
-    moved,
-    sarif,
-)
+from mrp_check.package import siblings
+from mrp_check.package.package import Package
+from mrp_check.report import console, github, html, json_, junit, sarif
 from mrp_check.rules import REQUIREMENTS
-from mrp_check.scratch import kept_folder, scratch_folder
-from mrp_check.student import siblings, submissions
-from mrp_check.student.package import Package
+from mrp_check.sandbox.scratch import kept_folder, scratch_folder
+from mrp_check.verdict import check
 
 EXIT_CODES = {MET: 0, FINDINGS: 1, UNCHECKED: 2}
 

@@ -16,7 +16,7 @@ from mrp_check.contract.packages import PatchError
 from mrp_check.learning import plain
 from mrp_check.learning.exercise import Course
 from mrp_check.learning.watch import Watched
-from mrp_check.scratch import scratch_folder
+from mrp_check.sandbox.scratch import scratch_folder
 
 FAILED = 2
 

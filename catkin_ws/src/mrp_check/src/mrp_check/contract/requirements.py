@@ -7,7 +7,6 @@ import typing
 from typing import Any, Callable, Iterable, Iterator, Mapping
 
 from mrp_check.contract.finding import CERTAIN, READ, SEEN, Finding
-from mrp_check.contract.severity import severity
 
 STAGES = ("files", "static", "build", "run", "stop")
 CONTRACT, ANY = "contract", "any"
@@ -61,12 +60,11 @@ class Rule(typing.NamedTuple):
         return (*self.requirements, *self.also)
 
     def ask(self, case: Any) -> Iterator[Finding]:
-        """Yield the findings about a case.Case, each with its stage, certainty and severity."""
+        """Yield the findings about a case.Case, each with its stage and certainty."""
         for finding in self.findings(case):
             assert finding.id in self.ids, f"a rule reports {finding.id}, and does not say so"
             finding.stage = self.stage
             finding.certainty = finding.certainty or self.sure or _SURE[self.stage]
-            finding.severity = severity(finding.certainty, has_contract=True)
             yield finding
 
 

@@ -13,12 +13,13 @@ import pathlib
 import threading
 from typing import Callable, Tuple
 
-from mrp_check import check, confine
 from mrp_check.contract.errors import CannotCheck, PackageError
 from mrp_check.contract.finding import Finding
 from mrp_check.contract.verdict import Report
 from mrp_check.learning import exercise as exercises
-from mrp_check.student.package import BACKUP, Package, is_of_tools
+from mrp_check.package.package import BACKUP, Package, is_of_tools
+from mrp_check.sandbox import confine
+from mrp_check.verdict import check
 
 INTERVAL = 0.05  # seconds between two calls of look()
 

@@ -1,0 +1,250 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What g++ prints, as findings: the first error of each source, and its line."""
+
+from __future__ import annotations
+
+import os
+import pathlib
+import re
+from typing import Iterable, Iterator
+
+from mrp_check.build import cpp_words
+from mrp_check.build.cpp_words import Problem
+from mrp_check.code import uses
+from mrp_check.contract.finding import HABIT, Finding, Line
+from mrp_check.contract.words import braced
+from mrp_check.package.cmake import relative
+from mrp_check.package.package import Package
+
+_ERROR = re.compile(
+    r"^(?P<file>[^\s:][^:]*):(?P<line>\d+):(?:\d+:)? (?:fatal )?error: (?P<text>.*)$"
+)
+_NO_RETURN = re.compile(
+    r"^(?P<file>[^\s:][^:]*):(?P<line>\d+):(?:\d+:)? warning: no return statement in function"
+)
+_DOUBT = re.compile(
+    r"^(?P<file>[^\s:][^:]*):(?P<line>\d+):\d+: warning: (?P<text>.*) \[-W(?P<name>[\w-]+)=?\]$"
+)
+# Options of g++ -> what is wrong where it warns: all these compile, and do something else.
+# https://gcc.gnu.org/onlinedocs/gcc/Warning-Options.html
+_DOUBTS = {
+    "div-by-zero": "Here something is divided by 0.",
+    "empty-body": "A semicolon ends this line: what follows is done in each case.",
+    "format": "The format does not fit what it is given: what is shown may be any number.",
+    "format-extra-args": "The format has no place for all that it is given.",
+    "maybe-uninitialized": "A variable is read here, and in some case has no value before.",
+    "misleading-indentation": "The indented lines do not all belong to the line above them.",
+    "overflow": "The number is too large for its type.",
+    "parentheses": "Perhaps = stands here for ==, or brackets are missing.",
+    "return-type": "In some case this function ends without a return: what it gives is any value.",
+    "tautological-compare": "This comparison is always true, or never.",
+    "type-limits": "This comparison is always true, or never.",
+    "uninitialized": "A variable is read here that has no value.",
+    "unused-value": "This line computes something, and does nothing with it.",
+}
+DOUBTING = "-Wall -Wempty-body -Wtype-limits"  # what g++ is called with to say so
+# A function that says it returns a value; and all that may end one, or keep it from its end.
+_FUNCTION = re.compile(
+    r"(?m)^[ \t]*(?:(?:static|inline|virtual)\s+)*(?:bool|char|double|float|int|(?:std::)?string)"
+    r"\s+(?:\w+::)*(?P<name>\w+)\s*\([^;{}()]*\)\s*(?:const\s*)?(?=\{)"
+)
+_LEAVES = re.compile(
+    r"return|RETURN|\b(throw|exit|abort|asm)\b|while\s*\(\s*(true|1)\b|for\s*\(\s*;"
+)
+_FROM = re.compile(r"^(?P<file>[^\s:][^:]*):(?P<line>\d+):\d+:\s+required from")
+_INCLUDED = re.compile(r"^(?:In file included from| +from) (?P<file>[^:]+):(?P<line>\d+)")
+
+# An error that no other one follows from: the name is right but for its last part.
+_ALONE = re.compile(r"has no member named")
+# An error about a name: others follow from it only where they name what its line declares.
+_NAMED = re.compile(
+    r"[‘'](?P<name>\w+)[^’']*[’'] (?:was not declared|is not a member|has not been declared)"
+    r"|has no member named [‘'](?P<member>\w+)"
+)
+
+
+def problems(output: str, copy: pathlib.Path) -> list[Problem]:
+    """Return, for each source of the package, the first error that the compiler found in it, the
+    next one behind each that no other follows from, and those about other names."""
+    lines = output.splitlines()
+    found: list[Problem] = []
+    chain: list[Line | None] = []  # of "required from"; None for a place in a header of others
+    included: list[Line | None] = []
+    for index, line in enumerate(lines):
+        inclusion = _INCLUDED.match(line)
+        if inclusion:
+            if line.startswith("In file"):
+                included, chain = [], []
+            included.append(_place(inclusion, copy))
+            continue
+        required = _FROM.match(line)
+        if required:
+            chain.append(_place(required, copy))
+            continue
+        error = _ERROR.match(line)
+        if not error:
+            if line.startswith("[") or "In function" in line or "At global scope" in line:
+                chain, included = [], []
+            continue
+        after = "\n".join(lines[index + 1 : index + 40])
+        # An error in a header of ROS's was caused where the package uses it: the last place of
+        # "required from" that is the package's own.
+        own = _place(error, copy)
+        if own is None:
+            places = [place for place in chain if place] or [p for p in included if p]
+            later = [_place(m, copy) for m in map(_FROM.match, lines[index + 1 : index + 12]) if m]
+            places += [place for place in later if place]
+            own = (places[-1] if chain else places[0]) if places else None
+        chain, included = [], []
+        if own is not None:
+            found.append(Problem(*own, error.group("text"), after))
+    return _first(found, copy)
+
+
+def _first(found: list[Problem], copy: pathlib.Path) -> list[Problem]:
+    first: dict[str, list[Problem]] = {}
+    for problem in found:
+        of_file = first.setdefault(problem.file, [])
+        lines = {one.line for one in of_file}
+        is_alone = all(map(_ALONE.search, (one.text for one in of_file)))
+        if problem.line not in lines and (is_alone or _is_other(problem, of_file, copy)):
+            of_file.append(problem)
+    return [problem for of_file in first.values() for problem in of_file]
+
+
+def _is_other(problem: Problem, before: list[Problem], copy: pathlib.Path) -> bool:
+    """Return whether an error about a name follows from none of those before, all about names."""
+    named = _NAMED.search(problem.text)
+    if not named or not all(_NAMED.search(one.text) for one in before):
+        return False
+    lines = (copy / problem.file).read_text(errors="replace").splitlines()
+    # What a line before was to declare, or names as well, is missing because of it.
+    told = " ".join(lines[one.line - 1] for one in before if 0 < one.line <= len(lines))
+    return not re.search(rf"\b{named['name'] or named['member']}\b", told)
+
+
+def is_no_header(problem: Problem) -> re.Match[str] | None:
+    """Return the match of the header that is not there, if that is what the compiler stops at."""
+    return re.match(r"(\S+): No such file or directory", problem.text)
+
+
+def absent(package: Package, problems: list[Problem]) -> dict[str, str]:
+    """Return file -> the package that has the header it stops at, and is not on this machine."""
+    found = {}
+    for problem in problems:
+        header = is_no_header(problem)
+        name = header and uses.absent_header(package, header[1])
+        if name:
+            found[problem.file] = name
+    return found
+
+
+def without_return(package: Package, output: str, copy: pathlib.Path) -> list[Finding]:
+    """Return a Finding for each function that says it returns a value, and never does: g++ warns of
+    it, and takes it. Such a function may return anything, or nowhere (C++17, 9.6.3)."""
+    matches = map(_NO_RETURN.match, output.splitlines())
+    places = dict.fromkeys(_place(match, copy) for match in matches if match)
+    return [_no_return(package, *place) for place in places if place]
+
+
+def unreturned(package: Package, files: Iterable[str]) -> Iterator[Finding]:
+    """Yield the same of sources that nobody could compile, for want of a package."""
+    for file in sorted({*files} & {*package.of_kind("cpp")}):
+        code = uses.code(package, file)
+        for match in _FUNCTION.finditer(code):
+            block = braced(code, match.end())
+            if match["name"] != "main" and not _LEAVES.search(block):
+                end = match.end() + len(block)
+                yield _no_return(package, file, code.count("\n", 0, end) + 1)
+
+
+def doubts(package: Package, output: str, copy: pathlib.Path) -> Iterator[Finding]:
+    """Yield a warning for each line of the package's own that g++ takes, and warns of."""
+    found = set()
+    for match in filter(None, map(_DOUBT.match, output.splitlines())):
+        place, said = _place(match, copy), _DOUBTS.get(match["name"])
+        if place and said and place not in found and "no return statement" not in match["text"]:
+            found.add(place)
+            line = package.line(place[0], place[1])
+            expected = "C++ that the compiler has no doubts about"
+            seen = f"{line}  (g++: {match['text']})"
+            yield Finding("compile", said, *place, HABIT, expected, seen)
+
+
+def _no_return(package: Package, file: str, line: int) -> Finding:
+    return Finding(
+        "compile",
+        f"The function that ends in line {line} of {file} says that it returns a value, and has no"
+        " return: what its caller gets is left to chance, and the node may crash.",
+        file,
+        line,
+        expected="return, with a value",
+        seen=package.line(file, line),
+        fix="Return a value there: true, in the callback of a service that did its work.",
+    )
+
+
+def _place(match: re.Match[str], copy: pathlib.Path) -> Line | None:
+    # ccache hands the compiler paths that are relative to where it runs.
+    path = os.path.join(copy.parents[1] / "build" / copy.name, match.group("file"))
+    file = relative(path, copy)
+    return (file, int(match.group("line"))) if file else None
+
+
+def finding(package: Package, problem: Problem) -> Finding:
+    """Return the Finding about a Problem."""
+    lines = package.lines(problem.file)
+    standard = _STANDARD.search(problem.text)
+    if standard:
+        return _old_standard(package, standard.group(1), problem)
+    words = cpp_words.of(package, problem)
+    line = words.line or max(1, min(problem.line, len(lines)))
+    return Finding(
+        "compile",
+        f"The compiler stops at line {line} of {problem.file}: {words.said}",
+        problem.file,
+        line,
+        expected="C++ that the compiler accepts",
+        seen=f"{lines[line - 1].strip()}  (g++: {problem.text})",
+        fix=words.fix,
+        change=words.change,
+        why=words.why,
+    )
+
+
+_STANDARD = re.compile(r"support for the ISO C\+\+ (?:20)?(\d+) standard")
+_OLD = r"^[^#]*(?:-std=(?:c|gnu)\+\+(?:0x|11|14)\b|CMAKE_CXX_STANDARD\s+(?:11|14)\b)"
+
+
+def older_standard(package: Package, output: str) -> Iterator[Finding]:
+    """Yield a warning about a standard of C++ that the compiler takes here, and does not where ROS
+    has a newer log4cxx."""
+    place = None if _STANDARD.search(output) else package.first_match(["CMakeLists.txt"], _OLD)
+    if place and package.of_kind("cpp"):
+        yield Finding(
+            "compile",
+            "CMakeLists.txt sets a standard of C++ that is older than C++17: it works here, and"
+            " ROS's headers do not compile with it where log4cxx is newer.",
+            *place,
+            HABIT,
+            expected="no such line, as the compiler takes C++17 by itself",
+            seen=package.line(*place),
+            fix="Take the line out, or set the standard to 17.",
+        )
+
+
+def _old_standard(package: Package, needed: str, problem: Problem) -> Finding:
+    """Return the Finding about a standard of C++ that is too old, as CMakeLists.txt sets it."""
+    file = "CMakeLists.txt"
+    line = package.find_line(file, "CXX_STANDARD") or package.find_line(file, "-std=") or 1
+    return Finding(
+        "compile",
+        f"The compiler is told to take a standard of C++ that is older than C++{needed}, which the"
+        " code or ROS's headers need.",
+        file,
+        line,
+        expected="set(CMAKE_CXX_STANDARD 17), or no such line",
+        seen=f"{package.line(file, line)}  (g++: {problem.text})",
+        fix="Set the standard to 17.",
+        why="old-standard",
+    )

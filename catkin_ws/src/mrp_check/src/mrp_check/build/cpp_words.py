@@ -1,0 +1,376 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What an error of g++ means, in plain words, and what to do."""
+
+from __future__ import annotations
+
+import re
+import typing
+from typing import Callable, Sequence
+
+from mrp_check.build import placeholders
+from mrp_check.code import uses
+from mrp_check.contract.finding import Change
+from mrp_check.contract.words import last_part, nearest, perhaps
+from mrp_check.package.package import Package
+
+_MESSAGES = (
+    "Bool Byte Char ColorRGBA Duration Empty Float32 Float64 Header Int16 Int32 Int64 Int8 String"
+    " Time UInt16 UInt32 UInt64 UInt8"
+).split()
+
+
+class Problem(typing.NamedTuple):
+    """One error of the compiler: where in the package it is, what was said, and what follows it."""
+
+    file: str
+    line: int
+    text: str
+    after: str
+
+
+class Words(typing.NamedTuple):
+    """What an error means, and what to do; the line to blame, if it is another than the compiler's;
+    (old, new) in that line, if that fixes it for certain; and the entry of the page why."""
+
+    said: str
+    fix: str
+    line: int | None = None
+    change: Change | None = None
+    why: str = ""
+
+
+class Error(typing.NamedTuple):
+    """A Problem that matches a shape of _WORDS."""
+
+    package: Package
+    problem: Problem
+    lines: list[str]
+    match: re.Match
+
+    def suggested(self) -> str | None:
+        """Return the name that the compiler itself suggests, or None."""
+        found = re.search(r"did you mean '([^']+)'", _plain(self.problem.text)) or re.search(
+            r"suggested alternative: '([^']+)'", _plain(self.problem.after.split("error:")[0])
+        )
+        return found and found.group(1)
+
+
+def _plain(text: str) -> str:
+    return text.replace("‘", "'").replace("’", "'")
+
+
+def of(package: Package, problem: Problem) -> Words:
+    """Return the Words about a Problem."""
+    text, lines = _plain(problem.text), package.lines(problem.file)
+    for shape, words, why in _WORDS:
+        match = re.search(shape, text)
+        if match:
+            return words(Error(package, problem, lines, match))._replace(why=why)
+    return Words(f"{text}.", "Compare the line with the one on the page.")
+
+
+def _semicolon(error: Error) -> Words:
+    before = error.match.group(1)
+    return Words(
+        "a semicolon is missing at its end" + (f", before {before}." if before else "."),
+        "Add ; at the end of the statement.",
+        *_end_of_statement(error.lines, error.problem.line, before),
+    )
+
+
+def _end_of_statement(
+    lines: Sequence[str], line: int, following: str | None
+) -> tuple[int | None, Change | None]:
+    """Return the line at which the statement ends that stands before a token, if the token is the
+    first of its line, and the change that ends it. Comments may stand between the two."""
+    if following and lines[line - 1].lstrip().startswith(following):
+        for number in range(line - 1, 0, -1):
+            text = lines[number - 1].strip()
+            if text and not text.startswith(("//", "/*", "*")):
+                return number, (text, text + ";") if "//" not in text else None
+    return None, None
+
+
+_MISSING = {
+    ")": "a closing bracket ) is missing.",
+    "(": "an opening bracket ( is missing.",
+    "}": "a closing brace } is missing.",
+    "{": "an opening brace { is missing.",
+    "]": "a closing bracket ] is missing.",
+    ">": "a closing > is missing.",
+}
+
+
+def _expected(error: Error) -> Words:
+    what = error.match.group(1)
+    unbalanced = unbalanced_brace(error.lines)
+    if unbalanced and what in ("}", "unqualified-id", "declaration"):
+        return _brace(*unbalanced)
+    if what in _MISSING:
+        return Words(_MISSING[what], "Close what was opened.")
+    return Words(
+        f"{what} is expected there. Often something is missing or too much in the line above it.",
+        "Look for a missing ; or bracket at the end of the line above, or a brace too many.",
+    )
+
+
+def _brace(line: int, missing: str) -> Words:
+    if missing == "}":
+        said = f"the brace {{ that is opened in line {line} is never closed."
+        return Words(said, "Add the missing }.", line)
+    return Words(f"the brace }} of line {line} closes nothing.", "Take one } out.", line)
+
+
+def _function_definition(error: Error) -> Words:
+    unbalanced = unbalanced_brace(error.lines)
+    if unbalanced:
+        return _brace(*unbalanced)
+    said = "a function begins inside another one: a closing brace } is missing above it."
+    return Words(said, "Add the missing }.")
+
+
+_INCLUDES_ROS = re.compile(r"#\s*include\s*[<\"]ros/")
+# Two words in a row are no C++.
+_UNQUOTED = re.compile(r"\b(ROS_(?:DEBUG|INFO|WARN|ERROR|FATAL))\s*\(\s*[A-Za-z_]+ +[A-Za-z_]+")
+_MACROS = {f"ROS_{level}{end}" for level in ("INFO", "WARN", "ERROR") for end in ("", "_STREAM")}
+
+
+def _undeclared(error: Error) -> Words:
+    name, text = error.match.group(1), "\n".join(error.lines)
+    if name == "ros" or name.startswith("ROS_") and not _INCLUDES_ROS.search(text):
+        return _header(name, "ros/ros.h")
+    if uses.is_ros_package(name):
+        used = re.search(rf"\b{re.escape(name)}::(\w+)", text)
+        return _header(name, f"{name}/{used.group(1)}.h" if used else f"{name}/....h")
+    if re.fullmatch(r"_[1-9]", name):
+        return Words(f"nothing is called {name} here: {placeholders.SAID}", placeholders.FIX)
+    if name in _MESSAGES:
+        said = f"nothing is called {name} here; the type is std_msgs::{name}."
+        return Words(said, f"Write std_msgs::{name}.", None, (name, f"std_msgs::{name}"))
+    if re.fullmatch(r"u?int(8|16|32|64)_t", name):
+        return _header(name, "cstdint")
+    if name in ("cout", "cin", "endl", "string", "vector"):
+        said = f"nothing is called {name} here; it is std::{name}."
+        return Words(said, f"Write std::{name}.", None, (name, f"std::{name}"))
+    log = _UNQUOTED.search(error.lines[error.problem.line - 1])
+    if log:
+        said = f"the text that {log[1]}() prints has no quotation marks."
+        return Words(said, f'Write {log[1]}("...").')
+    own = set(re.findall(r"\b[A-Za-z_]\w*\b", text)) - {name}
+    near = error.suggested() or nearest(name, own | _MACROS, 0.8)
+    return Words(
+        f"nothing is called {name} here: it is misspelt, or declared nowhere, or further"
+        f" down.{perhaps(near)}",
+        f"Write {near} for {name}." if near else f"Declare {name}, or correct its name.",
+    )
+
+
+def _header(name: str, header: str) -> Words:
+    said = f"{name} is not known: the line #include <{header}> is missing."
+    return Words(said, f"Add #include <{header}>.")
+
+
+def _no_member(error: Error, owner_group: int = 1, member_group: int = 2) -> Words:
+    owner = re.sub(r"_<std::allocator<void> ?>", "", error.match.group(owner_group))
+    member, suggested = error.match.group(member_group), error.suggested()
+    if suggested == last_part(owner.replace("::", "/")):  # its constructor
+        suggested = nearest(member, _METHODS)
+    if re.search(r"(::(Const)?Ptr|shared_ptr<.*>)&?$", owner):
+        return Words(
+            f"{member} is asked of a pointer to a message, which has it behind ->.",
+            f"Write ->{member} for .{member}.",
+            None,
+            (f".{member}", f"->{member}"),
+        )
+    if owner in ("ros", "std_msgs") and not suggested and member in _MESSAGES:
+        return _header(f"{owner}::{member}", f"{owner}/{member}.h")
+    hint = perhaps(suggested)
+    if not hint and ("UInt32" in owner or re.search(r"std_msgs::\w+$", owner)):
+        hint = " Its field is called data."
+    fix = f"Write {suggested}." if suggested else f"Correct the name {member}."
+    return Words(f"{owner} has no {member}.{hint}", fix)
+
+
+_METHODS = "advertise call getNumSubscribers getTopic ok publish shutdown sleep subscribe".split()
+_CALLS = {
+    "subscribe": (
+        "the arguments of subscribe() do not fit: the topic's name, the queue's size, the"
+        " callback, and for a method of a class also the object, as in &CLASS::METHOD, this."
+        " The callback must take the message, and return nothing."
+    ),
+    "advertise": "advertise<TYPE>() takes the topic's name and the queue's size.",
+    "createTimer": (
+        "the arguments of createTimer() do not fit: a ros::Duration, the callback, and for a"
+        " method of a class also the object. The callback must take a const ros::TimerEvent&."
+    ),
+    "publish": "publish() takes a message of the type that was advertised.",
+    "init": "ros::init() takes argc, argv and the node's name, in this order.",
+}
+
+
+def _no_match(error: Error) -> Words:
+    called = error.match.group(1)
+    said = _CALLS.get(called.split("(")[0].split("::")[-1].split("<")[0])
+    return Words(
+        said or f"{called} is called with arguments that do not fit.",
+        "Compare the call with the one on the page.",
+    )
+
+
+def _missing_header(error: Error) -> Words:
+    header, package = error.match.group(1), error.package
+    folder = uses.package_of_header(header)
+    right = uses.renamed(package, header)
+    if right:
+        said = (
+            f"there is no package {folder}: {last_part(header)} is made by {package.name} itself."
+        )
+        return Words(said, f"Write {right}.", None, (header, right))
+    is_other = folder != package.name and uses.is_called_so(folder)
+    if is_other and not uses.is_ros_package(folder):
+        return Words(
+            f"there is no header {header} on this machine: {uses.absent(folder, 'cpp')}.",
+            "Install it.",
+        )
+    newer = f"{header}pp"
+    if uses.is_header(newer):
+        said = f"there is no header {header}: here it is called {newer}."
+        return Words(said, f"Write {newer}.", None, (header, newer))
+    if header.split("/")[0] != package.name:
+        near = nearest(header, [f"std_msgs/{name}.h" for name in _MESSAGES] + ["ros/ros.h"], 0.7)
+        fix = f"Write {near}." if near else "Correct the name, or install and declare its package."
+        return Words(f"there is no header {header}.{perhaps(near)}", fix)
+    paths = package.of_kind(*uses.DEFINITIONS)
+    own = {name: path for path in paths for name in uses.generated(path)}
+    name = last_part(header)[:-2]
+    copy = f"include/{header}"
+    if name in own and copy in package.files:  # gencpp-extras.cmake, "user-provided header"
+        return Words(
+            f"{copy} is in the package, so that {header} is not made of {last_part(own[name])}; and"
+            " include_directories() has no include.",
+            f"Take {copy} away: then the header is made.",
+        )
+    if name in own:
+        return Words(
+            f"there is no {header} yet: it is made of {last_part(own[name])}, and the target does"
+            " not wait for that, or nothing makes it.",
+            f"Look at add_{package.kind(own[name])}_files(), generate_messages() and"
+            " add_dependencies().",
+        )
+    near = nearest(name, own, 0.5)
+    hint = perhaps(near and f"{package.name}/{near}.h")
+    return Words(f"there is no header {header}.{hint}", "Correct the name of the header.")
+
+
+def _short(name: str) -> str:
+    return re.sub(r"_<std::allocator<void> ?>|std::__cxx11::|, std::allocator<char>", "", name)
+
+
+def _convert(error: Error) -> Words:
+    given, needed = map(_short, error.match.groups())
+    said = f"a {given} cannot be used where a {needed} is needed."
+    return Words(said, "Compare the types with those on the page.")
+
+
+def _not_const(error: Error) -> Words:
+    message = _short(error.match.group(1))
+    parameter = re.compile(rf"(?<!const )\b{re.escape(message)}\s*&")
+    found = [number for number, text in enumerate(error.lines, 1) if parameter.search(text)]
+    return Words(
+        f"a callback takes a {message}& that is not const, and no subscriber can give it one.",
+        f"Write const {message}&, or const {message}::ConstPtr&.",
+        found[0] if found else None,
+        (f"{message}&", f"const {message}&") if found else None,
+    )
+
+
+def _in_words(said: str, fix: str) -> Callable[[Error], Words]:
+    """Return the function of an Error that says this, with the groups of its shape."""
+    return lambda error: Words(said.format(*error.match.groups()), fix)
+
+
+_text_without_end = _in_words(
+    "a text is begun with a quotation mark and not ended with one.",
+    "Add the missing quotation mark.",
+)
+_no_message = _in_words(
+    "{0} is no message type, and only messages can be published and received.",
+    "A callback takes a message, such as const std_msgs::UInt32::ConstPtr&; what it holds are its"
+    " members.",
+)
+_many_arguments = _in_words(
+    "{1} is called with too {0} arguments.",
+    "Compare the call with the function's parameters.",
+)
+# What the compiler says -> the function of an Error that says it in plain words, and the entry of
+# the page why.
+_WORDS: Sequence[tuple[str, Callable[[Error], Words], str]] = (
+    (
+        r"reference of type 'ros::ParameterAdapter<([\w:]+(?:_<[^>]*> ?>)?)\s*&>.* discards",
+        _not_const,
+        "",
+    ),
+    (r"expected ';'(?: before '?([^']+?)'?(?: token)?)?$", _semicolon, "expected-semicolon"),
+    (r"expected ',' or ';'(?: before '?([^']+?)'?(?: token)?)?", _semicolon, "expected-semicolon"),
+    (r"missing terminating", _text_without_end, ""),
+    (
+        r"a function-definition is not allowed here|qualified-id in declaration",
+        _function_definition,
+        "",
+    ),
+    (r"expected '?([^' ]+)'?", _expected, "expected-semicolon"),
+    (r"(\S+): No such file or directory", _missing_header, "header-not-found"),
+    (
+        r"'([\w:]+)' (?:was not declared in this scope|has not been declared|does not name a type"
+        r"|is not a (?:class|namespace))",
+        _undeclared,
+        "not-declared",
+    ),
+    (r"'([^']+)' (?:\{aka '[^']*'\} )?has no member named '(\w+)'", _no_member, "no-member-named"),
+    # What roscpp asks of each message.
+    (r"'__s_get\w+' is not a member of '([^']+)'", _no_message, "not-a-message"),
+    (
+        r"'(\w+)' (?:is not a member of|in namespace) '([^']+)'",
+        lambda error: _no_member(error, owner_group=2, member_group=1),
+        "not-declared",
+    ),
+    (r"no match(?:ing function)? for call to '([^']+)'", _no_match, "no-matching-function"),
+    (r"too (many|few) arguments to function '([^']+)'", _many_arguments, "no-matching-function"),
+    (r"cannot convert '([^']+)'.* to '([^']+)'", _convert, "cannot-convert"),
+    (r"invalid conversion from '(char\*\*)' to '(int)'", _convert, "cpp-init-arguments"),
+    (r"invalid conversion from '([^']+)' to '([^']+)'", _convert, "cannot-convert"),
+)
+
+
+_CODE = re.compile(
+    r'//[^\n]*|/\*.*?\*/|"(?:[^"\\\n]|\\.)*"|\'(?:[^\'\\\n]|\\.)*\'|(?P<brace>[{}])', re.DOTALL
+)
+
+
+def unbalanced_brace(lines: Sequence[str]) -> tuple[int, str] | None:
+    """Return (line, what is missing or "{" if there is one } too many), or None if all are closed.
+
+    The brace that lacks its partner is found by the indentation: the first block whose end is not
+    indented as its beginning. A } too many is the one before, if indented code follows that.
+    """
+    text, stack, suspects = "\n".join(lines), [], []
+    closed = 0  # the line of the last } that closed all
+    for match in _CODE.finditer(text):
+        if not match.group("brace"):
+            continue
+        number = text.count("\n", 0, match.start())
+        indent = len(lines[number]) - len(lines[number].lstrip())
+        if match.group() == "{":
+            stack.append((number + 1, indent))
+        elif not stack:
+            goes_on = any(one.strip() and one[0] in " \t" for one in lines[closed:number])
+            return (closed if closed and goes_on else number + 1), "{"
+        else:
+            opened, opened_indent = stack.pop()
+            if opened_indent != indent and opened != number + 1:
+                suspects.append(opened)
+            closed = closed if stack else number + 1
+    if not stack:
+        return None
+    # Of blocks whose ends do not fit, the innermost was closed by the brace of the one around it.
+    return (suspects[0] if suspects else stack[-1][0]), "}"

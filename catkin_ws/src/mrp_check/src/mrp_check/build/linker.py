@@ -1,0 +1,139 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What the linker prints, as findings: a target, what it lacks, and plain words."""
+
+from __future__ import annotations
+
+import re
+from typing import Iterator
+
+from mrp_check.contract.finding import Finding, Line
+from mrp_check.package.cmake import Model, Target
+from mrp_check.package.package import Package
+
+_TARGET = re.compile(r"CMakeFiles/(?P<target>[^/]+)\.dir/")
+_FAILED = re.compile(r"^make\S* \*\*\* \[.*?" + _TARGET.pattern, re.MULTILINE)
+
+
+def findings(package: Package, output: str, model: Model) -> Iterator[Finding]:
+    """Yield a finding for each target that cannot be linked."""
+    said, target = set(), None
+    lines = output.splitlines()
+    for number, line in enumerate(lines):
+        named = _TARGET.search(line)
+        if not named and _NO_MAIN.search(line):
+            # Only what make says next names the target: another one may be built beside it.
+            named = _FAILED.search("\n".join(lines[number:]))
+        target = named.group("target") if named else target
+        if target in said or target not in model.targets:
+            continue
+        for shape, words in _WORDS:
+            match = shape.search(line)
+            if match:
+                said.add(target)
+                yield words(package, model, model.targets[target], match)
+                break
+
+
+def _link(message: str, place: Line, expected: str, seen: str, fix: str, why: str) -> Finding:
+    return Finding("link", message, *place, expected=expected, seen=seen, fix=fix, why=why)
+
+
+def _no_main(package: Package, model: Model, target: Target, match: re.Match[str]) -> Finding:
+    sources = ", ".join(target.sources)
+    return _link(
+        f"The target {target.name} has no function main: none of its sources ({sources}) defines"
+        " one.",
+        (target.file, target.line),
+        "one source with int main(...)",
+        sources,
+        "Add the source that has main, or write main.",
+        why="undefined-main",
+    )
+
+
+def _duplicate(package: Package, model: Model, target: Target, match: re.Match[str]) -> Finding:
+    name = match.group("name")
+    return _link(
+        f"The target {target.name} has two definitions of {name}: two of its sources define it.",
+        (target.file, target.line),
+        f"one definition of {name}",
+        ", ".join(target.sources),
+        "Give each target its own sources alone.",
+        why="multiple-definition",
+    )
+
+
+def _no_library(package: Package, model: Model, target: Target, match: re.Match[str]) -> Finding:
+    return _link(
+        f"The target {target.name} is linked with {match.group(1)}, and there is no such library.",
+        (target.file, target.link_line or target.line),
+        "${catkin_LIBRARIES}",
+        match.group(1),
+        f"Correct the name {match.group(1)}.",
+        why="cannot-find-library",
+    )
+
+
+def _undefined(package: Package, model: Model, target: Target, match: re.Match[str]) -> Finding:
+    name = match.group("name")
+    if "ros::" in name or name.startswith(("std_msgs::", "boost::", "typeinfo for ros")):
+        return _of_ros(model, target, name)
+    function = name.split("(")[0]
+    simple = function.split("::")[-1]
+    for file in target.sources:
+        line = package.find_line(file, f"{simple}(") if file in package.files else None
+        if line:
+            return _link(
+                f"{name} is declared and called in the target {target.name}, and defined nowhere in"
+                " its sources.",
+                (file, line),
+                f"a definition of {function}",
+                package.line(file, line),
+                f"Define {function}, or correct its name where it is defined; or add its source to"
+                f" add_executable({target.name} ...).",
+                why="undefined-reference",
+            )
+    return _link(
+        f"The target {target.name} cannot be linked: {name} is defined in none of its sources.",
+        (target.file, target.line),
+        f"a definition of {function}",
+        ", ".join(target.sources),
+        "Add the source that defines it.",
+        why="undefined-reference",
+    )
+
+
+def _of_ros(model: Model, target: Target, name: str) -> Finding:
+    linked = any("roscpp" in word for word in target.links)
+    call = f"target_link_libraries({target.name} ${{catkin_LIBRARIES}})"
+    if linked:
+        why = "one of ROS's libraries is missing."
+    elif target.link_line is not None and "roscpp" not in model.components:
+        why = "find_package(catkin ...) does not name roscpp, so catkin_LIBRARIES lacks it."
+    else:
+        lacks = "is missing" if target.link_line is None else "has no ${catkin_LIBRARIES}"
+        why = f"it is not linked with ROS's libraries: {call.split('$')[0]}...) {lacks}."
+    links = " ".join(target.links)[:200]
+    return _link(
+        f"The target {target.name} cannot be linked: {name} is not found, as {why}",
+        (target.file, target.link_line or target.line),
+        call,
+        "no such call" if target.link_line is None else f"linked with: {links}",
+        f"Add {call}.",
+        why="undefined-reference",
+    )
+
+
+_NO_MAIN = re.compile(r"undefined reference to [`'‘]main['’]")
+_WORDS = (
+    (_NO_MAIN, _no_main),
+    (
+        re.compile(
+            r"[\w./+-]+\.(?:cpp|cc|cxx|c\+\+|C)(?:\.o)?[:)].*?"
+            r"undefined reference to [`'‘](?P<name>.+?)['’]$"
+        ),
+        _undefined,
+    ),
+    (re.compile(r"multiple definition of [`'‘](?P<name>.+?)['’]"), _duplicate),
+    (re.compile(r"cannot find -l(\S+)"), _no_library),
+)

@@ -1,0 +1,2 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Mark a whole class: archives, tables, platforms, and several machines."""

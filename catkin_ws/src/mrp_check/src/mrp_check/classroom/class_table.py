@@ -1,0 +1,203 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The reports of a whole class as one table: for the console, as CSV and as a page."""
+
+from __future__ import annotations
+
+import csv
+import dataclasses
+import io
+import pathlib
+
+from mrp_check.classroom.by_hand import ByHand
+from mrp_check.contract.finding import ERROR
+from mrp_check.contract.verdict import BROKEN, MET, UNCHECKED, public
+from mrp_check.report import console, html, json_
+from mrp_check.rules import REQUIREMENTS
+
+_MOST_CAUSES = 5  # in one line of the CSV
+_SIGNS = {MET: "✓", BROKEN: "✗", UNCHECKED: "?"}
+
+
+@dataclasses.dataclass
+class Submission:
+    """The result of what one student has handed in.
+
+    name: of the folder or the file
+    report: as in schema/report.json
+    kept: whether it is the report of an earlier call
+    depends_on: what the report depends on -> a text that changes with it
+    by_hand: what a person has set
+    moved: how the mark has moved, as moved.py says
+    before: the verdicts and the mark in an earlier hand-in, of `most` points
+    """
+
+    name: str
+    report: dict
+    kept: bool = False
+    depends_on: dict = dataclasses.field(default_factory=dict)
+    by_hand: ByHand = ByHand()
+    moved: str = ""
+    before: dict = dataclasses.field(default_factory=dict)
+
+    def verdict_on(self, id_):
+        """Return the verdict on one requirement: MET, BROKEN or UNCHECKED."""
+        return self.report["requirements"].get(id_, UNCHECKED)
+
+    def points(self, spec):
+        """Return the points of all requirements that are met."""
+        return sum(spec.points_of(id_) for id_ in REQUIREMENTS if self.verdict_on(id_) == MET)
+
+    def mark(self, spec):
+        """Return the points with what a person has set."""
+        return self.by_hand.mark(self.points(spec))
+
+    def progress(self, spec, hidden=()):
+        """Return what has been gained and lost since the earlier hand-in: empty without one.
+
+        hidden: requirements of which nothing is said
+        """
+        if not self.before:
+            return ""
+        old, new = self.before["verdicts"], self.report["requirements"]
+        asked = [id_ for id_ in REQUIREMENTS if spec.asks(id_) and id_ not in hidden]
+        ids = {
+            "met now": [id_ for id_ in asked if new.get(id_) == MET != old.get(id_)],
+            "lost": [id_ for id_ in asked if old.get(id_) == MET != new.get(id_)],
+        }
+        points, before = most(spec), self.before["most"]
+        of = "" if before == points else f" of {before:g}"
+        said = [f"{self.before['mark']:g}{of} -> {self.mark(spec):g} of {points:g}"]
+        return "; ".join([*said, *(f"{what}: {', '.join(ids[what])}" for what in ids if ids[what])])
+
+    def shown(self, spec):
+        """Return what the student may see of the Report."""
+        return public(json_.report_of(self.report), spec.hidden)
+
+    def errors(self):
+        return [f for f in self.report["findings"] if f["severity"] == ERROR]
+
+    def causes(self):
+        """Return the reason why it could not be checked; or each error, on one line."""
+        if self.report.get("reason"):
+            return [self.report["reason"]]
+        return [_one_line(f) for f in self.errors() if not f["consequence_of"]]
+
+
+def most(spec):
+    """Return the points of a package that meets all requirements."""
+    return sum(map(spec.points_of, REQUIREMENTS))
+
+
+def _one_line(finding):
+    place = console.place(finding["file"], finding["line"])
+    return ": ".join(part for part in (place, finding["message"]) if part).replace("\n", " ")
+
+
+def csv_text(submissions, spec):
+    """Return one line for each submission: name, verdict, points, mark, and each requirement."""
+    file = io.StringIO()
+    writer = csv.writer(file)
+    asked = [id_ for id_ in REQUIREMENTS if spec.asks(id_)]
+    columns = "submission package verdict points of by_hand mark moved progress".split()
+    writer.writerow([*columns, *asked, "why", "isolation"])
+    for one in submissions:
+        writer.writerow(
+            [
+                cell(one.name),
+                cell(one.report["package"]),
+                one.report["verdict"],
+                f"{one.points(spec):g}",
+                f"{most(spec):g}",
+                cell(str(one.by_hand)),
+                f"{one.mark(spec):g}",
+                cell(one.moved),
+                cell(one.progress(spec)),
+                *map(one.verdict_on, asked),
+                cell(" | ".join(one.causes()[:_MOST_CAUSES])),
+                cell(one.report.get("isolation", "")),
+            ]
+        )
+    return file.getvalue()
+
+
+def cell(text):
+    """Return a text that steers no terminal, and that a spreadsheet does not take for a formula."""
+    return "'" * text.startswith(("=", "+", "-", "@", "\t")) + console.plain(text)
+
+
+def broken_in(submissions):
+    """Return (id, names of the submissions) for each requirement that is not met, most first."""
+    found = [
+        (id_, [one.name for one in submissions if one.verdict_on(id_) == BROKEN])
+        for id_ in REQUIREMENTS
+    ]
+    return sorted([entry for entry in found if entry[1]], key=lambda entry: -len(entry[1]))
+
+
+def html_text(submissions, spec, pages, pairs=()):
+    """Return one page with a table of all submissions.
+
+    pages: the folder of the submissions' own pages; the table links to them
+    pairs: of submissions that are alike
+    """
+
+    def page_of(one):
+        page = pathlib.Path(pages) / f"{one.name}.html"
+        return page.resolve().as_uri() if one.report["requirements"] and page.is_file() else ""
+
+    return html.render(
+        "class.html",
+        signs=_SIGNS,
+        submissions=submissions,
+        spec=spec,
+        most=most(spec),
+        page_of=page_of,
+        broken=broken_in(submissions),
+        address_of=html.address_of,
+        has_marks=any(str(one.by_hand) for one in submissions),
+        has_moved=any(one.moved for one in submissions),
+        since=since(submissions, spec),
+        isolations=isolations(submissions),
+        pairs=pairs,
+    )
+
+
+def text(submissions, spec):
+    """Return the table for the console."""
+    width = max(len(one.name) for one in submissions)
+    lines = []
+    for one in submissions:
+        broken = [id_ for id_ in REQUIREMENTS if one.verdict_on(id_) == BROKEN]
+        reason = one.report.get("reason") or ", ".join(broken)
+        points = f"{one.points(spec):g}/{most(spec):g}"
+        lines.append(
+            f"{one.name:{width}}  {one.report['verdict']:9}  {points:>7}  {reason}".rstrip()
+        )
+    lines += [f"{one.name}: {said_of_mark(one, spec)}" for one in submissions if str(one.by_hand)]
+    lines += [f"{one.name}: {one.moved}" for one in submissions if one.moved]
+    lines += [f"{one.name}: {one.progress(spec)}" for one in submissions if one.before]
+    lines += filter(None, [since(submissions, spec), *isolations(submissions)])
+    return console.plain("\n".join(lines))
+
+
+def isolations(submissions):
+    """Return how far the packages were kept apart as they ran: most often one sentence for all."""
+    return sorted({one.report["isolation"] for one in submissions if "isolation" in one.report})
+
+
+def since(submissions, spec):
+    """Return how many have more or fewer points than in the earlier hand-in; empty without one."""
+    gains = [one.mark(spec) - one.before["mark"] for one in submissions if one.before]
+    if not gains:
+        return ""
+    more, fewer = sum(gain > 0 for gain in gains), sum(gain < 0 for gain in gains)
+    return (
+        f"Since the earlier hand-in, {more} of {len(gains)} students have more points, {fewer} have"
+        f" fewer; all together {sum(gains):+g}."
+    )
+
+
+def said_of_mark(one, spec):
+    """Return a submission's mark, and what a person has set."""
+    said = f"mark {one.mark(spec):g} of {most(spec):g}"
+    return f"{said}, by hand: {one.by_hand}" if str(one.by_hand) else said

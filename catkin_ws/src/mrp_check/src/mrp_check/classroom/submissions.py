@@ -1,0 +1,157 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A class's folder: what each student has handed in, and which package it is."""
+
+from __future__ import annotations
+
+import os
+import pathlib
+import re
+import tempfile
+
+from mrp_check.classroom import archive
+from mrp_check.contract.errors import PackageError
+from mrp_check.package.package import BUILT, MAX_TEXT, is_of_tools
+
+_DEEPEST = 10  # folders below a student's own in which the package may be
+_MOST_BESIDE = 100  # folders of one folder that are looked into
+_MOST_WAITING = 1000  # folders that are still to be looked into
+_MOST_ARCHIVES = 10  # in one folder that has no package
+_MOST_NESTED = 3  # archives in archives
+_NAMED = 4  # in a sentence
+
+
+def entries(path: str | os.PathLike[str]) -> list[pathlib.Path]:
+    """Return all that stands in a class's folder, but for what is hidden. Raises PackageError."""
+    path = pathlib.Path(path)
+    if not path.is_dir():
+        raise PackageError(f"There is no folder {path}: expected one with a folder per student.")
+    found = [one for one in sorted(path.iterdir()) if not _is_hidden(one.name)]
+    if not found:
+        raise PackageError(
+            f"{path} has nothing in it: expected one folder, or one archive, for each student."
+        )
+    return found
+
+
+def archives(entry: pathlib.Path) -> list[pathlib.Path]:
+    """Return the archives in which the package must be: none if it lies in a folder, unpacked.
+
+    Raises PackageError if it can be in neither.
+    """
+    if entry.is_symlink() and entry.resolve().parent != entry.parent.resolve():
+        raise PackageError(
+            f"{entry.name} is a link out of the class's folder: it is not followed."
+            " Copy the package there."
+        )
+    if not entry.exists():
+        raise PackageError(f"There is no {entry.name}.")
+    if not entry.is_dir() and not entry.is_file():
+        raise PackageError(f"{entry.name} is neither a folder nor a file.")
+    packages, packed, _ = _found_in(entry)
+    for one in [] if packages else packed:
+        archive.refuse_huge(one)
+    return [] if packages else packed
+
+
+def package_in(entry: pathlib.Path, scratch: pathlib.Path, name: str = "") -> pathlib.Path:
+    """Return the folder of the package that a student has handed in. Raises PackageError.
+
+    scratch: where archives are unpacked
+    name: that of the package, if there are several
+    """
+    archives(entry)
+    found = _packages(entry, entry.name, scratch, archive.Budget())
+    if len(found) > 1 and name:
+        found = {path: place for path, place in found.items() if _is_called(place, name)}
+        if not found:
+            raise PackageError(f"{entry.name} has more than one package, but none called {name}.")
+    if len(found) > 1:
+        names = ", ".join([*found][:_NAMED])
+        raise PackageError(
+            f"{entry.name} has more than one package: {names}."
+            " Expected one, or --package NAME, which chooses one."
+        )
+    return [*found.values()][0]
+
+
+def _is_called(folder: pathlib.Path, name: str) -> bool:
+    with open(folder / "package.xml", encoding="utf-8", errors="replace") as file:
+        found = re.search(r"<name>\s*([^<\s]+)\s*</name>", file.read(MAX_TEXT))
+    return name in (folder.name, found.group(1) if found else "")
+
+
+def _packages(
+    place: pathlib.Path, name: str, scratch: pathlib.Path, budget: archive.Budget, depth: int = 0
+) -> dict[str, pathlib.Path]:
+    """Return the packages in a folder or an archive, by their paths in it. Raises PackageError.
+
+    name: what the student calls it
+    """
+    packages, packed, others = _found_in(place)
+    found = {str(path.relative_to(place)): path for path in packages}
+    problems = [_no_package(name, others)]
+    for one in packed[:_MOST_ARCHIVES] if not packages and depth < _MOST_NESTED else []:
+        # The folder is called like the package, mostly: a rule asks for it.
+        folder = pathlib.Path(tempfile.mkdtemp(dir=scratch)) / (one.name.split(".")[0] or "package")
+        try:
+            archive.unpack(one, folder, budget)
+            below = _packages(folder, one.name, scratch, budget, depth + 1)
+        except PackageError as error:
+            problems.append(error)
+            continue
+        within = one.name if place.is_dir() else ""
+        found.update(
+            {os.path.normpath(os.path.join(within, path)): root for path, root in below.items()}
+        )
+    if not found:
+        raise problems[-1]
+    return found
+
+
+def _no_package(name: str, others: list[str]) -> PackageError:
+    seen = f", but {', '.join(others[:_NAMED])}" if others else ""
+    return PackageError(
+        f"{name} has no package.xml, down to {_DEEPEST} folders below it{seen}:"
+        " expected the folder of one package."
+    )
+
+
+def _found_in(
+    place: pathlib.Path,
+) -> tuple[list[pathlib.Path], list[pathlib.Path], list[str]]:
+    """Return the folders with a package.xml, the highest first; the archives; and other names.
+
+    Links are not followed, and what was built is not looked into.
+    """
+    packages: list[pathlib.Path] = []
+    packed, others = ([], []) if place.is_dir() else ([place], [place.name])
+    look_at = [(place, 0)] if place.is_dir() else []
+    while look_at and len(look_at) <= _MOST_WAITING:
+        here, depth = look_at.pop(0)
+        if (here / "package.xml").is_file():
+            packages.append(here)
+            continue
+        folders, files = _listed(here)
+        if not depth or BUILT.isdisjoint(files):
+            shown = [name for name in files if not _is_hidden(name)]
+            packed += [here / name for name in shown if archive.has_its_name(name)]
+            others += shown
+            if depth < _DEEPEST:
+                look_at += [(here / name, depth + 1) for name in folders[:_MOST_BESIDE]]
+    return packages, packed, others
+
+
+def _listed(folder: pathlib.Path) -> tuple[list[str], list[str]]:
+    """Return the names of its folders, but for the hidden ones, and of its files."""
+    try:
+        with os.scandir(folder) as scanned:
+            found = sorted(scanned, key=lambda one: one.name)
+    except OSError:
+        return [], []
+    folders = [one.name for one in found if one.is_dir(follow_symlinks=False)]
+    files = [one.name for one in found if one.is_file(follow_symlinks=False)]
+    return [name for name in folders if not _is_hidden(name)], files
+
+
+def _is_hidden(name: str) -> bool:
+    return name.startswith(".") or is_of_tools(name)

@@ -1,0 +1,212 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What a Python node's source says: its name, topics, messages, counters and lines."""
+
+from __future__ import annotations
+
+import ast
+import re
+from typing import Any, Callable, Iterable, Iterator, Sequence, Union
+
+from mrp_check.code.python_source import Source
+from mrp_check.code.python_text import GAP, UNKNOWN, percent
+from mrp_check.confined.places import Kind, Place
+
+Definition = Union[ast.FunctionDef, ast.ClassDef]
+
+LEVELS = {"logdebug", "loginfo", "logwarn", "logerr", "logerror", "logfatal"}
+_WAITS = ("join", "wait", "pause")  # methods that do
+
+
+def argument(call: ast.Call, position: int, name: str) -> ast.expr | None:
+    """Return the expression of a call's argument, or None."""
+    for keyword in call.keywords:
+        if keyword.arg == name:
+            return keyword.value
+    if position < len(call.args) and not any(
+        isinstance(one, ast.Starred) for one in call.args[: position + 1]
+    ):
+        return call.args[position]
+    return None
+
+
+def places(source: Source) -> list[Place]:
+    """Return the Place of each thing in a python_source.Source, in order."""
+    found = [place for node in ast.walk(source.tree) for place in _places_of(source, node)]
+    return sorted(found, key=lambda place: place.line)
+
+
+def _places_of(source: Source, node: ast.AST) -> Iterable[Place]:
+    look = next((look for kinds, look in _LOOKS if isinstance(node, kinds)), None)
+    return look(_Node(source, node), node) if look else ()
+
+
+def last_line(node: ast.stmt) -> int:
+    return max((getattr(one, "lineno", 0) for one in ast.walk(node)), default=node.lineno)
+
+
+def _is_unused(source: Source, definition: Definition) -> bool:
+    """Return whether a function, method or class is named nowhere but in itself."""
+    name = definition.name
+    if name.startswith("__") or definition.decorator_list:
+        return False
+    inside = set(ast.walk(definition))
+    for node in ast.walk(source.tree):
+        if node in inside:
+            continue
+        # What a class inherits may call it, as threading.Thread calls run().
+        if isinstance(node, ast.ClassDef) and definition in node.body:
+            if any(getattr(base, "id", None) != "object" for base in node.bases):
+                return False
+        named = isinstance(node, ast.Name) and node.id == name
+        named = named or isinstance(node, ast.Attribute) and node.attr == name
+        if named or isinstance(node, ast.Constant) and node.value == name:
+            return False
+    return True
+
+
+class _Node:
+    """A node of a source's tree, at which something may stand."""
+
+    def __init__(self, source: Source, node: Any) -> None:
+        self.source, self.node = source, node
+
+    def place(
+        self, kind: Kind, text: object = UNKNOWN, line: int | None = None, **values: Any
+    ) -> Place:
+        plain = text if isinstance(text, str) and text.replace(GAP, "") else None
+        known = {name: value for name, value in values.items() if value is not UNKNOWN}
+        return Place(self.source.file, line or self.node.lineno, kind, plain, **known)
+
+    def call(self, node: ast.Call) -> Iterator[Place]:
+        name, method = self.called(node), getattr(node.func, "attr", "")
+        look = next((look for names, look in _CALLS if name in names), None)
+        if look:
+            yield from look(self, node)
+        elif name.startswith("rospy.log"):
+            yield from self.log(node, name.split(".")[1])
+        elif method == "publish":
+            yield self.place(Kind.PUBLISH)
+        elif name == "input" or method in _WAITS:
+            yield self.place(Kind.SLEEP)
+
+    def called(self, node: ast.Call) -> str:
+        """Return the name of what is called; empty if it has none."""
+        return self.source.dotted(node.func) or str(getattr(node.func, "id", ""))
+
+    def changed(self, node: ast.AugAssign) -> Iterator[Place]:
+        """Look at counter += 2."""
+        step = self.source.value(node.value)
+        if isinstance(node.op, (ast.Add, ast.Sub)) and isinstance(step, (int, float)):
+            yield self.place(Kind.STEP)
+        yield from self.first_values(node.target)
+
+    def assigned(self, node: ast.Assign) -> Iterator[Place]:
+        """Look at counter = counter + 2 and the like."""
+        target = node.targets[0]
+        own = self.source.key(target) if len(node.targets) == 1 else None
+        inside = [one for one in ast.walk(node.value) if isinstance(one, (ast.Name, ast.Attribute))]
+        if own and any(self.source.key(one) == own for one in inside):
+            yield self.place(Kind.STEP)
+            yield from self.first_values(target)
+
+    def first_values(self, target: ast.expr) -> Iterator[Place]:
+        """Yield a place for each plain first value of a variable that is counted up."""
+        for value in self.source.stored(self.source.key(target)):
+            if isinstance(value, ast.expr) and isinstance(self.source.value(value), (int, float)):
+                yield self.place(Kind.COUNTER, line=value.lineno)
+
+    def loop(self, node: ast.stmt) -> Iterator[Place]:
+        yield self.place(Kind.LOOP)
+
+    def definition(self, node: Definition) -> Iterator[Place]:
+        unused = True if _is_unused(self.source, node) else None
+        yield self.place(Kind.FUNCTION, node.name, end=last_line(node), unused=unused)
+
+    # Calls
+
+    def value(self, position: int, keyword: str) -> object:
+        return self.source.value(argument(self.node, position, keyword))
+
+    def init(self, node: ast.Call) -> Iterator[Place]:
+        anonymous = self.value(2, "anonymous")
+        yield self.place(Kind.INIT, self.value(0, "name"), anonymous=anonymous)
+
+    def topic(self, kind: Kind, position: int) -> Iterator[Place]:
+        queue = argument(self.node, position, "queue_size")
+        line = queue.lineno if queue is not None else None
+        name, length = self.value(0, "name"), self.source.value(queue)
+        yield self.place(kind, name, queue=length, queue_line=line)
+
+    def publisher(self, node: ast.Call) -> Iterator[Place]:
+        return self.topic(Kind.PUBLISHER, 6)
+
+    def subscriber(self, node: ast.Call) -> Iterator[Place]:
+        return self.topic(Kind.SUBSCRIBER, 4)
+
+    def timer(self, node: ast.Call) -> Iterator[Place]:
+        period, oneshot = self.value(0, "period"), self.value(2, "oneshot")
+        yield self.place(Kind.TIMER, period=period, oneshot=oneshot)
+
+    def rate(self, node: ast.Call) -> Iterator[Place]:
+        hertz = self.value(0, "hz")
+        period = 1 / hertz if isinstance(hertz, (int, float)) and hertz else UNKNOWN
+        yield self.place(Kind.TIMER, period=period)
+
+    def sleep(self, node: ast.Call) -> Iterator[Place]:
+        yield self.place(Kind.TIMER, period=self.value(0, "duration"))
+        yield self.place(Kind.SLEEP)
+
+    def spin(self, node: ast.Call) -> Iterator[Place]:
+        yield self.place(Kind.SPIN)
+
+    def print(self, node: ast.Call) -> Iterator[Place]:
+        texts = [self.source.value(argument) for argument in node.args]
+        yield self.place(Kind.PRINT, " ".join(t if isinstance(t, str) else GAP for t in texts))
+
+    def write(self, node: ast.Call) -> Iterator[Place]:
+        yield self.place(Kind.PRINT, self.value(0, "s"))
+
+    def exit(self, node: ast.Call) -> Iterator[Place]:
+        yield self.place(Kind.EXIT, self.called(node))
+
+    def signal(self, node: ast.Call) -> Iterator[Place]:
+        name = self.source.dotted(argument(node, 0, "signalnum"))
+        yield self.place(Kind.SIGNAL, name or UNKNOWN)
+
+    def count(self, node: ast.Call) -> Iterator[Place]:
+        yield self.place(Kind.COUNTER)
+        yield self.place(Kind.STEP)
+
+    def log(self, node: ast.Call, function: str) -> Iterator[Place]:
+        plain = re.sub("(_throttle_identical|_throttle|_once)$", "", function)
+        if plain not in LEVELS:
+            return
+        first = 1 if "throttle" in function else 0
+        text = self.source.value(argument(node, first, "msg"))
+        values = [self.source.value(one) for one in node.args[first + 1 :]]
+        if isinstance(text, str) and values:
+            text = percent(text, values)
+        yield self.place(Kind.LOG, text)
+
+
+_LOOKS: Sequence[tuple[Any, Callable[[_Node, Any], Iterable[Place]]]] = (
+    (ast.Call, _Node.call),
+    (ast.AugAssign, _Node.changed),
+    (ast.Assign, _Node.assigned),
+    ((ast.While, ast.For), _Node.loop),
+    ((ast.FunctionDef, ast.ClassDef), _Node.definition),
+)
+_CALLS = (
+    (("rospy.init_node",), _Node.init),
+    (("rospy.Publisher", "rospy.topics.Publisher"), _Node.publisher),
+    (("rospy.Subscriber", "rospy.topics.Subscriber"), _Node.subscriber),
+    (("rospy.Timer", "rospy.timer.Timer"), _Node.timer),
+    (("rospy.Rate", "rospy.timer.Rate"), _Node.rate),
+    (("rospy.sleep", "time.sleep"), _Node.sleep),
+    (("rospy.spin",), _Node.spin),
+    (("print",), _Node.print),
+    (("sys.stdout.write",), _Node.write),
+    (("sys.exit", "os._exit", "exit", "quit", "rospy.signal_shutdown"), _Node.exit),
+    (("signal.signal",), _Node.signal),
+    (("itertools.count",), _Node.count),
+)

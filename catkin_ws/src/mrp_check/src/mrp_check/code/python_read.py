@@ -1,0 +1,193 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Reads a Python source; or says why Python cannot read it."""
+
+from __future__ import annotations
+
+import ast
+import re
+from typing import Callable, Sequence
+
+from mrp_check.code.python_source import Source
+from mrp_check.contract.finding import Finding
+from mrp_check.contract.words import line_of
+from mrp_check.package.package import Package
+
+# What Python says -> what it means.
+_SYNTAX = (
+    (r"was never closed|unexpected EOF", "A bracket is opened there and never closed."),
+    (r"unmatched|does not match opening", "A bracket is closed that is not open, or another one."),
+    (r"expected ':'", "A colon is missing at the end of the line."),
+    (r"unterminated|EOL while", "A text is begun with a quotation mark and not ended with one."),
+    (r"expected an indented block", "The lines that belong to this one must be indented."),
+    (r"unindent does not match|unexpected indent", "The line is not indented as those around it."),
+    (r"inconsistent use of tabs", "Tabs and spaces are mixed: use four spaces for each level."),
+    (r"Missing parentheses in call to 'print'", "In Python 3, print is a function: print(...)."),
+    (r"multiple exception types", "In Python 3, write: except NAME as VARIABLE."),
+    (r"Maybe you meant '=='|cannot assign to", "= gives a value, == compares."),
+    (r"forgot a comma", "A comma is missing, or a bracket is not closed."),
+    (
+        r"invalid character|invalid non-printable",
+        "A character stands there that is no part of Python:"
+        " perhaps it was copied from a page or a document.",
+    ),
+)
+_SHOWN = 12  # lines that a hint names
+# What Python says -> the entry of the page why.
+_WHY = (
+    (r"indented block|unindent does not|unexpected indent", "python-indent"),
+    (r"inconsistent use of tabs", "python-tabs"),
+    (r"in call to 'print'", "python2-print"),
+    (r"multiple exception types", "python2-except"),
+    (r"", "python-syntax"),
+)
+_PRINT = re.compile(r"(^[ \t]*|^[^'\"#\n]*[:;][ \t]+)print[ \t]+(?![=(])([^\n]*)", re.MULTILINE)
+_EXCEPT = re.compile(
+    r"^([ \t]*except[ \t]+(?:[\w.]+|\([^()]*\)))[ \t]*,[ \t]*(\w+)[ \t]*:", re.MULTILINE
+)
+_EQUAL = re.compile(r"^([ \t]*(?:if|elif|while)\b[^=\n]*[^=!<>\n])=(?!=)", re.MULTILINE)
+_NO_COMMENT = re.compile(r"(?:[^'\"#]|'(?:[^'\\]|\\.)*'|\"(?:[^\"\\]|\\.)*\")*")
+# What Python says -> how the same is written in Python 3, in as many lines.
+_IN_PYTHON3: Sequence[tuple[str, Callable[[str], str]]] = (
+    (r"call to 'print'", lambda text: _PRINT.sub(_printed, text)),
+    (r"multiple exception types|^invalid syntax$", lambda text: _EXCEPT.sub(r"\1 as \2:", text)),
+    (r"Maybe you meant '=='", lambda text: _EQUAL.sub(r"\1==", text)),
+    (r"inconsistent use of tabs|unindent does not match", lambda text: _untabbed(text)),
+)
+# What Python says -> what stands in each line of the kind.
+_OF_PYTHON2 = (("call to 'print'", _PRINT), ("multiple exception types", _EXCEPT))
+
+
+def _printed(statement: re.Match[str]) -> str:
+    before, rest = statement.groups()
+    code = _NO_COMMENT.match(rest)
+    end = code.end() if code else len(rest)
+    return f"{before}print({rest[:end].rstrip()})  {rest[end:]}"
+
+
+def _untabbed(text: str) -> str:
+    """Return a text with spaces for its tabs, as many as let Python read most of it."""
+    return max((text.expandtabs(size) for size in (8, 4)), key=_lines_read)
+
+
+def _lines_read(text: str) -> float:
+    try:
+        compile(text, "", "exec", ast.PyCF_ONLY_AST)
+    except SyntaxError as error:
+        return error.lineno or 0
+    except (ValueError, RecursionError, MemoryError):
+        return 0
+    return float("inf")
+
+
+def _tabs(lines: Sequence[str]) -> str:
+    """Return a hint if some lines are indented with tabs and others with spaces, or nothing."""
+    by = {
+        kind: [str(number) for number, text in enumerate(lines, 1) if re.match(shape, text)]
+        for kind, shape in (("tabs", r"\t+\S"), ("spaces", r" +\S"))
+    }
+    kind, fewer = min(by.items(), key=lambda item: len(item[1]))
+    if not fewer:
+        return ""
+    more = ", ..." if len(fewer) > _SHOWN else ""
+    shown = ", ".join(fewer[:_SHOWN]) + more
+    return f"Tabs and spaces are mixed: use four spaces for each level. Lines with {kind}: {shown}."
+
+
+def _source(file: str, text: str) -> Source:
+    """Return the Source of a text. Raises SyntaxError where Python 2 is written.
+
+    From Python 3.14 on, `except OSError, e:` means two classes: a small letter means a variable.
+    """
+    source = Source(file, text)
+    for handler in source.nodes(ast.ExceptHandler):
+        last = handler.type.elts[-1] if isinstance(handler.type, ast.Tuple) else None
+        line = text.splitlines()[handler.lineno - 1]
+        if isinstance(last, ast.Name) and last.id[0].islower() and _EXCEPT.match(line):
+            place = (file, handler.lineno, handler.col_offset + 1, line)
+            raise SyntaxError("multiple exception types must be parenthesized", place)
+    return source
+
+
+def further(package: Package, file: str) -> tuple[Source | None, list[Finding]]:
+    """Return (the Source, what else Python says) of a file that Python cannot read, as if what
+    Python says of each of its lines had been corrected; None if only its author can do that."""
+    text, said = package.text(file), ""
+    problems: list[Finding] = []
+    while True:
+        try:
+            return _source(file, text), problems
+        except SyntaxError as error:
+            before, said = said, error.msg or "invalid syntax"
+            correct = next((one for shape, one in _IN_PYTHON3 if re.search(shape, said)), str)
+            corrected = correct(text)
+            if corrected == text:
+                return None, problems
+            if before not in ("", said):
+                problems.append(_syntax(package, file, error))
+            text = corrected
+        except (ValueError, RecursionError, MemoryError):
+            return None, problems
+
+
+def read(package: Package, file: str) -> tuple[Source | None, Finding | None]:
+    """Return (the Source or None, the Finding that says why there is none, or None)."""
+    data = package.bytes(file)
+    try:
+        if b"\0" not in data:
+            data.decode("utf-8")
+        return _source(file, package.text(file)), None
+    except UnicodeDecodeError:
+        try:
+            return Source(file, data), None  # Python itself reads the coding line
+        except (SyntaxError, ValueError, UnicodeDecodeError):
+            return None, None  # the stage files has said it
+    except SyntaxError as error:
+        return None, _syntax(package, file, error)
+    except (ValueError, RecursionError, MemoryError) as error:
+        return None, Finding(
+            "python-syntax",
+            f"Python cannot read {file}: {error}.",
+            file,
+            1,
+            expected="Python",
+            seen=str(error),
+        )
+
+
+def _syntax(package: Package, file: str, error: SyntaxError) -> Finding:
+    text, line = error.msg or "invalid syntax", error.lineno or 1
+    lines = package.lines(file)
+    line = min(line, len(lines))
+    shown = lines[line - 1].strip()
+    hint = next((said for shape, said in _SYNTAX if re.search(shape, text)), "")
+    if re.search(r"inconsistent use|unindent|unexpected indent", text):
+        hint = _tabs(lines) or hint
+    if text == "invalid syntax":
+        if shown.startswith("//"):
+            hint = "A comment begins with # in Python, not with //."
+        elif re.match(r"global\s+\w+\s*=", shown):
+            hint = "'global NAME' and 'NAME = ...' are two statements, on two lines."
+        elif re.match(r"(def|class|if|for|while|else|elif|try|with)\b", shown) and ":" not in shown:
+            hint = "A colon is missing at the end of the line."
+        elif line > 1 and _opens_bracket(lines[line - 2]):
+            line, hint = line - 1, "A bracket is opened there and never closed."
+    for said, shape in _OF_PYTHON2:
+        if re.search(said, text):
+            found = (line_of(match, 2) for match in shape.finditer(package.text(file)))
+            others = [str(number) for number in found if number != line]
+            hint += f" So are the other lines with it: {', '.join(others)}." if others else ""
+    return Finding(
+        "python-syntax",
+        f"Python cannot read {file}: {text}, in line {line}. {hint}".strip(),
+        file,
+        line,
+        expected="valid Python 3",
+        seen=lines[line - 1].strip(),
+        fix=f"Correct the line; `python3 -m py_compile {file}` says whether Python can read it.",
+        why=next(why for shape, why in _WHY if re.search(shape, text)),
+    )
+
+
+def _opens_bracket(text: str) -> bool:
+    text = re.sub(r"\"[^\"]*\"|'[^']*'|#.*", "", text)
+    return sum(map(text.count, "([{")) > sum(map(text.count, ")]}"))

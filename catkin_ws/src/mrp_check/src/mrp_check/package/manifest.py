@@ -1,0 +1,103 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""package.xml: can catkin read it, and what does it name?"""
+
+from __future__ import annotations
+
+import re
+import xml.parsers.expat
+import xml.sax.saxutils
+from typing import Iterator
+
+from catkin_pkg.package import InvalidPackage, parse_package_string
+from catkin_pkg.package import Package as Manifest
+
+from mrp_check.contract.finding import Finding
+from mrp_check.contract.words import line_of
+from mrp_check.package.package import Package
+from mrp_check.package.workspace import Workspace
+from mrp_check.package.xml_file import elements, xml_finding
+
+FILE = "package.xml"
+# A comment, or a tag with the name of a package.
+_DEPENDENCY = re.compile(r"<!--.*?-->|<(\w+_depend)\b[^>]*>\s*([\w-]+)\s*<", re.DOTALL)
+
+
+def parse(package: Package) -> tuple[Manifest | None, Finding | None]:
+    """Return (catkin_pkg's Package or None, the Finding that says why not, or None)."""
+    data = package.bytes(FILE)
+    try:
+        elements(data)
+    except xml.parsers.expat.ExpatError as error:
+        return None, xml_finding("manifest", package, FILE, error, why="package-xml-no-xml")
+    try:
+        return parse_package_string(data.decode("utf-8", "replace").lstrip("\ufeff"), FILE), None
+    except (InvalidPackage, AssertionError, ValueError) as error:
+        text = " ".join(str(error).replace(f"Error(s) in package '{FILE}':", "").split())
+        return None, Finding(
+            "manifest",
+            f"package.xml is not valid: {text}",
+            FILE,
+            _line_of(package, text),
+            expected="a manifest as catkin reads it",
+            seen=text,
+            fix="Compare it with the package.xml of the tutorial's package.",
+            why="package-xml-invalid",
+        )
+
+
+def _line_of(package: Package, text: str) -> int | None:
+    """Return the line of the first tag, attribute or value that a message names."""
+    words = re.findall(r"following tags: ([\w, ]+)", text) or re.findall(r"\"([^\"]+)\"", text)
+    for word in ",".join(words).replace(" ", "").split(","):
+        line = package.find_line(FILE, f"<{word}") or package.find_line(FILE, f">{word}<")
+        if word.strip() and line:
+            return line
+    return package.find_line(FILE, "<package", 1)
+
+
+def replace(workspace: Workspace) -> None:
+    """Put a valid package.xml into the copy, so that what comes after can be checked."""
+    name = workspace.package.name
+    (workspace.package_folder / FILE).write_text(
+        f'<package format="3"><name>{xml.sax.saxutils.escape(name)}</name><version>0.0.0</version>'
+        '<description>x</description><maintainer email="x@x.example">x</maintainer>'
+        "<license>x</license><buildtool_depend>catkin</buildtool_depend>"
+        + "".join(f"<depend>{one}</depend>" for one in ("roscpp", "rospy", "std_msgs"))
+        + "<depend>message_generation</depend><depend>message_runtime</depend></package>"
+    )
+
+
+def declared(manifest: Manifest) -> dict[str, set[str]]:
+    """Return kind -> names of the packages that a manifest declares."""
+    return {
+        "build": {d.name for d in manifest.build_depends},
+        "exec": {d.name for d in [*manifest.exec_depends, *manifest.run_depends]},
+        "export": {d.name for d in manifest.build_export_depends},
+        "test": {d.name for d in manifest.test_depends},
+    }
+
+
+def named(manifest: Manifest, tests: bool = True) -> set[str]:
+    """Return the names of all packages that a manifest declares, with or without those of tests."""
+    known = declared(manifest).items()
+    return set().union(*(names for kind, names in known if kind != "test" or tests))
+
+
+def doubled(package: Package) -> Iterator[tuple[str, int]]:
+    """Yield (name, line) of each package that stands in one kind of tag already.
+
+    catkin_pkg refuses it for <depend>, and takes it for all others."""
+    seen: set[tuple[str, str]] = set()
+    for match in _DEPENDENCY.finditer(package.text(FILE)):
+        if match[1] and match.groups() in seen:
+            yield match[2], line_of(match, 1)
+        seen.add((match[1], match[2]))
+
+
+def first_dependency(package: Package, tag: str = "") -> int:
+    """Return the line in package.xml at which its dependencies begin, other than catkin, or those
+    with a tag, if there are any: where a reader looks for one that is missing."""
+    named = [one for one in elements(package.bytes(FILE)) if one.tag.endswith("depend")]
+    named = [one for one in named if one.tag != "buildtool_depend"] or named
+    named = [one for one in named if one.tag == tag] or named
+    return named[0].line if named else package.find_line(FILE, "<package", 1)

@@ -1,0 +1,149 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""XML with its lines: the elements of a file, or why it is no XML."""
+
+from __future__ import annotations
+
+import dataclasses
+import re
+import xml.parsers.expat
+from typing import Iterable, Iterator, Sequence
+
+from mrp_check.contract.finding import HABIT, Finding
+from mrp_check.contract.words import line_of
+from mrp_check.package.package import Package, declared_entity
+
+
+@dataclasses.dataclass
+class Element:
+    """One XML element; line: where it begins; texts: what stands directly in it, and the lines."""
+
+    tag: str
+    attributes: dict
+    line: int
+    parents: list
+    texts: list[tuple[str, int]] = dataclasses.field(default_factory=list)
+
+
+class EntityError(xml.parsers.expat.ExpatError):
+    """The file declares an entity: it is not read at all."""
+
+    def __init__(self, line: int) -> None:
+        super().__init__("an entity is declared")
+        self.code, self.lineno = 0, line
+
+
+def elements(data: bytes) -> list[Element]:
+    """Return the Elements of an XML file's bytes. Raises xml.parsers.expat.ExpatError."""
+    line = declared_entity(data)
+    if line:
+        raise EntityError(line)
+    found: list[Element] = []
+    stack: list[Element] = []
+    parser = xml.parsers.expat.ParserCreate()
+
+    def start(tag: str, attributes: dict[str, str]) -> None:
+        element = Element(tag, attributes, parser.CurrentLineNumber, list(stack))
+        found.append(element)
+        stack.append(element)
+
+    def say(text: str) -> None:
+        if text.strip() and stack:
+            stack[-1].texts.append((text.strip(), parser.CurrentLineNumber))
+
+    parser.StartElementHandler = start
+    parser.CharacterDataHandler = say
+    parser.EndElementHandler = lambda tag: stack.pop()
+    parser.Parse(data, True)
+    return found
+
+
+def stray(
+    id_: str, package: Package, tags: Iterable[tuple[str, Element]], readers: Sequence[str]
+) -> Iterator[Finding]:
+    """Yield a warning for each line of text that stands between elements. readers: the elements of
+    which the text is read"""
+    for file, element in tags:
+        for text, line in element.texts if element.tag not in readers else ():
+            yield Finding(
+                id_,
+                f"A text stands here between the tags, and nothing reads it: {text[:40]}",
+                file,
+                line,
+                HABIT,
+                expected="elements, and comments between <!-- and -->",
+                seen=package.line(file, line),
+                fix="Take it out, or make a comment of it.",
+            )
+
+
+def xml_finding(
+    id_: str, package: Package, path: str, error: xml.parsers.expat.ExpatError, why: str
+) -> Finding:
+    """Return the Finding about a file that is no XML."""
+    what = xml.parsers.expat.ErrorString(error.code) or str(error)
+    line = error.lineno
+    hint, cause = "", line
+    if what == "mismatched tag":
+        cause, hint = _unclosed(package, path, line)
+    elif what == "no element found":
+        cause, hint = _unclosed(package, path, None)
+        cause = cause or len(package.lines(path))
+    elif what == "not well-formed (invalid token)":
+        cause, hint = _bad_token(package, path, line)
+    return Finding(
+        id_,
+        f"{path} is no valid XML: {what}, noticed in line {line}. {hint}".strip(),
+        path,
+        cause,
+        expected="XML in which each tag that is opened is closed, and each value is in quotes",
+        seen=package.line(path, min(cause, len(package.lines(path)))),
+        fix="Correct this line; `xmllint --noout` says whether the file is well-formed.",
+        why=why,
+    )
+
+
+def _bad_token(package: Package, path: str, line: int) -> tuple[int, str]:
+    """Return the line that is to blame for a character that cannot stand where it does."""
+    lines = package.lines(path)
+    for number in range(line, 0, -1):
+        text = lines[number - 1] if number <= len(lines) else ""
+        if number == line and re.search(r"<!--(?:(?!-->).)*--(?!>)", text):
+            return line, "Within a comment there must be no two hyphens (--)."
+        # A tag that never ends swallows the lines below it.
+        if number < line and text.count("<") > text.count(">"):
+            return number, "The tag that begins there has no end."
+        if text.count('"') % 2:
+            return number, "A quotation mark is missing there."
+        if number < line and ">" in text:
+            break
+    return line, "Perhaps a quotation mark, a > or an = is missing, or & stands for &amp;."
+
+
+_TAG = re.compile(
+    r"<!--.*?-->|<\?.*?\?>|<!.*?>|<(?P<close>/)?(?P<name>[\w:-]+)[^<>]*?(?P<end>/)?>", re.DOTALL
+)
+
+
+def _unclosed(package: Package, path: str, noticed: int | None) -> tuple[int, str]:
+    """Return (line of the tag that is opened and not closed, what to say of it)."""
+    text, stack = package.text(path), []
+    for match in _TAG.finditer(text):
+        if not match.group("name") or match.group("end"):
+            continue
+        name, line = match.group("name"), line_of(match)
+        if not match.group("close"):
+            stack.append((name, line))
+            continue
+        if stack and stack[-1][0] == name:
+            stack.pop()
+            continue
+        if any(name == opened for opened, _ in stack):
+            opened, where = stack[-1]
+            return where, f"<{opened}> is opened there and not closed."
+        if stack:
+            opened, where = stack[-1]
+            return line, f"<{opened}> of line {where} is closed by </{name}>."
+        return line, f"</{name}> closes what is not open."
+    if stack:
+        return stack[-1][1], f"<{stack[-1][0]}> is opened there and not closed."
+    return noticed or 1, ""

@@ -1,0 +1,77 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""No source, launch file or file of parameters names a path in the home folder of its author."""
+
+from __future__ import annotations
+
+import ast
+import re
+from typing import Iterable, Iterator
+
+from mrp_check.case.case import Case
+from mrp_check.code import uses
+from mrp_check.code.python_source import Source
+from mrp_check.contract.finding import HABIT, Finding
+from mrp_check.contract.requirements import ANY, Rule
+
+_HOME = re.compile(r"/(?:home|Users)/(?![A-Z_]+/)[\w.-]+/[^\s\"'<>;:]*")
+_PARAMETERS = (".yaml", ".yml", ".ini")
+_COMMENT = re.compile(r"(?m)(?:^|[ \t])#.*$")
+_CPP_TEXT = re.compile(r'"(?:[^"\\\n]|\\.)*"')
+_INCLUDE = re.compile(r"^[ \t]*#[ \t]*include[^\n]*", re.MULTILINE)
+
+
+def _findings(case: Case) -> Iterator[Finding]:
+    package = case.package
+    for file in case.facts.relevant:
+        source = case.facts.python.get(file)
+        yield from _first_of_each(file, _in_python(source) if source else ())
+    for file in package.of_kind("cpp", "header"):
+        if not uses.is_test(file):
+            yield from _first_of_each(file, _in_cpp(package.text(file)))
+    for file in package.of_kind("launch"):
+        text = uses.code(package, file)
+        yield from _first_of_each(file, _in_text(text, 0, text))
+    for file in (one for one in package.files if one.endswith(_PARAMETERS)):
+        text = _COMMENT.sub("", package.text(file))
+        yield from _first_of_each(file, _in_text(text, 0, text))
+
+
+def _first_of_each(file: str, found: Iterable[tuple[str, int]]) -> Iterator[Finding]:
+    named: set[str] = set()
+    for path, line in found:
+        if path not in named:
+            named.add(path)
+            yield Finding(
+                "starts",
+                f"{file} names {path}, a path in somebody's home folder: on no other computer is"
+                " there such a file.",
+                file,
+                line,
+                HABIT,
+                expected="a path that is found from the package's folder: $(find PACKAGE) in a"
+                " launch file, rospkg in Python, ros::package::getPath() in C++; or a parameter",
+                seen=path,
+                fix="Put the file into the package, and let the path begin with its folder.",
+            )
+
+
+def _in_python(source: Source) -> Iterator[tuple[str, int]]:
+    for node in source.nodes(ast.Constant):
+        is_docstring = isinstance(source.parents.get(node), ast.Expr)
+        if isinstance(node.value, str) and not is_docstring:
+            yield from ((path, node.lineno) for path in _HOME.findall(node.value))
+
+
+def _in_cpp(text: str) -> Iterator[tuple[str, int]]:
+    """Yield those of a C++ source. The compiler finds what it includes, or does not."""
+    text = _INCLUDE.sub("", uses.without_comments(text))
+    for match in _CPP_TEXT.finditer(text):
+        yield from _in_text(match.group(), match.start(), text)
+
+
+def _in_text(part: str, start: int, text: str) -> Iterator[tuple[str, int]]:
+    for match in _HOME.finditer(part):
+        yield match.group(), text.count("\n", 0, start + match.start()) + 1
+
+
+RULE = Rule("static", ("facts",), _findings, also=("starts",), only=ANY)

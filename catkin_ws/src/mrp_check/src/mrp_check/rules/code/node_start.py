@@ -1,0 +1,90 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Each node starts ROS, and does so first."""
+
+from __future__ import annotations
+
+from typing import Iterator
+
+from mrp_check.case import evidence
+from mrp_check.code.node import Node, each_node
+from mrp_check.confined.places import Kind, Place
+from mrp_check.contract.finding import Finding
+from mrp_check.contract.requirements import Requirement, Rule
+
+
+def _of(node: Node) -> Iterator[Finding]:
+    inits = node.places(Kind.INIT)
+    if not inits:
+        yield from () if _only_asks(node) else (_no_init(node),)
+        return
+    yield from _at_file_scope(node)
+    if len(inits) == 1:
+        yield from _too_early(node, inits[0])
+
+
+def _only_asks(node: Node) -> bool:
+    """Return whether a program is a client of a service, and no node: rospy lets it ask."""
+    is_node = node.spec.is_contract or node.places(Kind.PUBLISHER, Kind.SUBSCRIBER, Kind.TIMER)
+    return not is_node and bool(node.package.first_match(node.files, r"\bServiceProxy\s*\("))
+
+
+def _no_init(node: Node) -> Finding:
+    call = "rospy.init_node(...)" if node.is_python else "ros::init(...)"
+    where = [p for p in node.places(Kind.FUNCTION) if p.text == "main"] or node.places(
+        Kind.PUBLISHER, Kind.SUBSCRIBER, Kind.TIMER
+    )
+    return node.finding(
+        "node-start",
+        f"{node.main} never calls {call}: without it, there is no node.",
+        where[0] if where else (node.main, 1),
+        expected=f"{call}, with the name {node.name}, before all other calls of ROS",
+        seen="no such call",
+        fix=f'Add rospy.init_node("{node.name}").'
+        if node.is_python
+        else f'Add ros::init(argc, argv, "{node.name}"); as the first line of main.',
+    )
+
+
+def _at_file_scope(node: Node) -> Iterator[Finding]:
+    for place in node.places(Kind.GLOBAL):
+        if "ros::NodeHandle" in (place.text, *place.holds):
+            yield node.finding(
+                "node-start",
+                f"{place.name} is made before main begins, and so before"
+                " ros::init(): a ros::NodeHandle then ends the program.",
+                place,
+                expected="no NodeHandle at file scope",
+                fix="Make it in main, after ros::init().",
+                why="init-first",
+            )
+
+
+def _too_early(node: Node, init: Place) -> Iterator[Finding]:
+    early = [
+        p
+        for p in node.places(Kind.HANDLE)
+        if p.file == init.file
+        and p.function == "main"
+        and p.offset < init.offset
+        and "ros::NodeHandle" in (p.text, *p.holds)
+    ]
+    if early:
+        yield node.finding(
+            "node-start",
+            f"{early[0].name} is made in line {early[0].line}, before"
+            f" ros::init() in line {init.line}: that ends the program.",
+            early[0],
+            expected="ros::init() before the first ros::NodeHandle",
+            fix="Move ros::init() to the beginning of main.",
+            why="init-first",
+        )
+
+
+RULE = Rule(
+    stage="static",
+    needs=("facts",),
+    findings=each_node(_of),
+    requirements={
+        "node-start": Requirement("Each node starts ROS first", "publisher", evidence.read)
+    },
+)

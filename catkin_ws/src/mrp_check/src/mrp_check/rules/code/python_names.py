@@ -1,0 +1,410 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What a Python source names and nothing has: modules, names, members."""
+
+from __future__ import annotations
+
+import ast
+import builtins
+import re
+import sys
+from typing import Collection, Iterator, Sequence
+
+from pyflakes import checker, messages
+
+from mrp_check import releases
+from mrp_check.case import evidence
+from mrp_check.code import uses
+from mrp_check.code.python_facts import last_line
+from mrp_check.code.python_modules import (
+    OF_PYTHON_2,
+    is_known,
+    is_module,
+    is_ros,
+    load,
+    resolve,
+    ros_modules,
+)
+from mrp_check.code.python_rule import PythonRule, of_sources
+from mrp_check.code.python_source import Source
+from mrp_check.contract.finding import CERTAIN, Change, Finding
+from mrp_check.contract.requirements import Requirement, Rule
+from mrp_check.contract.words import last_part, nearest, perhaps
+from mrp_check.package.package import Package
+
+# Names of Python 2 -> what Python 3 has for them.
+_PYTHON2 = {
+    **{"unicode": "str", "xrange": "range", "raw_input": "input", "long": "int"},
+    **{"basestring": "str", "reduce": "functools.reduce", "unichr": "chr", "file": "open"},
+}
+
+
+class Names(PythonRule):
+    def __init__(self, package: Package, source: Source) -> None:
+        super().__init__(package, source)
+        self.not_imported: list[str] = []  # names whose import fails
+        self.message_names = {last_part(path)[:-4] for path in package.of_kind("message")}
+
+    def findings(self) -> Iterator[Finding]:
+        yield from [*self.imports()]
+        undefined = [*self.undefined_names()]
+        for finding in undefined:
+            # What was to be imported under its right name is not there under it, either.
+            if nearest(finding.expected, self.not_imported):
+                finding.consequence_of = "python-names"
+        yield from undefined
+        yield from self.attributes()
+        yield from self.own_attributes()
+
+    def imports(self) -> Iterator[Finding]:
+        for node in self.source.import_nodes:
+            if self.source.is_guarded(node, "ImportError", "ModuleNotFoundError"):
+                continue
+            if isinstance(node, ast.Import):
+                for alias in node.names:
+                    yield from self._module(node, alias.name)
+            elif not node.level and node.module:
+                problem = list(self._module(node, node.module))
+                yield from problem or self._imported(node, node.module)
+
+    def _module(self, node: ast.stmt, name: str) -> Iterator[Finding]:
+        if self.is_own(name):
+            yield from self._generated(node, name)
+            return
+        missing, parent = None, None
+        for length in range(1, name.count(".") + 2):
+            part = ".".join(name.split(".")[:length])
+            # Only ROS's own packages are imported: importing runs what is imported.
+            if length > 1 and not is_ros(part):
+                break
+            if not is_module(part):
+                missing = part
+                break
+            parent = part
+        if missing is None:
+            return
+        self.not_imported.append(name.split(".")[-1])
+        if missing.split(".")[0] in uses.SIBLINGS:
+            return  # it is built with the package: the run shows whether it has that
+        if missing in OF_PYTHON_2:
+            yield self._renamed(node, missing)
+            return
+        if missing in releases.GONE:
+            yield self._gone(node, missing)
+            return
+        if parent is None:
+            known = set(sys.modules) | ros_modules()
+            # Of short names many are alike: cv2 is no misspelt csv.
+            near = nearest(missing, {n for n in known if "." not in n}, 0.75)
+            if any(uses.is_old_name(self.package, missing, one) for one in _names_of(node)):
+                yield self._old_name(node, missing)
+                return
+            if not near or uses.is_called_so(missing) or uses.is_of_debian(missing):
+                self.source.absent[missing] = uses.absent(missing, "python")
+                return
+        else:
+            near = nearest(missing.rsplit(".", 1)[-1], {"msg", "srv", "exceptions"})
+        yield self.finding(
+            "python-names",
+            f"There is no Python module {missing}: Python ends with a ModuleNotFoundError."
+            + perhaps(near),
+            node,
+            expected="a module that is installed",
+            fix=f"Write {near}." if near else "Correct the name of the module.",
+        )
+
+    def _gone(self, node: ast.stmt, name: str) -> Finding:
+        gone = releases.GONE[name]
+        return self.finding(
+            "python-names",
+            f"From Debian {gone.since} on, there is no {gone.what}: Python ends with a"
+            " ModuleNotFoundError.",
+            node,
+            expected=gone.instead,
+            fix=f"Use {gone.instead}.",
+            why=gone.why,
+        )
+
+    def _generated(self, node: ast.stmt, name: str) -> Iterator[Finding]:
+        """Yield the Finding about messages, or services, of a package that has none."""
+        kinds = {"msg": ("message", "action"), "srv": ("service",)}
+        part = name.partition(".")[2]
+        is_there = part not in kinds or self.package.of_kind(*kinds[part])
+        if is_there or name.split(".")[0] != self.package.name or self.has_module(name):
+            return
+        yield self.finding(
+            "python-names",
+            f"{name} is generated from the files in {part}/, and this package has none: Python ends"
+            " with a ModuleNotFoundError.",
+            node,
+            expected=f"files in {part}/, and generate_messages() in CMakeLists.txt",
+            fix=f"Add them; or import the {part} module of the package that has them.",
+        )
+
+    def _renamed(self, node: ast.stmt, name: str) -> Finding:
+        right = OF_PYTHON_2[name]
+        return self.finding(
+            "python-names",
+            f"{name} is a module of Python 2, which Python 3 has as {right}: Python ends with a"
+            " ModuleNotFoundError.",
+            node,
+            expected=right,
+            fix=f"Import {right}, and call what you need of it by that name.",
+        )
+
+    def _old_name(self, node: ast.stmt, name: str) -> Finding:
+        return self.finding(
+            "python-names",
+            f"There is no package {name}: its messages are made by this package, which is called"
+            f" {self.package.name}.",
+            node,
+            certainty=CERTAIN,
+            expected=self.package.name,
+            fix=f"Write {self.package.name} for {name}.",
+        )
+
+    def _imported(self, node: ast.ImportFrom, origin: str) -> Iterator[Finding]:
+        if origin == f"{self.package.name}.msg":
+            names = self.message_names
+        elif self.is_own(origin) or not is_ros(origin):
+            return
+        else:
+            module = load(origin)
+            if module is None:
+                return
+            names = set(dir(module))
+        for alias in node.names:
+            if alias.name == "*" or alias.name in names:
+                continue
+            if is_module(f"{origin}.{alias.name}"):
+                continue
+            self.not_imported.append(alias.name)
+            near = nearest(alias.name, {n for n in names if not n.startswith("_")})
+            hint = perhaps(near)
+            messages_ = load(f"{origin}.msg") if is_module(f"{origin}.msg") else None
+            if hasattr(messages_, alias.name):
+                hint = f" It is in {origin}.msg."
+            yield self.finding(
+                "python-names",
+                f"{origin} has no {alias.name}: Python ends with an ImportError.{hint}",
+                node,
+                expected=f"a name that {origin} has",
+                fix=f"Write {near} for {alias.name}." if near else "Correct the name.",
+                why="cannot-import-name",
+            )
+
+    def undefined_names(self) -> Iterator[Finding]:
+        try:
+            found = checker.Checker(self.source.tree, self.file).messages
+        except RecursionError:
+            return
+        said, name_of = set(), self.package.name
+        if {*self.source.stars} - {f"{name_of}.msg", f"{name_of}.srv"}:
+            return  # it may have any name
+        kinds = messages.UndefinedName, messages.UndefinedLocal, messages.ImportStarUsage
+        made = uses.made(self.package) if self.source.stars else ()
+        known = {*self.source.imports, *made}
+        for message in sorted(found, key=lambda message: message.lineno):
+            if not isinstance(message, kinds):
+                continue
+            name = message.message_args[0]
+            if name in said or isinstance(message, messages.ImportStarUsage) and name in known:
+                continue
+            if name not in _PYTHON2:
+                said.add(name)
+                yield self._undefined(name, message)
+            elif not self._is_asked_for(name, message.lineno):
+                said.add(name)
+                yield self._of_python2(name, message.lineno)
+
+    def _is_asked_for(self, name: str, line: int) -> bool:
+        """Return whether old code asks, before it uses a name, whether Python has it."""
+        used = [n for n in self.source.nodes(ast.Name) if (n.id, n.lineno) == (name, line)]
+        for node in used:
+            if self.source.is_guarded(node, "NameError"):
+                return True
+            for parent in self.source.above(node):
+                asked = ast.walk(parent.test) if isinstance(parent, (ast.If, ast.IfExp)) else ()
+                words = (getattr(one, "attr", getattr(one, "id", "")) for one in asked)
+                if any(re.search(r"version|PY_?[23]|python[23]", word) for word in words):
+                    return True
+        return not used
+
+    def _of_python2(self, name: str, line: int) -> Finding:
+        return self.finding(
+            "python-names",
+            f"Python 3 has no {name}: it ends with a NameError when it comes here.",
+            line,
+            expected=_PYTHON2[name],
+            fix=f"Write {_PYTHON2[name]} for {name}.",
+            why="name-not-defined",
+        )
+
+    def _undefined(self, name: str, message: messages.Message) -> Finding:
+        if isinstance(message, messages.UndefinedLocal):
+            return self.finding(
+                "python-names",
+                f"{name} is used in this function before the function gives it a value: as it"
+                " assigns to it further down, Python takes it for a variable of the function.",
+                message.lineno,
+                expected=f"self.{name}, or 'global {name}' at the beginning of the function",
+                fix=f"Make it a member of the class (self.{name}), or declare it global.",
+                why="local-before-assignment",
+            )
+        members = self._members()
+        if name == "self" and name not in members:
+            return self._no_self(message)
+        hint, fix = self._meant(name, members)
+        return self.finding(
+            "python-names",
+            f"Nothing is called {name}: Python ends with a NameError when it comes here.{hint}",
+            message.lineno,
+            expected=name,
+            fix=fix,
+            why="name-not-defined",
+        )
+
+    def _members(self) -> set[str]:
+        """Return the names that stand behind self, and those of methods."""
+        source = self.source
+        behind = {n.attr for n in source.nodes(ast.Attribute) if _is_self(n.value)}
+        return behind | {n.name for n in source.nodes(ast.FunctionDef) if source.class_(n)}
+
+    def _meant(self, name: str, members: Collection[str]) -> tuple[str, str]:
+        """Return what may be meant by a name that nothing has, and what to do."""
+        if name in members:
+            return f" Perhaps self.{name} is meant.", f"Write self.{name}."
+        if uses.is_ros_package(name) or is_module(name):
+            return f" The import of {name} is missing.", f"Add the line: import {name}"
+        if re.fullmatch(r"U?Int\d+|Float\d+|String|Bool|Empty|Header|Char|Byte", name):
+            line = f"from std_msgs.msg import {name}"
+            return f" The import of {name} is missing.", f"Add the line: {line}"
+        names = {*self.source.imports, "print", "range", "str", "int", "len", "True", "False"}
+        names |= {node.id for node in self.source.nodes(ast.Name)} - {name}
+        names |= {node.name for node in self.source.nodes(ast.FunctionDef)}
+        names |= {node.name for node in self.source.nodes(ast.ClassDef)}
+        return perhaps(nearest(name, names)), "Correct the name, or define it before it is used."
+
+    def _no_self(self, message: messages.Message) -> Finding:
+        """Return the finding about a method without self: its def line is to blame."""
+        methods = self.source.nodes(ast.FunctionDef)
+        around = [one for one in methods if one.lineno <= message.lineno <= last_line(one)]
+        method = max(around, key=lambda node: node.lineno, default=None)
+        return self.finding(
+            "python-names",
+            "Nothing is called self here: a method's first parameter has to be self.",
+            method.lineno if method else message.lineno,
+            expected=f"def {method.name}(self, ...)" if method else "self as the first parameter",
+            fix="Write self as the first parameter of the method.",
+            change=_self_first(method) if method else None,
+            why="name-not-defined",
+        )
+
+    def attributes(self) -> Iterator[Finding]:
+        """Names of modules that do not exist, such as rospy.spln and numpy.int."""
+        for node in self.source.nodes(ast.Attribute):
+            if isinstance(self.source.parents.get(node), ast.Attribute):
+                continue
+            name = self.source.dotted(node)
+            if not name or not is_known(name) or self.is_own(name):
+                continue
+            if self.source.is_guarded(node, "AttributeError") or isinstance(node.ctx, ast.Store):
+                continue
+            owner, missing = resolve(name)
+            if missing is None:
+                continue
+            near = nearest(missing, [n for n in dir(owner) if not n.startswith("_")])
+            called = getattr(owner, "__name__", name.rsplit(".", 1)[0])
+            near = missing if called == "numpy" and hasattr(builtins, missing) else near
+            yield self.finding(
+                "python-names",
+                f"{called} has no {missing}: Python ends with an AttributeError when it comes"
+                " here." + perhaps(near),
+                node,
+                expected=f"a name that {called} has",
+                fix=f"Write {near} for {called}.{missing}." if near else "Correct the name.",
+                why="py-spln",
+            )
+
+    def own_attributes(self) -> Iterator[Finding]:
+        """self.NAME that no method ever sets."""
+        for class_ in self.source.nodes(ast.ClassDef):
+            if (
+                class_.keywords
+                or class_.decorator_list
+                or any(not isinstance(b, ast.Name) or b.id != "object" for b in class_.bases)
+            ):
+                continue
+            inside = list(ast.walk(class_))
+            if any(
+                isinstance(n, ast.Name)
+                and n.id in ("setattr", "vars", "globals")
+                or isinstance(n, ast.Attribute)
+                and n.attr in ("__dict__", "update")
+                or isinstance(n, ast.FunctionDef)
+                and n.name in ("__getattr__", "__getattribute__")
+                for n in inside
+            ):
+                continue
+            yield from self._of_class(class_, inside)
+
+    def _of_class(self, class_: ast.ClassDef, inside: Sequence[ast.AST]) -> Iterator[Finding]:
+        known = set(dir(object)) | {"__dict__", "__class__", "__name__", "__module__"}
+        # Whoever sets an attribute of any object may set it of this one.
+        given = (n for n in self.source.nodes(ast.Attribute) if isinstance(n.ctx, ast.Store))
+        known |= {n.attr for n in given}
+        for statement in class_.body:
+            if isinstance(statement, (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)):
+                known.add(statement.name)
+            for one in ast.walk(statement):
+                if isinstance(one, ast.Name) and isinstance(one.ctx, ast.Store):
+                    known.add(one.id)
+        said = set()
+        for node in inside:
+            if not isinstance(node, ast.Attribute) or not isinstance(node.ctx, ast.Load):
+                continue
+            if (
+                not _is_self(node.value)
+                or node.attr in known
+                or node.attr in said
+                or self.source.class_(node) is not class_
+            ):
+                continue
+            if self.source.is_guarded(node, "AttributeError"):
+                continue
+            said.add(node.attr)
+            near = nearest(f"self.{node.attr}", {f"self.{n}" for n in known - set(dir(object))})
+            yield self.finding(
+                "python-names",
+                f"No method of {class_.name} ever sets self.{node.attr}: Python ends with an"
+                " AttributeError when it comes here." + perhaps(near),
+                node,
+                expected="a member that is set, or a method that is defined",
+                fix=f"Write {near}." if near else f"Set self.{node.attr} in __init__.",
+                why="no-such-member",
+            )
+
+
+def _is_self(node: ast.expr) -> bool:
+    return isinstance(node, ast.Name) and node.id == "self"
+
+
+def _self_first(method: ast.FunctionDef) -> Change:
+    rest = ", " if method.args.args or method.args.vararg or method.args.kwarg else ""
+    return f"def {method.name}(", f"def {method.name}(self{rest}"
+
+
+def _names_of(node: ast.stmt) -> list[str]:
+    names = node.names if isinstance(node, (ast.Import, ast.ImportFrom)) else []
+    return [one.name for one in names]
+
+
+RULE = Rule(
+    stage="static",
+    needs=("facts",),
+    findings=of_sources(Names),
+    requirements={
+        "python-names": Requirement(
+            "Each name in Python code exists", "wrong", evidence.python_read
+        )
+    },
+)

@@ -1,0 +1,117 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Each node waits for callbacks."""
+
+from __future__ import annotations
+
+import re
+from typing import Iterator, Sequence
+
+from mrp_check.case import evidence
+from mrp_check.code.node import Node, each_node
+from mrp_check.confined.places import Kind, Place
+from mrp_check.contract.finding import CERTAIN, READ, Finding
+from mrp_check.contract.requirements import Requirement, Rule
+
+_WAITS = r"\.wait_for_(result|server)\s*\("
+
+
+def _of(node: Node) -> Iterator[Finding]:
+    waits, spins = node.places(Kind.LOOP, Kind.SLEEP), node.places(Kind.SPIN)
+    if spins and {place.text for place in spins} == {"spinOnce"}:
+        if not waits:
+            yield _only_once(node, spins[0])
+        return
+    if spins:
+        yield from _made_too_late(node, spins)
+        return
+    called_back = node.places(Kind.SUBSCRIBER)
+    if not node.is_python:
+        timers = [place for place in node.places(Kind.TIMER) if place.oneshot is not True]
+        called_back += [place for place in timers if not _is_rate(node, place)]
+    # rospy calls back in threads of its own: there a loop is enough.
+    if waits and (node.is_python or not called_back):
+        return
+    # A client of an action waits for what comes of it.
+    if node.is_python and not called_back and node.package.first_match(node.files, _WAITS):
+        return
+    if called_back or node.places(Kind.TIMER, Kind.PUBLISHER):
+        yield _never(node, bool(waits))
+
+
+# rospy calls back in threads of its own; of roscpp, only a spinner calls.
+def _sure(node: Node) -> str:
+    return READ if node.is_python else CERTAIN
+
+
+def _only_once(node: Node, spin: Place) -> Finding:
+    return node.finding(
+        "spin",
+        "ros::spinOnce() calls the callbacks of what has arrived, and returns at once:"
+        " the program then comes to its end.",
+        spin,
+        certainty=_sure(node),
+        expected="ros::spin() at the end of main",
+        fix="Write ros::spin() for ros::spinOnce().",
+        change=("spinOnce", "spin"),
+    )
+
+
+def _never(node: Node, loops: bool) -> Finding:
+    call = "rospy.spin()" if node.is_python else "ros::spin()"
+    return node.finding(
+        "spin",
+        f"{node.main} never calls {call}: "
+        + ("no callback is ever called." if loops else "the program comes to its end at once."),
+        node.facts.end_of_main(node.name) or (node.main, _last_line(node)),
+        certainty=_sure(node),
+        expected=f"{call} at the end of main",
+        seen="no such call",
+        fix=f"Add {call}{'' if node.is_python else ';'} at the end of main.",
+    )
+
+
+def _last_line(node: Node) -> int:
+    """Return the last line of the main source in which something stands."""
+    lines = node.package.lines(node.main)
+    return max((n for n, text in enumerate(lines, 1) if text.strip()), default=1)
+
+
+def _made_too_late(node: Node, spins: Sequence[Place]) -> Iterator[Finding]:
+    """Yield a finding if the node's parts are made below a spin() of the same function."""
+    classes = {
+        name
+        for file in node.files
+        for line in node.package.lines(file)
+        for name in re.findall(r"^\s*(?:class|struct) (\w+)", line)
+    }
+    for spin in spins:
+        ends = [f.end for f in node.places(Kind.FUNCTION) if f.is_around(spin)]
+        if spin.text not in (None, "spin", "waitForShutdown") or not ends:
+            continue
+        made = {p.line for p in node.places(Kind.PUBLISHER, Kind.SUBSCRIBER) if p.file == spin.file}
+        for number in range(spin.line + 1, min(ends) + 1):
+            line = node.package.line(spin.file, number)
+            if number in made or classes & set(re.findall(r"\w+", line)):
+                call = "rospy.spin()" if node.is_python else "ros::spin()"
+                yield node.finding(
+                    "spin",
+                    f"{call} returns only when the node is to end: what stands below it, in"
+                    f" line {number}, is made too late.",
+                    spin,
+                    certainty=_sure(node),
+                    expected=f"{call} below all that the node is made of",
+                    fix=f"Move it below line {number}.",
+                )
+                return
+
+
+def _is_rate(node: Node, place: Place) -> bool:
+    return "Rate" in node.package.line(place.file, place.line)
+
+
+RULE = Rule(
+    stage="static",
+    needs=("facts",),
+    findings=each_node(_of),
+    requirements={"spin": Requirement("Each node waits for callbacks", "publisher", evidence.read)},
+)

@@ -1,0 +1,71 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The counter's type in C++, and where it begins anew, against the largest value."""
+
+from __future__ import annotations
+
+from typing import Collection, Iterator
+
+from mrp_check.code.node import Node, each_node
+from mrp_check.confined.places import Kind, Place
+from mrp_check.contract.finding import HABIT, READ, Finding
+from mrp_check.contract.requirements import CONTRACT, Rule
+
+
+def _of(node: Node) -> Iterator[Finding]:
+    values = node.wanted.publishes.values if node.wanted.publishes else None
+    if node.is_python or values is None or not values.modulus:
+        return
+    modulus = values.modulus
+    used = {name for p in node.places(Kind.DATA) for name in p.names}
+    yield from _resets(node, used, abs(values.step), modulus)
+    said = set()
+    for place in node.places(Kind.STEP):
+        kind, bits = place.type, place.bits
+        if place.text not in used or place.text in said or bits <= 0:
+            continue
+        floating = kind in ("float", "double")
+        enough = bits - (0 if "unsigned" in kind else 1)
+        if not floating and 2**enough >= modulus:
+            continue
+        said.add(place.text)
+        if floating:
+            largest = 24 if kind == "float" else 53
+            why = f"past 2^{largest} it no longer counts in whole steps, and it never wraps round."
+        elif bits < 32:
+            why = (
+                f"after {2**enough - 1} it begins again, and the message could hold up to"
+                f" {modulus - 1}."
+            )
+        else:
+            why = f"what happens past {2**enough - 1} is undefined in C++."
+        yield node.finding(
+            "wrap",
+            f"The counter {place.text} is a {kind}: {why}",
+            _declared(node, place),
+            certainty=READ if floating or bits < 32 else HABIT,
+            expected="uint32_t",
+            fix=f"Make {place.text} a uint32_t.",
+        )
+
+
+def _resets(node: Node, used: Collection[str], step: int, modulus: int) -> Iterator[Finding]:
+    for place in node.places(Kind.RESET):
+        limit, value = place.limit, place.value
+        # Within the last two steps of the range whoever begins anew does no harm.
+        if place.text in used and limit < modulus - 2 * step:
+            yield node.finding(
+                "wrap",
+                f"The counter {place.text} begins again at {value} when it comes to {limit};"
+                f" the message could hold up to {modulus - 1}.",
+                place,
+                expected=f"the next value up to {modulus - 1}",
+                fix="Take the limit away: a uint32_t begins again at 0 by itself.",
+            )
+
+
+def _declared(node: Node, place: Place) -> Place:
+    same = [p for p in node.places(Kind.COUNTER) if p.text == place.text]
+    return same[0] if same else place
+
+
+RULE = Rule("static", ("facts",), each_node(_of), also=("wrap",), only=CONTRACT)

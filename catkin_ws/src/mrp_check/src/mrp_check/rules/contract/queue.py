@@ -1,0 +1,102 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Each queue is as long as the contract says, as far as the source says it plainly."""
+
+from __future__ import annotations
+
+from typing import Iterator
+
+from mrp_check.case import evidence
+from mrp_check.code.node import Node, each_node
+from mrp_check.confined.places import Kind, Place
+from mrp_check.contract.finding import HABIT, READ, Finding
+from mrp_check.contract.requirements import CONTRACT, Requirement, Rule
+
+NO_QUEUE = (
+    "rospy.Publisher() is given no queue_size: it then sends each message before it returns, and"
+    " warns of it."
+)
+
+
+def _of(node: Node) -> Iterator[Finding]:
+    wanted = node.wanted
+    relays = [wanted.relays] if wanted.relays else []
+    for kind, topic, asked in (
+        *((Kind.SUBSCRIBER, one.topic, one.queue) for one in wanted.subscribed),
+        *((Kind.PUBLISHER, one.topic, one.queue) for one in wanted.published),
+        *((Kind.SUBSCRIBER, one.source, one.queue) for one in relays),
+        *((Kind.PUBLISHER, one.target, one.queue) for one in relays),
+    ):
+        if not asked:
+            continue
+        for place in node.on_topic(kind, topic):
+            queue = place.queue
+            if isinstance(queue, int) and queue is not True and queue != asked:
+                yield _other_queue(node, place, kind, queue, asked)
+            elif node.is_python and kind is Kind.PUBLISHER and says_none(node, place):
+                yield no_queue(node, place, "queue", f"queue_size={asked}", asked)
+
+
+_REFUSED = (True, Kind.SUBSCRIBER, 0)
+
+
+def _other_queue(node: Node, place: Place, kind: Kind, queue: int, asked: int) -> Finding:
+    words = {
+        _REFUSED: "rospy.Subscriber() takes no queue_size of 0: it raises an error.",
+        (True, Kind.SUBSCRIBER, 1): "The subscriber's queue has room for one message. In rospy"
+        " each publisher has a queue of its own; a callback that is late loses messages all"
+        " the same.",
+        (False, Kind.SUBSCRIBER, 1): "The subscriber's queue has room for one message. All"
+        " publishers of the topic share it: two that publish at the same moment push out each"
+        " other's values.",
+    }
+    rooms = f"has room for {queue} messages" if queue else "has no limit"
+    return node.finding(
+        "queue",
+        words.get((node.is_python, kind, queue))
+        or f"The {kind.value}'s queue {rooms}; the contract asks for {asked}.",
+        (place.file, place.queue_line or place.line),
+        # A longer one loses nothing, and one that is little shorter hardly ever.
+        certainty=READ if queue == 1 or (node.is_python, kind, queue) in words else HABIT,
+        expected=f"queue_size={asked}" if node.is_python else f"a queue of {asked}",
+        fix=f"Write {asked} for {queue}.",
+        why="py-queue-0" if (node.is_python, kind, queue) == _REFUSED else "",
+        change=(f"queue_size={queue}", f"queue_size={asked}")
+        if node.is_python
+        else (f", {queue}", f", {asked}"),
+    )
+
+
+def no_queue(node: Node, place: Place, id_: str, expected: str, size: int) -> Finding:
+    """Return the Finding about a rospy.Publisher() without queue_size; size: what to give it"""
+    return node.finding(
+        id_,
+        NO_QUEUE,
+        place,
+        certainty=HABIT,
+        expected=expected,
+        fix=f"Add queue_size={size}.",
+        why="queue-size-missing",
+    )
+
+
+def says_none(node: Node, place: Place) -> bool:
+    """Return whether a call that begins in a line has no queue_size in its lines."""
+    lines = node.package.lines(place.file)[place.line - 1 : place.line + 6]
+    text, depth = "", 0
+    for line in lines:
+        text += line + "\n"
+        depth += line.count("(") - line.count(")")
+        if depth <= 0:
+            break
+    if place.queue is not None:
+        return False
+    return "queue_size" not in text and "**" not in text and text.count(",") < 6
+
+
+RULE = Rule(
+    stage="static",
+    needs=("facts",),
+    findings=each_node(_of),
+    requirements={"queue": Requirement("Queues are long enough", "queues", evidence.read)},
+    only=CONTRACT,
+)

@@ -1,0 +1,48 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""No node is made of another node's sources: by CMakeLists.txt, or by the launch file."""
+
+from __future__ import annotations
+
+from typing import Iterator
+
+from mrp_check.case.case import Case
+from mrp_check.code.node import Node
+from mrp_check.contract import spec as specs
+from mrp_check.contract.finding import Finding, Line
+from mrp_check.contract.requirements import CONTRACT, Rule
+
+
+def findings(case: Case) -> Iterator[Finding]:
+    for node in case.coded:
+        other = node.mistaken_for
+        if other and node.mistaken_in(other) == "targets":
+            yield _target(node, other)
+        elif other and node.started and node.started.file:
+            yield _launch(node, other, (node.started.file, node.started.line or 1))
+
+
+def _target(node: Node, other: specs.Node) -> Finding:
+    target, own = node.model.executables()[node.executable], node.own_source()
+    return node.finding(
+        "targets",
+        f"The target {target.name} is made of {node.main}, which is the source of"
+        f" {other.name}: {node.name} is then a second {other.name}.",
+        (target.file, target.line),
+        expected=f"add_executable({target.name} {own or 'ITS OWN SOURCE'})",
+        fix=f"Write {own} for {node.main}." if own else "Name its own source.",
+    )
+
+
+def _launch(node: Node, other: specs.Node, place: Line) -> Finding:
+    return node.finding(
+        "launch-nodes",
+        f"The launch file starts {node.executable} under the name {node.name}; it is the"
+        f" executable of {other.name}.",
+        place,
+        expected=f"the executable of {node.name}",
+        seen=f'type="{node.executable}"',
+        fix="Name the node's own executable as its type.",
+    )
+
+
+RULE = Rule("static", ("facts",), findings, also=("targets", "launch-nodes"), only=CONTRACT)

@@ -1,0 +1,185 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Publishers publish the right values."""
+
+from __future__ import annotations
+
+from typing import Iterator, Sequence
+
+from mrp_check.case import evidence
+from mrp_check.confined.places import Kind
+from mrp_check.confined.seen import Message, Number
+from mrp_check.contract.finding import Finding, Where
+from mrp_check.contract.requirements import CONTRACT, Requirement, Rule
+from mrp_check.contract.spec import Publishes, Topic, Values
+from mrp_check.run.node import Node, each_node
+from mrp_check.run.planning import resolved
+from mrp_check.run.words import few
+
+
+def _of(node: Node) -> Iterator[Finding]:
+    yield from _relayed(node)
+    role = node.wanted.publishes
+    if role is None:
+        return
+    messages = node.published()
+    topic = resolved(role.topic, node.path)
+    if topic in node.topics(Kind.PUBLISHER) and not messages and node.wanted.of_itself:
+        silent = _silent_seconds(node)
+        waits = _long_period(node, role)
+        if node.is_unheard(topic) or silent * (1 - node.waited) < 6 * (role.period or 0.5):
+            return  # the machine was too busy to tell
+        if node.published(alone=True):
+            return  # by itself it published: two runs do not agree
+        yield node.finding(
+            "values",
+            f"{node.name} announces {role.topic.name}, but published nothing in {silent:.0f} s"
+            + (f": a timer of it waits {waits:g} s." if waits else "."),
+            node.places.of(node.name, Kind.TIMER, Kind.PUBLISH, Kind.PUBLISHER),
+            expected=_rule_text(role) + (f", every {role.period:g} s" if role.period else ""),
+            seen="no message",
+        )
+    for text in node.wrong_texts()[:1]:
+        yield _other_text(node, text, role.topic)
+    # A mistake shows in both runs, or only in the longer one.
+    found = (_wrong_numbers(node, role, messages) for messages in node.runs())
+    yield from next(filter(None, found), [])
+
+
+def _wrong_numbers(node: Node, role: Publishes, messages: Sequence[Message]) -> list[Finding]:
+    values = [node.value(message, role.topic) for message in messages]
+    numbers = [value for value in values if value is not None]
+    if not numbers or len(numbers) < len(values):
+        return []
+    wrong = [*_value_findings(node, numbers, role.values, _rule_text(role))] if role.values else []
+    return wrong + ([*_not_rising(node, numbers, _rule_text(role))] if role.rises else [])
+
+
+def _other_text(node: Node, said: str, topic: Topic) -> Finding:
+    """Return the Finding about a message that says something else than the contract's text."""
+    return node.finding(
+        "values",
+        f"{node.name} publishes “{said}”, where the contract says “{topic.text}”.",
+        node.places.of_text(node.name, said) or node.places.of(node.name, Kind.PUBLISH),
+        expected=f"{topic.text}, with a number for {{value}}",
+        seen=said,
+    )
+
+
+def _not_rising(node: Node, values: Sequence[Number], expected: str) -> Iterator[Finding]:
+    wrong = next(((a, b) for a, b in zip(values, values[1:]) if b <= a), None)
+    if wrong:
+        yield node.finding(
+            "values",
+            f"{node.name} publishes {few(values)}: after {wrong[0]:g} came {wrong[1]:g}.",
+            node.places.of(node.name, Kind.PUBLISH),
+            expected=expected,
+            seen=few(values),
+        )
+
+
+def _silent_seconds(node: Node) -> float:
+    last = max([p.time for p in node.seen.publications] or [0])
+    return max(node.asked - last, 0)
+
+
+def _long_period(node: Node, role: Publishes) -> float | None:
+    """Return the period of a timer of the node that is far too long, or None."""
+    periods = [p.period for p in node.places.facts.of(node.name, Kind.TIMER)]
+    numbers = [p for p in periods if isinstance(p, (int, float))]
+    return next((p for p in numbers if p > 3 * (role.period or p)), None)
+
+
+def _value_findings(
+    node: Node, values: Sequence[Number], rule: Values, expected: str
+) -> Iterator[Finding]:
+    shown = ", ".join(map(str, values[:5]))
+    file_line = node.places.of_counter(node.name, node.counter_names())
+    publish = node.places.of(node.name, Kind.PUBLISH)
+    wrong = [(a, b) for a, b in zip(values, values[1:]) if b != rule.after(a)]
+    if wrong:
+        before, after = wrong[0]
+        if all(b == a for a, b in wrong) and len(wrong) < len(values) - 1:
+            said = f"{node.name} publishes a value more than once: {shown}."
+            place = publish
+        elif all(b == a for a, b in zip(values, values[1:])):
+            said = f"{node.name} publishes the same value again and again: {shown}."
+            place = file_line
+        else:
+            said = f"{node.name} publishes {shown}: after {before} came {after}."
+            skips = rule.step and (after - before) % rule.step == 0 and after > before
+            place = skips and node.places.condition_of_publish(node.name) or file_line
+        yield node.finding("values", said, place, expected=expected, seen=shown)
+    elif values[0] != rule.start:
+        yield node.finding(
+            "values",
+            f"{node.name} begins with {values[0]}, not with {rule.start}: it publishes {shown}.",
+            _start_place(node, publish),
+            expected=expected,
+            seen=shown,
+        )
+
+
+def _start_place(node: Node, publish: Where) -> Where:
+    """Return the place at which the counter gets its first value."""
+    places = node.places.facts.of(node.name, Kind.COUNTER) or node.places.facts.of(
+        node.name, Kind.STEP
+    )
+    return (places[0].file, places[0].line) if places else publish
+
+
+def _relayed(node: Node) -> Iterator[Finding]:
+    """Yield a Finding if a node that relays publishes something else for what it is sent."""
+    relay = node.wanted.relays
+    if relay is None:
+        return
+    sent = node.sent()
+    name = node.own_name
+    if not sent or not name:
+        return
+    target = resolved(relay.target, name)
+    published = [one for one in node.seen_alone.messages if one.topic == target]
+    values = [node.value(one, relay.target) for one in published]
+    expected = [relay.of(value) for value in sent]
+    if values == expected or None in values:
+        return
+    place = node.places.of(node.name, Kind.PUBLISH, Kind.PUBLISHER)
+    if not values:
+        if target not in node.topics(Kind.PUBLISHER, alone=True) or node.is_unheard(target):
+            return  # another topic: said elsewhere; or nobody knows
+        said = f"{node.name} was sent {len(sent)} messages, and published none."
+    else:
+        said = f"{node.name} was sent {few(sent)}, and published {few(values)}."
+    yield node.finding(
+        "values", said, place, expected=few(expected), seen=few(values) or "no message"
+    )
+
+
+def _rule_text(role: Publishes) -> str:
+    rule = role.values
+    if role.rises:
+        return "numbers, each larger than the one before"
+    if not rule:
+        return f"messages on {role.topic.name}"
+    values = [rule.start, rule.start + rule.step, rule.start + 2 * rule.step]
+    return ", ".join(map(str, values)) + ", ..."
+
+
+_published = evidence.of_publisher(
+    lambda role: role.values or role.rises, Node.published_numbers, "published no number"
+)
+_sent = evidence.when(Node.sent, "was sent nothing", lambda wanted: wanted.relays)
+
+
+RULE = Rule(
+    stage="run",
+    needs=("nodes",),
+    findings=each_node(_of, each_topic=True),
+    requirements={
+        "values": Requirement(
+            "Publishers publish the right values",
+            "publisher",
+            lambda case: _sent(case) or _published(case),
+        )
+    },
+    only=CONTRACT,
+)

@@ -1,0 +1,71 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""package.xml: is it complete and valid?"""
+
+from __future__ import annotations
+
+from typing import Iterator
+
+from mrp_check.case import evidence
+from mrp_check.case.case import Case
+from mrp_check.contract.finding import HABIT, HINT, Finding
+from mrp_check.contract.requirements import Requirement, Rule
+from mrp_check.package.manifest import FILE
+from mrp_check.package.xml_file import elements, stray
+
+_ROS_2 = ("ament_", "rclcpp", "rclpy", "rosidl_")
+
+
+def _findings(case: Case) -> Iterator[Finding]:
+    package, (manifest, problem) = case.package, case.manifest
+    if problem:
+        yield problem
+    if manifest and "catkin" not in {d.name for d in manifest.buildtool_depends}:
+        needs = manifest.buildtool_depends + manifest.build_depends + manifest.exec_depends
+        of_ros_2 = sorted({d.name for d in needs if d.name.startswith(_ROS_2)})
+        yield Finding(
+            "manifest",
+            "package.xml does not say that the package is built with catkin."
+            + (f" It names {of_ros_2[0]}, which is of ROS 2." if of_ros_2 else ""),
+            FILE,
+            # Where it belongs: at the first of the dependencies.
+            package.find_line(FILE, "depend>", package.find_line(FILE, "<package", 1)),
+            expected="<buildtool_depend>catkin</buildtool_depend>",
+            seen=", ".join(d.name for d in manifest.buildtool_depends) or "no buildtool_depend",
+            fix="Add the line <buildtool_depend>catkin</buildtool_depend>.",
+            why="buildtool-missing",
+        )
+    if manifest:
+        tags = [(FILE, one) for one in elements(package.bytes(FILE)) if one.tag == "package"]
+        yield from stray("manifest", package, tags, ())
+    if manifest and "TODO" in manifest.licenses:
+        yield _no_licence(case)
+
+
+def _no_licence(case: Case) -> Finding:
+    # A tag may have an attribute, or go over several lines.
+    tag = case.package.find_line(FILE, "<license", 1)
+    return Finding(
+        "licensed",
+        "package.xml has the licence that catkin_create_pkg wrote: nobody may use the package.",
+        FILE,
+        case.package.find_line(FILE, "TODO</license>", tag),
+        HABIT if case.spec.is_contract else HINT,
+        expected="the name of a licence, such as BSD-3-Clause",
+        seen="<license>TODO</license>",
+        fix="Choose a licence, and write its name.",
+    )
+
+
+RULE = Rule(
+    stage="files",
+    needs=("manifest",),
+    findings=_findings,
+    requirements={
+        "manifest": Requirement(
+            "package.xml is complete and valid", "building#package-xml", evidence.always
+        ),
+        "licensed": Requirement(
+            "package.xml names a licence", "building#package-xml", evidence.manifest
+        ),
+    },
+)

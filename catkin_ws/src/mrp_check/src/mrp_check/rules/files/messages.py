@@ -1,0 +1,340 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The package's own messages: their definitions, and what makes code of them."""
+
+from __future__ import annotations
+
+import re
+from typing import Iterator, Mapping
+
+from catkin_pkg.package import Package as Manifest
+
+from mrp_check.case import evidence
+from mrp_check.case.case import Case
+from mrp_check.code import uses
+from mrp_check.contract.finding import CERTAIN, HABIT, READ, Finding, Line
+from mrp_check.contract.requirements import Requirement, Rule
+from mrp_check.contract.spec import PACKAGE
+from mrp_check.contract.words import last_part, nearest
+from mrp_check.package.cmake import Model, Target
+from mrp_check.package.manifest import declared, first_dependency
+from mrp_check.package.package import Package
+
+FILE = "CMakeLists.txt"
+_GENERATION = "message_generation"
+# What of package.xml asks for it where nothing is built, too.
+_AFTER_BUILD = rf"^\s*<(?:exec_|run_|build_export_)?depend>\s*{_GENERATION}\s*<"
+_OF_MESSAGES = ("_msgs", "_srvs", "_msg", "_srv")  # how packages of messages are called
+# The commands that only message_generation brings.
+_BROUGHT = r"^\s*(add_(message|service|action)_files|generate_messages)\s*\("
+
+
+def _findings(case: Case) -> Iterator[Finding]:
+    package, model, (manifest, _) = case.package, case.model, case.manifest
+    for name, fields in case.spec.messages.items():
+        yield from _definition(package, f"msg/{name}.msg", fields)
+    for service in case.spec.services.values():
+        path = f"srv/{service.type.split('/')[1]}.srv"
+        for half, said in enumerate((service.request, service.response)):
+            yield from _definition(package, path, said, half) if said else ()
+    files = [path for path in package.of_kind(*uses.DEFINITIONS) if path.count("/") <= 1]
+    yield from () if case.spec.is_contract else _of_others(package, model)
+    made = model.message_files or model.generate
+    if not files and not made or not model.complete and model.catkin is None:
+        return
+    if not model.finds_all:
+        yield from _in_cmake(case, files)
+    if manifest and (files or model.message_files):
+        yield from _in_manifest(package, manifest, _is_brought_along(model))
+        yield from () if case.spec.is_contract else _after_build(package, manifest, model)
+    yield from _order(package, model)
+
+
+def _after_build(package: Package, manifest: Manifest, model: Model) -> Iterator[Finding]:
+    """Yield a warning for each place that asks for message_generation where nothing is built.
+
+    https://docs.ros.org/en/noetic/api/catkin/html/howto/format2/building_msgs.html
+    """
+    places: list[Line] = []
+    named, known = package.first_match(["package.xml"], _AFTER_BUILD), declared(manifest)
+    if named and _GENERATION in known["exec"] | known["export"]:
+        places.append(named)
+    if model.catkin_package and _GENERATION in model.depends:
+        call = model.catkin_package
+        places.append((call.file, call.line_of(package.lines(call.file), _GENERATION)))
+    for file, line in places:
+        yield Finding(
+            "dependencies",
+            f"{_GENERATION} is needed to build the package alone; who uses it needs"
+            " message_runtime.",
+            file,
+            line,
+            HABIT,
+            expected="message_runtime",
+            seen=package.line(file, line),
+            fix=f"Write message_runtime here, and <build_depend>{_GENERATION}</build_depend> in"
+            " package.xml.",
+        )
+
+
+def _in_cmake(case: Case, files: list[str]) -> Iterator[Finding]:
+    """Yield a finding for each call of CMakeLists.txt that lacks, or lacks something."""
+    model = case.model
+    own = {*case.spec.messages, *(s.type.split("/")[1] for s in case.spec.services.values())}
+    catkin_line, call = model.catkin.line if model.catkin else 1, model.add_message_files
+    brings = {"message_generation", "genmsg"}  # the first is all of it; the second builds, too
+    asks = files or model.generate
+    if asks and model.catkin and not brings & {*model.components}:
+        brought = case.package.first_match([FILE], _BROUGHT)
+        yield _message_finding(
+            "find_package(catkin ...) does not name message_generation, which brings"
+            " generate_messages() and makes code of the package's own messages.",
+            brought[1] if brought else catkin_line,
+            "find_package(catkin REQUIRED COMPONENTS message_generation ...)",
+            "Add message_generation to COMPONENTS.",
+            HABIT if _is_brought_along(model) else READ,
+        )
+    for path in files:
+        file = last_part(path)
+        is_made = path in model.message_files or _is_of_action(path, model)
+        if not is_made and (not own or file[:-4] in own):
+            command = f"add_{case.package.kind(path)}_files"
+            elsewhere = _elsewhere(case, path)
+            if elsewhere:
+                yield _misplaced(model.message_files[elsewhere].line, command, path, elsewhere)
+                continue
+            yield _message_finding(
+                f"{path} is not named in {command}(): no code is made of it.",
+                call.line if call else catkin_line,
+                f"{command}(FILES {file})",
+                f"Add {file} to {command}(FILES ...).",
+                READ if _is_used(case, path) else HABIT,
+            )
+    if call and model.message_files and model.generate is None:
+        yield _message_finding(
+            "CMakeLists.txt never calls generate_messages(): no code is made of the messages.",
+            call.line,
+            f"generate_messages(...) after {call.command}(...)",
+            "Add generate_messages(DEPENDENCIES std_msgs).",
+        )
+
+
+def _is_used(case: Case, path: str) -> bool:
+    """Return whether a source that is built, a header, a file in Python or another definition names
+    what is made of a definition; with a contract, each one is used."""
+    package, targets = case.package, case.model.targets.values()
+    built = {file for one in targets for file in one.sources if file in package.files}
+    others = package.of_kind("header", "python", *uses.DEFINITIONS)
+    files = {*built, *others} - {path}
+    names = rf"\b(?:{'|'.join(map(re.escape, uses.generated(path)))})\b"
+    is_asked = case.spec.is_contract or not targets
+    return is_asked or any(re.search(names, uses.code(package, file)) for file in files)
+
+
+def _is_of_action(path: str, model: Model) -> bool:
+    """Return whether a message is one that an action is made into: code is made of it."""
+    actions = (one for one in model.message_files if one.endswith(".action"))
+    made = {name for one in actions for name in uses.generated(one)}
+    return path.endswith(".msg") and last_part(path)[: -len(".msg")] in made
+
+
+def _elsewhere(case: Case, path: str) -> str | None:
+    """Return the place at which CMakeLists.txt looks for a definition that lies here, or None."""
+    named = case.model.message_files
+    others = (one for one in named if last_part(one) == last_part(path))
+    return next((one for one in others if one not in case.package.files), None)
+
+
+def _misplaced(line: int, command: str, path: str, elsewhere: str) -> Finding:
+    return Finding(
+        "messages",
+        f"{command}() looks for {elsewhere}, and the file lies at {path}: CMake stops.",
+        FILE,
+        line,
+        CERTAIN,
+        expected=elsewhere,
+        seen=path,
+        fix=f"Move {path} to {elsewhere}.",
+    )
+
+
+def _is_brought_along(model: Model) -> bool:
+    """Return whether another package brings what makes messages, as actionlib_msgs does: then CMake
+    goes through without message_generation."""
+    goes_through = model.complete or "actionlib_msgs" in model.components
+    named = "message_generation" in model.components
+    return bool(goes_through and model.generate) and not named
+
+
+def _in_manifest(package: Package, manifest: Manifest, is_brought: bool) -> Iterator[Finding]:
+    """Yield a finding for each package that makes or runs messages, and is not declared."""
+    known = declared(manifest)
+    for name, kind, tag in (
+        ("message_generation", "build", "build_depend"),
+        ("message_runtime", "exec", "exec_depend"),
+    ):
+        # message_runtime is asked for where the package is installed: no build here needs it.
+        builds = kind == "exec" or "genmsg" in known[kind] or is_brought
+        if kind == "exec" and manifest.package_format < 2:
+            tag = "run_depend"
+        if name not in known[kind]:
+            yield Finding(
+                "dependencies",
+                f"package.xml does not name {name} as a <{tag}>: the package has a message of"
+                " its own, and needs it.",
+                "package.xml",
+                first_dependency(package, tag),
+                certainty=HABIT if builds else READ,
+                expected=f"<{tag}>{name}</{tag}>",
+                seen=f"no <{tag}> with {name}",
+                fix=f"Add the line <{tag}>{name}</{tag}>.",
+            )
+
+
+def _message_finding(
+    message: str, line: int, expected: str, fix: str, certainty: str = READ
+) -> Finding:
+    seen = "no such entry"
+    return Finding("messages", message, FILE, line, certainty, expected, seen, fix)
+
+
+def _definition(
+    package: Package, path: str, fields: Mapping[str, str], half: int = 0
+) -> Iterator[Finding]:
+    """Yield a finding for each field that a message lacks, or that half of a service."""
+    kind = "service" if path.endswith(".srv") else "message"
+    name = last_part(path)[:-4]
+    expected = "; ".join(f"{kind} {field}" for field, kind in fields.items())
+    if path not in package.files:
+        near = nearest(path, package.of_kind(kind))
+        yield Finding(
+            "messages",
+            f"There is no {kind} {PACKAGE.lower()}/{name}: the file {path} is missing."
+            + (f" There is {near}." if near else ""),
+            near if near else None,
+            1 if near else None,
+            expected=f"{path} with: {expected}",
+            seen=near if near else "no such file",
+            fix=f"Name the file {path}." if near else f"Write {path}.",
+        )
+        return
+    seen, part = {}, 0
+    for number, text in enumerate(package.lines(path), 1):
+        part += text.startswith("---")
+        words = text.split("#")[0].split()
+        if part == half and len(words) == 2 and "=" not in text:
+            seen[words[1]] = (words[0], number)
+    for field, kind in fields.items():
+        if field not in seen or seen[field][0] != kind:
+            near = nearest(field, seen, 0.5)
+            number = seen[field][1] if field in seen else seen[near][1] if near else 1
+            yield Finding(
+                "messages",
+                f"The {kind} {name} has no field '{kind} {field}'.",
+                path,
+                number,
+                expected=f"{kind} {field}",
+                seen=package.line(path, number) or "nothing",
+                fix=f"Write the line: {kind} {field}",
+            )
+
+
+def _order(package: Package, model: Model) -> Iterator[Finding]:
+    """Yield a finding for each target that uses a message's header before it is made."""
+    own = uses.made(package)
+    for target in model.targets.values():
+        used = [
+            one
+            for one in _included(package, model, target)
+            if one[2].split("/")[0] == package.name and last_part(one[2])[:-2] in own
+        ]
+        waits = any(_is_made(package, model, word) for word in target.dependencies)
+        if used and not waits and _knows_what_waits(model) and model.generate is not None:
+            file, line, header = used[0]
+            yield Finding(
+                "messages",
+                f"The target {target.name} does not wait until {header}, which {file} includes in"
+                f" line {line}, has been made. It then depends on chance whether it"
+                " can be built.",
+                target.file,
+                target.line,
+                CERTAIN,
+                expected=f"add_dependencies({target.name} ${{${{PROJECT_NAME}}_EXPORTED_TARGETS}})",
+                seen="no such call",
+                fix=f"Add add_dependencies({target.name} ${{${{PROJECT_NAME}}_EXPORTED_TARGETS}})"
+                " after its add_executable().",
+            )
+
+
+def _of_others(package: Package, model: Model) -> Iterator[Finding]:
+    """Yield a warning for each target that does not wait for the messages of a package which can
+    only be made in the same workspace.
+
+    https://docs.ros.org/en/noetic/api/catkin/html/howto/format2/cpp_msg_dependencies.html
+    """
+    others = [one for one in model.components if one.endswith(_OF_MESSAGES)]
+    others = [one for one in others if one != package.name and not uses.exists(one)]
+    for target in model.targets.values() if _knows_what_waits(model) else ():
+        for name in others:
+            used = [one for one in _included(package, model, target) if f"/{name}/" in f"/{one[2]}"]
+            waits = (f"{name}_", "catkin_EXPORTED_TARGETS")
+            if used and not any(one in word for word in target.dependencies for one in waits):
+                file, line, header = used[0]
+                yield Finding(
+                    "messages",
+                    f"The target {target.name} does not wait until {header}, which {file} includes"
+                    f" in line {line}, has been made by {name}.",
+                    target.file,
+                    target.line,
+                    HABIT,
+                    expected=f"add_dependencies({target.name} ${{catkin_EXPORTED_TARGETS}})",
+                    seen="no such call",
+                    fix=f"Add add_dependencies({target.name} ${{catkin_EXPORTED_TARGETS}}) after"
+                    " its add_executable().",
+                )
+
+
+def _included(package: Package, model: Model, target: Target) -> list[tuple[str, int, str]]:
+    """Return (file, line, header) of what a target's own files include."""
+    files = [*target.sources, *_headers(package, model, target)]
+    return [
+        (file, line, header)
+        for file in files
+        if file in package.files
+        for header, line in uses.includes(package, file)
+    ]
+
+
+def _is_made(package: Package, model: Model, word: str) -> bool:
+    """Return whether what a target waits for makes the package's messages."""
+    makes = word.startswith(f"{package.name}_") and "gen" in word or "EXPORTED_TARGETS" in word
+    return makes and not model.lacks_target(word)
+
+
+def _knows_what_waits(model: Model) -> bool:
+    calls = [call for call in model.calls if call.command == "add_dependencies"]
+    return model.complete or not any("$" in call.arguments[0] for call in calls)
+
+
+def _headers(package: Package, model: Model, target: Target) -> list[str]:
+    """Return the package's headers that a target's sources include, directly."""
+    names = {
+        last_part(header)
+        for file in target.sources
+        if file in package.files
+        for header, _ in uses.includes(package, file)
+    }
+    return [path for path in package.of_kind("header") if last_part(path) in names]
+
+
+RULE = Rule(
+    stage="files",
+    needs=("manifest", "model"),
+    findings=_findings,
+    requirements={
+        "messages": Requirement(
+            "The package's own messages are generated", "message_types", evidence.cmake
+        )
+    },
+    also=("dependencies",),
+    sure=READ,
+)

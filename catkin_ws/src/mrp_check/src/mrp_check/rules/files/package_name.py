@@ -1,0 +1,123 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The package's name, which stands in package.xml, in CMakeLists.txt and in the launch file."""
+
+from __future__ import annotations
+
+import collections
+import re
+from typing import Iterator
+
+from mrp_check.case import evidence
+from mrp_check.case.case import Case
+from mrp_check.code import uses
+from mrp_check.contract.finding import HABIT, Finding
+from mrp_check.contract.requirements import Requirement, Rule
+from mrp_check.package.package import Package
+
+# https://www.ros.org/reps/rep-0144.html
+_USUAL = re.compile(r"[a-z][a-z0-9_-]*")
+
+
+def _findings(case: Case) -> Iterator[Finding]:
+    """Yield a finding if package.xml and CMakeLists.txt disagree; the others say who is right."""
+    package, launch = case.package, case.launch
+    if not case.spec.is_contract:
+        yield from _unusual(package)
+        yield from _within(package)
+        yield from _of_ros(package)
+    if case.manifest[0] is None or case.model.project is None:
+        return
+    project, call = case.model.project
+    if project == package.name or "$" in project:
+        return
+    votes = collections.Counter([package.root.resolve().name])
+    votes.update(node.package for node in (launch.nodes if launch else []))
+    if votes[project] > votes[package.name]:
+        file, line, wrong, right = "package.xml", None, package.name, project
+        line = package.find_line(file, f">{package.name}<") or package.find_line(file, "<name", 1)
+        expected, seen = f"<name>{right}</name>", f"<name>{wrong}</name>"
+    else:
+        file, line, wrong, right = call.file, call.line, project, package.name
+        expected, seen = f"project({right})", f"project({wrong})"
+    other = "CMakeLists.txt calls" if file == "package.xml" else "package.xml calls"
+    yield Finding(
+        "package-name",
+        f"{file} calls the package {wrong}, {other} it {right}: catkin cannot build it.",
+        file,
+        line,
+        expected=expected,
+        seen=seen,
+        fix=f"Write {expected}.",
+        change=(wrong, right),
+    )
+
+
+def _within(package: Package) -> Iterator[Finding]:
+    """Yield a warning for each package in a folder of this one: catkin does not look there.
+
+    https://docs.ros.org/en/independent/api/catkin_pkg/html/catkin_pkg.html#module-catkin_pkg.packages
+    """
+    for path in package.files:
+        if path.endswith("/package.xml") and not any(p[:1] == "." for p in path.split("/")):
+            yield Finding(
+                "package-name",
+                f"{path} makes a package of a folder of this one: catkin does not look for one"
+                " there, and builds nothing of it.",
+                path,
+                1,
+                HABIT,
+                expected="packages beside each other, in src of the workspace",
+                seen=path,
+                fix="Move that folder to beside this package; or delete it.",
+            )
+
+
+def _unusual(package: Package) -> Iterator[Finding]:
+    """Yield a warning if catkin warns of the name."""
+    if _USUAL.fullmatch(package.name):
+        return
+    line = package.find_line("package.xml", "<name", 1)
+    yield Finding(
+        "package-name",
+        f"catkin warns of the name {package.name}: a package's name begins with a small letter,"
+        " and has small letters, digits, - and _ alone.",
+        "package.xml",
+        line,
+        HABIT,
+        expected="a name such as my_package",
+        seen=package.line("package.xml", line),
+        fix="Rename the package, where it is not in use yet.",
+    )
+
+
+def _of_ros(package: Package) -> Iterator[Finding]:
+    """Yield a warning if the package is called like one of ROS's own, and is another one: that has
+    its page in its package.xml."""
+    name, text = package.name, package.text("package.xml")
+    if uses.is_of_ros(name) and f"ros.org/{name}" not in text:
+        line = package.find_line("package.xml", "<name", 1)
+        yield Finding(
+            "package-name",
+            f"ROS has a package {name}: within this workspace, and after it in a shell, that one"
+            " cannot be found any more.",
+            "package.xml",
+            line,
+            HABIT,
+            expected="a name of its own",
+            seen=package.line("package.xml", line),
+            fix=f"Rename the package, such as my_{name}.",
+        )
+
+
+RULE = Rule(
+    stage="files",
+    needs=("manifest", "model", "launch"),
+    findings=_findings,
+    requirements={
+        "package-name": Requirement(
+            "The package has one name, in package.xml, CMake and launch file",
+            "package",
+            evidence.manifest,
+        )
+    },
+)

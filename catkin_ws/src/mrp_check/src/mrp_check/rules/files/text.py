@@ -1,0 +1,138 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Bytes that keep a file from being read as its author meant it."""
+
+from __future__ import annotations
+
+import codecs
+import re
+from typing import Iterator
+
+from mrp_check.case import evidence
+from mrp_check.case.case import Case
+from mrp_check.contract.finding import CERTAIN, HABIT, HINT, Finding
+from mrp_check.contract.requirements import Requirement, Rule
+from mrp_check.contract.words import printable
+from mrp_check.package.package import MAX_BYTES, Package
+
+_TEXT = ("python", "cpp", "header", "launch", "message", "cmake")
+_CODING = re.compile(rb"^[ \t\f]*#.*?coding[:=][ \t]*([-\w.]+)")
+
+
+def _findings(case: Case) -> Iterator[Finding]:
+    package = case.package
+    for path in package.left_out:
+        said = f"{path} has more than {MAX_BYTES // 10**6} MB: it is left out of the check."
+        yield Finding("text", said, path, certainty=HINT, fix="Hand in the package without it.")
+    if package.not_utf8:
+        names = ", ".join(map(printable, package.not_utf8))
+        yield Finding(
+            "text",
+            "The check leaves out files whose names aren't UTF-8, because many programs can't read"
+            f" such a name: {names}",
+            certainty=HABIT,
+            expected="names in UTF-8",
+            seen="bytes of another encoding, shown as %FC, for example",
+            fix="Rename them. Old zip programs make such names of letters like ü.",
+        )
+    relayed = case.model.relayed()
+    for path in package.files:
+        kind = package.kind(path)
+        if kind in _TEXT or path == "package.xml":
+            yield from _of(package, path, kind, path in relayed)
+
+
+def _of(package: Package, path: str, kind: str, relayed: bool) -> Iterator[Finding]:
+    data = package.bytes(path)
+    is_script = kind == "python" and data.lstrip(codecs.BOM_UTF8).startswith(b"#!")
+    if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)) or b"\0" in data:
+        yield Finding(
+            "text",
+            f"{path} is no plain text in UTF-8: it has zero bytes, as UTF-16 text has.",
+            path,
+            data[: data.find(b"\0") + 1].count(b"\n") + 1 if b"\0" in data else 1,
+            expected="text in UTF-8",
+            seen="zero bytes",
+            fix="Save the file with the encoding UTF-8.",
+        )
+        return
+    if data.startswith(codecs.BOM_UTF8) and is_script:
+        yield Finding(
+            "text",
+            f"{path} begins with a byte order mark (BOM), three bytes that an editor does not show."
+            " Linux then does not see the #! of the first line, and cannot start the script.",
+            path,
+            1,
+            expected="#! as the first two bytes",
+            seen="EF BB BF, then #!",
+            fix="Save the file as 'UTF-8', not as 'UTF-8 with BOM'.",
+            why="script-bom",
+        )
+    if b"\r\n" in data:
+        yield from _windows_ends(data, path, kind, is_script)
+    yield from _encoding(data, path, kind, relayed)
+
+
+def _windows_ends(data: bytes, path: str, kind: str, is_script: bool) -> Iterator[Finding]:
+    fix = f"Convert the file: sed -i 's/\\r$//' {path}"
+    if kind not in ("python", "message"):
+        works = f"{path} has Windows line ends. It works all the same; scripts with them do not."
+        yield Finding("text", works, path, 1, HINT, fix=fix)
+    elif is_script and data.split(b"\n", 1)[0].endswith(b"\r"):
+        yield Finding(
+            "text",
+            f"{path} has Windows line ends. Linux takes the one after the first line for a part"
+            " of the program's name, and looks for 'python' with an invisible character.",
+            path,
+            1,
+            expected="lines that end with a newline (LF)",
+            seen="lines that end with carriage return and newline (CRLF)",
+            fix=fix,
+            why="script-crlf",
+        )
+
+
+def _encoding(data: bytes, path: str, kind: str, relayed: bool) -> Iterator[Finding]:
+    try:
+        data.decode("utf-8")
+        return
+    except UnicodeDecodeError as error:
+        line = data.count(b"\n", 0, error.start) + 1
+        byte = data[error.start]
+    if kind == "python":
+        coding = [_CODING.match(one) for one in data.split(b"\n")[:2]]
+        named = next((match.group(1).decode() for match in coding if match), "utf-8")
+        try:
+            data.decode(named)
+            # The file says in which encoding it is; what catkin_install_python makes of it reads
+            # it as UTF-8 all the same.
+            if not relayed:
+                return
+        except (UnicodeDecodeError, LookupError):
+            pass
+    harmless = kind in ("cpp", "header", "cmake")
+    what = (
+        "A compiler may pass over it" if harmless else "Whoever reads the file as UTF-8 stops there"
+    )
+    yield Finding(
+        "text",
+        f"Line {line} of {path} has a byte that is not UTF-8. {what}.",
+        path,
+        line,
+        HINT if harmless else CERTAIN,
+        expected="text in UTF-8",
+        seen=f"the byte {byte:02X}, perhaps of a letter such as ä or é in Latin-1",
+        fix="Save the file with the encoding UTF-8.",
+        why="python-encoding" if kind == "python" else "",
+    )
+
+
+RULE = Rule(
+    stage="files",
+    needs=("model",),
+    findings=_findings,
+    requirements={
+        "text": Requirement(
+            "Each file is plain UTF-8 text with Unix line ends", "wrong", evidence.always
+        )
+    },
+)

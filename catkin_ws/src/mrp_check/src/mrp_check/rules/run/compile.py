@@ -1,0 +1,92 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Each source compiles, and each target can be linked."""
+
+from __future__ import annotations
+
+import os
+from typing import Iterable, Iterator
+
+from mrp_check.build import compiler, configuring, linker, placeholders
+from mrp_check.case import evidence
+from mrp_check.case.case import Case
+from mrp_check.code import uses
+from mrp_check.contract.errors import NotHere
+from mrp_check.contract.finding import Finding
+from mrp_check.contract.requirements import Requirement, Rule
+from mrp_check.contract.words import last_part
+
+
+def findings(case: Case) -> Iterator[Finding]:
+    if not case.built:
+        yield from _of_other_machines(case)
+        yield from () if case.spec.is_contract else compiler.older_standard(case.package, "")
+        yield from _of_text(case, case.package.of_kind("cpp"))
+        return
+    output, package = case.built.output, case.package
+    yield from compiler.without_return(package, output, case.package_folder)
+    if not case.spec.is_contract:
+        yield from compiler.doubts(package, output, case.package_folder)
+        yield from compiler.older_standard(package, output)
+    if case.built.ok:
+        return
+    problems = compiler.problems(output, case.package_folder)
+    absent = {} if case.spec.is_contract else compiler.absent(package, problems)
+    found = [compiler.finding(package, p) for p in problems if p.file not in absent]
+    found += linker.findings(package, output, case.model)
+    if not found and not absent:
+        found = [configuring.unknown(package, case.built, "compile")]
+    yield from found
+    stopped = [p.file for p in problems if compiler.is_no_header(p)]
+    yield from _of_text(case, () if case.spec.is_contract else stopped)
+    if absent:
+        raise NotHere(uses.absent(name, "cpp") for name in sorted({*absent.values()}))
+
+
+def _of_text(case: Case, files: Iterable[str]) -> Iterator[Finding]:
+    """Yield what the compiler would have found in sources that it did not come to."""
+    yield from placeholders.findings(case.package, files)
+    yield from compiler.unreturned(case.package, files)
+
+
+def _of_other_machines(case: Case) -> Iterator[Finding]:
+    """Yield a finding for each header that a source includes by a whole path, or by an old name of
+    the package, and that is not there. It takes no compiler to say so: nothing is compiled where
+    CMake could not go on."""
+    package = case.package
+    built = {file for target in case.model.targets.values() for file in target.sources}
+    for file in sorted(built & {*package.files}):
+        for header, line in uses.includes(package, file):
+            right, folder = uses.renamed(package, header), uses.package_of_header(header)
+            if right:
+                yield Finding(
+                    "compile",
+                    f"{file} includes {header}, and there is no package {folder}:"
+                    f" {last_part(header)} is made by {package.name} itself.",
+                    file,
+                    line,
+                    expected=right,
+                    seen=package.line(file, line),
+                    fix=f"Write {right}.",
+                )
+            if os.path.isabs(header) and not os.path.exists(header):
+                yield Finding(
+                    "compile",
+                    f"{file} includes {header}, by its whole path on somebody's computer: here"
+                    " there is no such file.",
+                    file,
+                    line,
+                    expected="a path that begins with the name of a package",
+                    seen=package.line(file, line),
+                    fix="Write the name of the package and of the header alone.",
+                )
+
+
+RULE = Rule(
+    stage="build",
+    needs=("built",),
+    findings=findings,
+    requirements={
+        "compile": Requirement("The C++ code compiles", "building#catkin-make", evidence.compiled),
+        "link": Requirement("The executables can be linked", "building", evidence.built),
+    },
+)

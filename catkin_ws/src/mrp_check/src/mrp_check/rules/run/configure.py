@@ -1,0 +1,57 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""CMake can configure the package."""
+
+from __future__ import annotations
+
+from typing import Iterator
+
+from mrp_check.build import configuring, stubs
+from mrp_check.build.catkin import WANTS_TESTS
+from mrp_check.case import evidence
+from mrp_check.case.case import Case
+from mrp_check.code import uses
+from mrp_check.contract.errors import NotHere
+from mrp_check.contract.finding import HABIT, Finding
+from mrp_check.contract.requirements import Requirement, Rule
+
+
+def findings(case: Case) -> Iterator[Finding]:
+    package, step = case.package, case.catkin.configured
+    if case.built is not None:
+        yield from _wants_tests(case)
+        if case.catkin.stubs.names:
+            raise NotHere(uses.absent(one, "cpp") for one in case.catkin.stubs.names)
+        return
+    missing = stubs.absent(package, step.output, case.spec.is_contract)
+    if missing:
+        # CMake stops at the first.
+        others = [one for one in case.catkin.model.components if not uses.is_ros_package(one)]
+        names = [missing, *(one for one in others if one != missing and uses.is_called_so(one))]
+        raise NotHere(uses.absent(one, "cpp") for one in names)
+    missing = configuring.without_definitions(step.output)
+    if missing:
+        raise NotHere([uses.absent(missing, "msg")])
+    output = "" if step.why_ended else step.output
+    finding = configuring.finding(package, output, case.package_folder, case.catkin.model)
+    yield finding or configuring.unknown(package, step, "configure")
+
+
+def _wants_tests(case: Case) -> Iterator[Finding]:
+    """Yield a warning if CMake went on only as tests were made, too."""
+    output = case.catkin.configured.output
+    if WANTS_TESTS in " ".join(output.split()):
+        found = configuring.finding(case.package, output, case.package_folder, case.catkin.model)
+        if found:
+            found.certainty = HABIT
+            found.message += " With catkin_make, which makes tests, it goes on."
+            yield found
+
+
+RULE = Rule(
+    stage="build",
+    needs=("built",),
+    findings=findings,
+    requirements={
+        "configure": Requirement("CMake can configure the package", "building", evidence.cmake)
+    },
+)

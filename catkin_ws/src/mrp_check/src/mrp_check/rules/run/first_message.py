@@ -1,0 +1,65 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A node that publishes right after it has made its publisher publishes to nobody.
+
+A subscriber needs a moment to connect: https://wiki.ros.org/rospy/Overview/Publishers%20and%20Subscribers
+So all messages are lost of a node that was seen to send them at that very moment, and none later.
+"""
+
+from __future__ import annotations
+
+from typing import Iterator
+
+from mrp_check.case.case import Case
+from mrp_check.confined.places import Kind
+from mrp_check.confined.seen import Registration
+from mrp_check.contract.finding import HABIT, SEEN, Finding
+from mrp_check.contract.requirements import ANY, Rule
+from mrp_check.run import logged
+from mrp_check.run.logged import Run
+from mrp_check.run.traces import ROS_TOPICS
+
+_MOMENT = 0.05  # seconds in which no subscriber connects
+_LATER = 1.0  # seconds for which it was watched after that
+
+
+def _findings(case: Case) -> Iterator[Finding]:
+    told = set()
+    for run in logged.runs(case.observed):
+        for one in run.seen.publications:
+            topic = one.topic.rsplit("/", 1)[-1]
+            if one.node != run.path or (run.node, topic) in told or one.topic in ROS_TOPICS:
+                continue
+            times = [
+                m.time for m in run.seen.messages if (m.node, m.topic) == (run.path, one.topic)
+            ]
+            if not times or not _is_lost(case, run, one, times):
+                continue
+            told.add((run.node, topic))
+            heard = any(s.topic == one.topic for s in run.seen.subscriptions)
+            call = "get_num_connections()" if case.spec.nodes[run.node].language == "python" else ""
+            yield Finding(
+                "topic",
+                f"{run.node} publishes on {one.topic} at the very moment at which it has made its"
+                f" publisher, and never again, {run.where}: no subscriber is connected yet, and"
+                " nobody hears it.",
+                *case.places.of_topic(run.node, Kind.PUBLISHER, one.topic),
+                certainty=SEEN if heard else HABIT,
+                expected="a wait until somebody is connected; or latch",
+                seen=f"{len(times)} message(s), {times[-1] - one.answered:.3f} s after that",
+                fix=f"Wait first until {call or 'getNumSubscribers()'} is more than 0, or latch.",
+                node=run.node,
+            )
+
+
+def _is_lost(case: Case, run: Run, one: Registration, times: list[float]) -> bool:
+    """Return whether all messages of a publisher came at once, and it does not latch them."""
+    is_late = times[-1] > one.answered + _MOMENT
+    is_short = run.asked < one.answered + _LATER and run.ended is None
+    latches = run.path in run.latched.get(one.topic, ())
+    if run.ended is not None:  # then it could not be asked
+        files = case.places.sources(run.node)
+        latches = case.package.first_match(files, r"\blatch|advertise\b.*,\s*true\b") is not None
+    return one.heard and not (is_late or is_short or latches)
+
+
+RULE = Rule("run", ("nodes",), _findings, also=("topic",), only=ANY)

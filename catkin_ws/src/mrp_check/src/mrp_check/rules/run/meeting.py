@@ -1,0 +1,197 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Publishers and subscribers of a package meet: no name is misspelt, and the types are the same."""
+
+from __future__ import annotations
+
+import re
+import typing
+from typing import Iterable, Iterator
+
+from mrp_check.case.case import Case
+from mrp_check.confined.places import Kind
+from mrp_check.confined.seen import Seen
+from mrp_check.contract.finding import HABIT, HINT, SEEN, Finding
+from mrp_check.contract.requirements import ANY, Rule
+from mrp_check.contract.words import last_part, nearest
+from mrp_check.run.traces import ROS_TOPICS
+
+_ALIKE = 0.85
+_TOGETHER = "When all nodes run together"
+_BY_ITSELF = "Started by itself"
+
+
+class End(typing.NamedTuple):
+    """A node of the package, or None for another's, that publishes or subscribes; and where its
+    source says so, if it was read there."""
+
+    node: str | None
+    topic: str
+    type: str
+    file: str = ""
+    line: int = 0
+
+
+class Graph(typing.NamedTuple):
+    where: str
+    publishers: list[End]
+    subscribers: list[End]
+
+
+def _findings(case: Case) -> Iterator[Finding]:
+    told: set[object] = set()
+    published = {last_part(one.topic) for graph, _ in _graphs(case) for one in graph.publishers}
+    for graph, nodes in _graphs(case):
+        for end in graph.subscribers:
+            if end.node not in nodes or (end.node, end.topic) in told:
+                continue
+            same = [one for one in graph.publishers if one.topic == end.topic]
+            for finding in (
+                _of_types(case, graph, end, same) if same else _alone(case, graph, end, published)
+            ):
+                told.add((end.node, end.topic))
+                yield finding
+
+
+def _graphs(case: Case) -> Iterator[tuple[Graph, set[str]]]:
+    """Yield what was seen under each launch file, and of each by itself, with the nodes that it
+    is asked of: all of them, and each by itself, only of those that no launch file starts, as that
+    may give them other names."""
+    together: set[str] = set()
+    for launched in case.observed.launches:
+        nodes = {*launched.nodes.values()} - (set() if launched.file else together)
+        together |= nodes
+        where = f"Under {launched.file}" if launched.file else _TOGETHER
+        graph = _graph(where, launched.seen.seen, launched.nodes, lambda topic: topic)
+        yield graph, nodes
+    direct = case.observed.direct
+    if direct:
+        alone = {one.name: key for key, one in direct.nodes.items() if one.name}
+        # Each ran in a namespace of its own.
+        graph = _graph(_BY_ITSELF, direct.seen, alone, _outside)
+        yield graph, {*alone.values()} - together
+
+
+def _outside(topic: str) -> str:
+    return re.sub(r"^/check_\d+/", "/", topic)
+
+
+def _graph(
+    where: str,
+    seen: Seen,
+    nodes: dict[str, str],
+    plain: typing.Callable[[str], str],
+) -> Graph:
+    def ends(records: Iterable[typing.Any]) -> list[End]:
+        found = (End(nodes.get(one.node), plain(one.topic), one.type) for one in records)
+        return [end for end in dict.fromkeys(found) if end.topic not in ROS_TOPICS]
+
+    return Graph(where, ends(seen.publications), ends(seen.subscriptions))
+
+
+def _of_types(case: Case, graph: Graph, end: End, publishers: list[End]) -> Iterator[Finding]:
+    by_chance = graph.where == _TOGETHER
+    types = {other.type for other in publishers}
+    for other in publishers:
+        if "*" in (end.type, other.type) or other.type == end.type:
+            continue
+        file, line = case.places.of_topic(end.node or "", Kind.SUBSCRIBER, end.topic)
+        yield Finding(
+            "type",
+            f"{end.node} subscribes to {end.topic} with messages of type {end.type}, and"
+            f" {other.node or 'another node'} publishes {other.type} there: nothing arrives.",
+            file,
+            line,
+            # Examples may share a topic's name: each of them runs with its own partner.
+            HABIT if by_chance and end.type in types else SEEN,
+            expected=other.type,
+            seen=end.type,
+            fix="Let both use the same type.",
+            node=end.node,
+        )
+
+
+def _alone(case: Case, graph: Graph, end: End, published: set[str]) -> Iterator[Finding]:
+    """Yield the Finding about a topic that nobody publishes on."""
+    heard = {one.topic for one in graph.subscribers}
+    near = meant(case, end, graph.publishers, graph.subscribers)
+    is_actions = last_part(end.topic) in ("feedback", "result", "status")
+    if is_actions and any(not one.is_up for one in case.nodes.values()):
+        return  # the action is served by one that did not run
+    near.sort(key=lambda one: one.topic in heard)
+    file, line = case.places.of_topic(end.node or "", Kind.SUBSCRIBER, end.topic)
+    if not any(is_like(one, end) for one in near):
+        if any(_did_not_run_and_names(case, one.topic) for one in (end, *near)):
+            return  # one that did not run may publish there
+    if not near:
+        nobody = "nobody" if last_part(end.topic) in published else "no node of this package"
+        yield Finding(
+            "topic",
+            f"{graph.where}, {end.node} waits for messages on {end.topic}: {nobody} publishes any.",
+            file,
+            line,
+            HINT,
+            node=end.node,
+        )
+        return
+    other = near[0]
+    # Under their own launch file, both are without a partner: what one says, the other should hear.
+    is_own = graph.where not in (_TOGETHER, _BY_ITSELF) and other.topic not in heard
+    is_sure = (
+        is_own or is_like(other, end) and (other.topic not in heard or not _is_moved(other, end))
+    )
+    digits = [re.sub(r"\d", "", one.topic) for one in (other, end)]
+    yield Finding(
+        "topic",
+        f"{graph.where}, {end.node} subscribes to {end.topic}, where nobody publishes, and"
+        f" {other.node} publishes on {other.topic}.",
+        file,
+        line,
+        SEEN if is_sure and digits[0] != digits[1] else HABIT,
+        expected=other.topic,
+        seen=end.topic,
+        fix="Give both topics one name; a <remap> in the launch file does so, too.",
+        node=end.node,
+    )
+
+
+def _did_not_run_and_names(case: Case, topic: str) -> bool:
+    """Return whether the sources of a node that is not up have the last part of a topic's name."""
+    files = {
+        f for n, one in case.nodes.items() if not one.is_up for f in case.facts.sources.get(n, ())
+    }
+    return any(last_part(topic) in case.package.text(file) for file in files)
+
+
+def meant(case: Case, end: End, publishers: list[End], subscribers: list[End]) -> list[End]:
+    """Return the publishers that a subscriber waits for in vain, as it has another name for their
+    topic: it is alike, or their type is the package's own or plain, and they alone are without a
+    partner."""
+    others = [one for one in publishers if one.node and one.node != end.node]
+    near = [one for one in others if is_like(one, end)]
+    heard, published = ({o.topic for o in side} for side in (subscribers, publishers))
+    alone = [one for one in publishers if one.type == end.type and one.topic not in heard]
+    waiting = {o.topic for o in subscribers if o.type == end.type and o.topic not in published}
+    is_one = len({one.topic for one in alone}) == len(waiting) == 1
+    return near or [one for one in alone if is_plain(case, end) and is_one and one in others]
+
+
+def is_plain(case: Case, end: End) -> bool:
+    """Return whether a topic's type is one that this package's nodes say something to each other
+    with, rather than to a robot's."""
+    return end.type.partition("/")[0] in (case.package.name, "std_msgs")
+
+
+def is_like(one: End, other: End) -> bool:
+    """Return whether two names are so alike that one of them is misspelt, or in another group."""
+    if one.type != other.type:
+        return False
+    near = nearest(other.topic.lower(), [one.topic.lower()], _ALIKE)
+    return _is_moved(one, other) or near is not None
+
+
+def _is_moved(one: End, other: End) -> bool:
+    """Return whether two names differ in their namespaces alone."""
+    return last_part(one.topic) == last_part(other.topic)
+
+
+RULE = Rule("run", ("nodes",), _findings, also=("topic", "type"), only=ANY)

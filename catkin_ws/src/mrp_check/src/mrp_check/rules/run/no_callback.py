@@ -1,0 +1,61 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A roscpp node calls its callbacks: messages that have arrived were seen to wait for ever."""
+
+from __future__ import annotations
+
+from typing import Iterator
+
+from mrp_check.case.case import Case
+from mrp_check.confined.places import Kind
+from mrp_check.confined.seen import LaunchResult
+from mrp_check.contract.finding import Finding
+from mrp_check.contract.requirements import ANY, Rule
+from mrp_check.run.traces import ROS_TOPICS, ends
+
+_FEW = 3  # messages that must have come
+_SECONDS = 2.0  # for which the first of them must have waited
+
+
+def _findings(case: Case) -> Iterator[Finding]:
+    told = set()
+    for launched in case.observed.launches:
+        where = f"under {launched.file}" if launched.file else "together with the other nodes"
+        for path, name in launched.nodes.items():
+            topic = _unheard(launched.seen, path) if name not in told else None
+            is_cpp = any(case.package.kind(f) == "cpp" for f in case.facts.sources.get(name, ()))
+            if topic and is_cpp:
+                told.add(name)
+                file, line = case.places.of(name, Kind.SPIN, Kind.SUBSCRIBER)
+                yield Finding(
+                    "spin",
+                    f"Messages on {topic} come to {name}, {where}, and it calls no callback: it"
+                    " never gets to ros::spin() or ros::spinOnce().",
+                    file,
+                    line,
+                    expected="ros::spinOnce() in each turn of the loop, or ros::spin()",
+                    seen="no call of a callback",
+                    fix="Call ros::spinOnce() in the loop itself, not under a condition.",
+                    node=name,
+                )
+
+
+def _unheard(launch: LaunchResult, path: str) -> str | None:
+    """Return a topic on which messages came to a node that called no callback at all."""
+    seen = launch.seen
+    waits = {one.topic for one in seen.lookups if one.node == path}
+    if not launch.sees_callbacks or path in launch.called_back:
+        return None
+    if path in ends(launch.until_asked()):
+        return None
+    if waits - {one.topic for one in seen.services}:
+        return None  # it waits for a service that nobody offers
+    for one in seen.subscriptions:
+        if one.node == path and one.topic not in ROS_TOPICS:
+            sent = [m.time for m in seen.messages if m.topic == one.topic and m.time > one.time + 1]
+            types = {p.type for p in seen.publications if p.topic == one.topic}
+            if one.type in types and len(sent) >= _FEW and launch.asked - sent[0] > _SECONDS:
+                return one.topic
+    return None
+
+
+RULE = Rule("run", ("nodes",), _findings, also=("spin",), only=ANY)

@@ -1,0 +1,207 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""One package through all rules: used by the command, for a class and for the exercises."""
+
+from __future__ import annotations
+
+import contextlib
+import copy
+import itertools
+import pathlib
+import traceback
+import typing
+
+from mrp_check import sandbox
+from mrp_check.build.catkin import missing_tool
+from mrp_check.case.any_case import AnyCase
+from mrp_check.case.case import Case
+from mrp_check.code import python_modules, uses
+from mrp_check.contract.errors import CannotCheck, NotHere
+from mrp_check.contract.finding import ERROR, Finding
+from mrp_check.contract.requirements import ANY, CONTRACT, closure
+from mrp_check.contract.spec import MORE, Spec
+from mrp_check.contract.verdict import BROKEN, FINDINGS, MET, UNCHECKED, Report
+from mrp_check.package.package import Package
+from mrp_check.report import contract, diff
+from mrp_check.rules import REQUIREMENTS, RULES
+from mrp_check.run.planning import ENOUGH
+from mrp_check.sandbox import confine
+from mrp_check.sandbox.scratch import scratch_folder
+from mrp_check.verdict import causes, suppression
+from mrp_check.verdict.severity import severity, weigh
+
+
+def check(
+    package: Package,
+    spec: Spec | None,
+    only=(),
+    timeout: float = 600,
+    progress: typing.Callable[[str], None] = lambda sentence: None,
+    kept: pathlib.Path | None = None,
+    early: typing.Callable[[Report], None] | None = None,
+    write: typing.Callable[[str], None] | None = None,
+) -> Report:
+    """Check one package.
+
+    spec: its contract; None for a package that has none
+    only: ids of the only requirements to check; all if empty
+    timeout: seconds that all of it may take
+    kept: a scratch_folder() for several checks: what has not changed since is not built again
+    early: called after each stage with what is known by then
+    write: called with the text of a contract for a package that has none, if nothing is wrong
+
+    Raises CannotCheck if a tool is missing. What else cannot be checked, the report says.
+    """
+    if missing := missing_tool():
+        raise CannotCheck(missing)
+    rules = [rule for rule in RULES if rule.only != (ANY if spec else CONTRACT)]
+    asked = {id_ for rule in rules for id_ in rule.ids if not spec or spec.asks(id_)}
+    ids = [id_ for id_ in REQUIREMENTS if id_ in asked and (id_ in only or not only)]
+    uses.SIBLINGS.clear()
+    uses.SIBLINGS.update(one.name for one in package.siblings)
+    with contextlib.nullcontext(kept) if kept else scratch_folder() as folder:
+        case = (Case if spec else AnyCase)(package, spec, folder, timeout, progress)
+        if isinstance(case, AnyCase) and write:
+            case.enough = ENOUGH
+        try:
+            report = _Examination(case, rules, ids, asked, early).report()
+            if isinstance(case, AnyCase) and write and report.verdict == MET:
+                write(contract.text(case))
+        except BaseException:  # such as Ctrl-C
+            confine.stop()
+            raise
+        finally:
+            case.close()
+    return report
+
+
+class _Examination:
+    """The findings of all rules that are needed, and the ids of what they could not check."""
+
+    def __init__(self, case, rules, ids, asked, early):
+        self.case, self.ids, self.asked = case, ids, asked
+        self.findings: list[Finding] = []
+        self.failed: dict[str, str] = {}
+        self.reasons: list[str] = []
+        self.not_here: list[str] = []
+        self.lost: dict[str, Exception] = {}
+        needs = needs_of(ids, rules)
+        if "nodes" in needs:
+            case.sessions.begin()
+        if "facts" in needs:
+            # This is done while CMake configures.
+            _ = case.headers
+            case.submit(python_modules.of_rospy)
+        # Others that need no more are asked, too: they may know the cause.
+        chosen = [rule for rule in rules if needs.issuperset(rule.needs)]
+        for stage, rules in itertools.groupby(chosen, lambda rule: rule.stage):
+            case.progress(f"stage {stage}")
+            for rule in rules:
+                self._ask(rule)
+            if early:
+                early(self.report())
+        facts = vars(case).get("facts")
+        if facts and facts.absent():
+            self._lose(("python-names",), NotHere(facts.absent().values()))
+        self._guarded(ids, lambda: self.failed.update(unseen(case, self._open())))
+
+    def _ask(self, rule):
+        def findings():
+            for need in rule.needs:
+                self._provide(need)
+            for finding in rule.ask(self.case):
+                finding.severity = severity(finding.certainty, has_contract=True)
+                self.findings.append(finding)
+
+        self._guarded(rule.ids, findings)
+
+    def _provide(self, need):
+        """Have the case know what is needed. What once failed is not tried again."""
+        for one in closure({need}) & {*self.lost}:
+            raise self.lost[one]
+        try:
+            getattr(self.case, need)
+        except Exception as error:
+            self.lost[need] = error
+            raise
+
+    def _guarded(self, ids, function):
+        """Call a function; if it fails, these ids could not be checked."""
+        try:
+            function()
+        except CannotCheck as error:
+            self._lose(ids, error)
+        except confine.ConfineError as error:
+            self._lose(ids, CannotCheck(f"A command could not be run confined: {error}."))
+        except Exception as error:  # the checker's own fault: no finding, and no end of it all
+            place = traceback.extract_tb(error.__traceback__)[-1]
+            file = pathlib.Path(place.filename).name
+            reason = (
+                f"The checker itself failed, in {place.name}() of {file}:{place.lineno}:"
+                f" {type(error).__name__}: {error}. Please report it."
+            )
+            self._lose(ids, CannotCheck(reason))
+
+    def _lose(self, ids, error):
+        self.failed.update({id_: str(error) for id_ in ids if id_ in self.ids})
+        if isinstance(error, NotHere):
+            self.not_here += [name for name in error.names if name not in self.not_here]
+        elif str(error) not in self.reasons:
+            self.reasons.append(str(error))
+
+    def _open(self):
+        return [id_ for id_ in self.ids if id_ not in self.failed]
+
+    def report(self):
+        package, known = self.case.package, vars(self.case)
+        is_any = isinstance(self.case, AnyCase)
+        found = copy.deepcopy(self.findings)  # more may be found: then it is asked for again
+        findings = causes.told_once(found, known.get("facts"), known.get("nodes"), not is_any)
+        for finding in findings:
+            diff.add(package, finding)
+        findings, suppressed = suppression.applied(package, findings, self._open(), not is_any)
+        weigh(findings, has_contract=not is_any)
+        findings = [f for f in findings if f.id in self.ids]
+        errors = [finding for finding in findings if finding.severity == ERROR]
+        broken = {f.id for f in errors if not f.consequence_of}
+        unseen = {id_: why for id_, why in self.failed.items() if id_ not in broken}
+        unseen.update(
+            {f.id: f"it follows from {f.consequence_of}" for f in errors if f.id not in broken}
+        )
+        reasons = [*self.reasons, *([str(NotHere(self.not_here))] if self.not_here else ())]
+        requirements = {
+            id_: BROKEN if id_ in broken else UNCHECKED if id_ in unseen else MET
+            for id_ in self.ids
+        }
+        # Without a contract, what could be judged counts; with one, somebody asked for the rest.
+        judged = {*requirements.values()} - {UNCHECKED} if is_any else not reasons
+        return Report(
+            package=package.name,
+            spec=self.case.spec.title,
+            verdict=FINDINGS if errors else MET if judged else UNCHECKED,
+            findings=findings,
+            requirements=requirements,
+            reason=" ".join(reasons),
+            unseen={id_: unseen[id_] for id_ in self.ids if id_ in unseen},
+            left_out=[id_ for id_ in REQUIREMENTS if is_any and id_ not in {*self.asked, *MORE}],
+            console=_console(known.get("observed")),
+            suppressed=[finding for finding in suppressed if finding.id in self.ids],
+            isolation=sandbox.isolation_text(),
+            folder=package.root.resolve(),
+        )
+
+
+def _console(observed):
+    """Return the lines that roslaunch and its nodes printed, as far as they ran."""
+    launched = observed.launch if observed else None
+    return [line for _, _, line in launched.lines] if launched else []
+
+
+def unseen(case, ids):
+    """Return id -> why nobody can say that the requirement is met, of those for which it is so."""
+    found = {id_: REQUIREMENTS[id_].seen(case) for id_ in ids}
+    return {id_: why for id_, why in found.items() if why}
+
+
+def needs_of(ids, rules=RULES):
+    """Return all that must be known to check these requirements."""
+    return closure({need for rule in rules if {*rule.ids} & {*ids} for need in rule.needs})
