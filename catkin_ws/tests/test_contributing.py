@@ -52,6 +52,11 @@ def copy(tmp_path):
     for path, content in examples(section("A rule of the checker")).items():
         assert not (tmp_path / path).exists(), path
         (tmp_path / path).write_text(content)
+    rules = tmp_path / "catkin_ws" / "src" / "mrp_check" / "src" / "mrp_check" / "rules"
+    text = (rules / "__init__.py").read_text()
+    assert text.count("    definitions,\n") == 2
+    text = text.replace("    definitions,\n", "    definitions,\n    described,\n")
+    (rules / "__init__.py").write_text(text)
     return tmp_path / "catkin_ws"
 
 

@@ -158,7 +158,7 @@ def test_when_all_workers_are_gone_it_says_so_and_waits(tmp_path, second):
 # A worker's check that takes no time: of what Dask does with it, that is enough.
 NO_CHECK = """
 import os
-from mrp_check.cli import marking
+from mrp_check.classroom import marking
 
 def dask_setup(worker):
     marking.mark = lambda job: os._exit(1) if job.folder == "killer" else (REPORT, "a page")

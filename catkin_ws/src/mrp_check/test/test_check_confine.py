@@ -282,7 +282,7 @@ def test_the_caller_is_killed(tmp_path, namespaces):
     caller = f"""
 import sys
 sys.path[:0] = {sys.path!r}
-from mrp_check import confine
+from mrp_check.sandbox import confine
 confine.run(["/usr/bin/python3", "-uc", {program!r}, "{token}"], {str(tmp_path)!r},
             namespaces={namespaces})
 """

@@ -94,7 +94,7 @@ def test_folder_that_others_can_change_is_left_alone(temporary):
 
 PROCESS = """
 import os, pathlib, signal, sys
-from mrp_check.scratch import process_folder
+from mrp_check.sandbox.scratch import process_folder
 folder = process_folder()
 (folder / "file").touch()
 os.utime(folder, (0, 0))
