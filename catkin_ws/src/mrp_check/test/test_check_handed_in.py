@@ -15,7 +15,7 @@ from check_rules import MANIFEST, hand_in
 from handed_in import FILES, below, entry, tar, zip_
 from mrp_check.classroom import archive
 from mrp_check.cli import check as check_command
-from mrp_check.contract.finding import NOTE
+from mrp_check.contract.finding import HINT
 from mrp_check.contract.verdict import unchecked
 from mrp_check.package import manifest
 from mrp_check.package.package import MAX_BYTES, Package
@@ -272,7 +272,7 @@ def test_a_file_that_is_too_large_costs_nothing(uploads):
     assert ("rosbag.bag" in one.files, one.left_out) == (False, ["rosbag.bag"])
     case = types.SimpleNamespace(package=one, model=types.SimpleNamespace(relayed=list))
     (finding,) = text.RULE.ask(case)
-    assert (finding.severity, finding.file) == (NOTE, "rosbag.bag")
+    assert (finding.certainty, finding.file) == (HINT, "rosbag.bag")
 
 
 ENTITIES = "".join(

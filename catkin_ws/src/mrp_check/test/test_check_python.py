@@ -172,11 +172,6 @@ def test_each_line_of_python_2_is_named(text, first, other, tmp_path):
     assert finding.line == first and said in finding.message
 
 
-def test_what_is_not_kept_is_a_note(tmp_path):
-    text = replaced("self.timer = rospy.Timer", "rospy.Timer")
-    assert told(check_rules.python_findings(tmp_path, text)) == []
-    assert told(check_rules.python_findings(tmp_path, text), "note") == [("lifetime", 10)]
-
 
 def test_facts_say_what_the_source_says(tmp_path):
     text = HEAD.replace('"publisher_py_node")', '"publisher_py_node", sys.argv, True)')

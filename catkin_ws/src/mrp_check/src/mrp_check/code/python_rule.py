@@ -9,7 +9,7 @@ from typing import Any, Callable, Iterator, Protocol
 from mrp_check.code.facts import Facts
 from mrp_check.code.python_modules import is_ros, resolve
 from mrp_check.code.python_source import Defined, Source
-from mrp_check.contract.finding import HINT, Finding
+from mrp_check.contract.finding import HABIT, HINT, Finding
 from mrp_check.package.package import Package
 
 MessageClass = Any  # genpy makes them, without types
@@ -43,9 +43,9 @@ class PythonRule:
         more.setdefault("seen", self.package.line(self.file, line))
         finding = Finding(id_, message, self.file, line, **more)
         # Of several findings about one line, the first is the cause.
-        cause = self.source.told.setdefault((line, finding.certainty), finding)
-        if cause is not finding and finding.certainty != HINT:
-            finding.consequence_of = cause.id
+        if finding.certainty not in (HABIT, HINT):
+            cause = self.source.told.setdefault(line, finding)
+            finding.consequence_of = cause.id if cause is not finding else None
         return finding
 
     def is_own(self, name: str) -> bool:

@@ -47,7 +47,7 @@ class Source:
     stars: modules of which it takes all names with `from ... import *`, and nobody knows which
     parents: each node's parent in the tree
     absent: module that it imports and this machine has not -> a sentence that says so
-    told: (line, certainty) -> the first Finding about it
+    told: line -> the first Finding about it
 
     Raises SyntaxError (or ValueError) as Python itself does.
     """
@@ -59,7 +59,7 @@ class Source:
             self.tree = ast.parse(text, file)
         self.parents: dict[ast.AST, ast.AST] = {}
         self.absent: dict[str, str] = {}
-        self.told: dict[tuple[int, str], Finding] = {}
+        self.told: dict[int, Finding] = {}
         for node in ast.walk(self.tree):
             for child in ast.iter_child_nodes(node):
                 self.parents[child] = node
