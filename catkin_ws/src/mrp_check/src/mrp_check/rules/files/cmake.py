@@ -99,7 +99,9 @@ def _boost_system(package: Package, model: Model) -> Iterator[Finding]:
     gone = releases.GONE["boost_system"]
     for call in model.calls:
         if call.command == "target_link_libraries":
-            if {"boost_system", "-lboost_system"} & {*call.arguments}:
+            # What ${catkin_LIBRARIES} brings along is catkin's own.
+            is_own = "boost_system" in package.text(call.file)
+            if is_own and {"boost_system", "-lboost_system"} & {*call.arguments}:
                 yield Finding(
                     "cmake",
                     f"From Debian {gone.since} on, there is no {gone.what}.",
