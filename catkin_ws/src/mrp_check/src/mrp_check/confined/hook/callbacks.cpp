@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Says whether a roscpp node calls a callback of a subscriber. LD_PRELOAD puts it before roscpp,
-// whose queues take each message out by ros::SubscriptionQueue::call(), for its callback. At the
-// first time, it makes the file that MRP_CHECK_CALLBACKS names, with the process's number behind it.
+// whose queues take each message out by ros::SubscriptionQueue::call(), for its callback. The first
+// call makes the file that MRP_CHECK_CALLBACKS names, with a dot and the process's ID behind it.
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <unistd.h>
