@@ -173,10 +173,9 @@ bench: packages-bench $(BUILT_WHOLE)  ## measure how fast nodes are; QUICK=1: le
 bench-record:  ## put what `make bench` measured into the pages
 	@/usr/bin/python3 catkin_ws/tools/record_bench.py $(BENCH)
 
-# The pages that it links to are built once.
+# It links to the pages if `make docs` has built them.
 .PHONY: view
 view: packages-view $(BUILT_WHOLE)  ## watch the graph and the messages in a browser; end it with Ctrl-C
-	@[ -e $(SITE)/index.html ] || $(MAKE) docs
 	@$(IN_WORKSPACE) $(LOCAL) source devel/setup.bash; \
 	exec rosrun mrp_view view_node.py --tutorial $(SITE) $(VIEW_OPTIONS)
 
@@ -184,12 +183,16 @@ view: packages-view $(BUILT_WHOLE)  ## watch the graph and the messages in a bro
 lint: packages-lint $(BUILT_TUTORIAL)  ## check the style of all sources
 	@$(IN_WORKSPACE) tools/lint.sh
 
-# Made anew each time: otherwise Sphinx keeps pages that are no more, and warns of a page only once.
+# From scratch each time: otherwise Sphinx keeps deleted pages, and warns of a page only once.
 .PHONY: docs
 docs: packages-docs  ## build the tutorial's pages
 	@rm -rf $(SITE)
-	@$(IN_WORKSPACE) /usr/bin/python3 -m sphinx -q -E -W --keep-going -d build/doctrees src/mrp/doc $(SITE)
+	@$(IN_WORKSPACE) "$$(tools/docs_env.sh)" -m sphinx -q -E -W --keep-going -d build/doctrees src/mrp/doc $(SITE)
 	@echo "Open file://$(SITE)/index.html"
+
+.PHONY: pictures
+pictures: packages-test-browser $(BUILT_WHOLE)  ## take the pictures of the README and of the pages again
+	@$(IN_WORKSPACE) $(ALONE) source devel/setup.bash; tools/make_pictures.py
 
 .PHONY: docs-serve
 docs-serve: docs  ## build the pages, and serve them to this machine's browsers

@@ -47,12 +47,12 @@ def steps_of(*pages):
 
 @pytest.mark.quick
 def test_a_page_needs_the_pages_before_it():
-    to_do = steps_of("package", "publisher", "building", "message_types", "latch")
-    assert run_page.needed(to_do, "publisher") == ["package", "publisher"]
-    assert run_page.needed(to_do, "message_types") == ["message_types"]
-    assert run_page.needed(to_do, "latch") == ["message_types", "latch"]
+    to_do = steps_of("talk", "listen", "launch", "message_types", "latch")
+    assert run_page.needed(to_do, "listen") == ["talk", "listen"]
+    assert run_page.needed(to_do, "message_types") == [*run_page.CLONE]
+    assert run_page.needed(to_do, "latch") == [*run_page.CLONE, "latch"]
     to_do[-1]["commands"] = ["cd ~/catkin_ws"]
-    assert run_page.needed(to_do, "latch") == [*run_page.TUTORIAL, "message_types", "latch"]
+    assert run_page.needed(to_do, "latch") == [*run_page.TUTORIAL, *run_page.CLONE, "latch"]
 
 
 @pytest.mark.quick
@@ -61,7 +61,7 @@ def test_one_page_is_read_after_those_that_it_needs(tmp_path, monkeypatch):
     step = {"kind": "terminal", "terminal": "1", "line": 1}
     to_do = [
         {**step, "page": f"pages/{page}", "commands": ["echo " + page], "output": page}
-        for page in ("package", "message_types", "queues", "latch")
+        for page in ("talk", "message_types", "queues", "latch")
     ]
     shown = run_page.read(to_do, tmp_path, only="latch")
     assert shown.outputs == {page: [page] for page in ("message_types", "latch")}
@@ -69,8 +69,8 @@ def test_one_page_is_read_after_those_that_it_needs(tmp_path, monkeypatch):
 
 @pytest.mark.quick
 def test_the_reader_makes_no_folder(tmp_path):
-    step = {"kind": "file", "path": "a/b.py", "text": "", "page": "pages/publisher", "line": 7}
-    with pytest.raises(run_page.StepError, match="publisher.rst, line 7.*\n.*no page has made the"):
+    step = {"kind": "file", "path": "a/b.py", "text": "", "page": "pages/listen", "line": 7}
+    with pytest.raises(run_page.StepError, match="listen.rst, line 7.*\n.*no page has made the"):
         run_page.Reader(tmp_path).do(step)
     (tmp_path / "a").mkdir()
     run_page.Reader(tmp_path).do(step)
@@ -109,15 +109,15 @@ def test_a_reader_waits_for_what_a_console_shows_and_says_what_is_left_out(tmp_p
     with run_page.Reader(tmp_path) as reader:
         reader.do({**step, **going_on})
         shown = reader.shown.outputs["a"]
-        assert shown[:2] == ["4", "14"] and shown[-1].startswith("... ")
+        assert shown[:2] == ["4", "14"] and shown[-1].startswith("[")
         with pytest.raises(run_page.StepError, match="expected .*'15'"):
             reader.do({**step, "commands": ["seq 40"], "only": "4$", "shows": "15"})
 
 
 @pytest.mark.quick
 def test_a_box_says_how_many_lines_it_leaves_out():
-    assert run_page.only("a", ["a", "b", "", "a"]) == ["a", "a", "... 2 more lines"]
-    assert run_page.only("a", ["a", "b"]) == ["a", "... 1 more line"]
+    assert run_page.only("a", ["a", "b", "", "a"]) == ["a", "a", "[2 other lines left out]"]
+    assert run_page.only("a", ["a", "b"]) == ["a", "[1 other line left out]"]
     assert run_page.only("", ["a", "b"]) == ["a", "b"]
 
 
@@ -148,10 +148,14 @@ def test_a_recording_is_renewed_if_it_does_not_show_what_it_must(recording):
 @pytest.mark.quick
 def test_a_recording_is_renewed_if_it_does_not_say_what_it_leaves_out(recording):
     recorded, shown, to_do = recording
-    shown.outputs = {**shown.outputs, "latch": ["at 2.5", "... 3 more lines"]}
-    assert record_pages.renewed(recorded, shown, to_do)[0]["latch"][-1] == "... 3 more lines"
-    recorded[0]["latch"].append("... 4 more lines")
-    assert record_pages.renewed(recorded, shown, to_do)[0]["latch"][-1] == "... 4 more lines"
+    shown.outputs = {**shown.outputs, "latch": ["at 2.5", "[3 other lines left out]"]}
+    assert (
+        record_pages.renewed(recorded, shown, to_do)[0]["latch"][-1] == "[3 other lines left out]"
+    )
+    recorded[0]["latch"].append("[4 other lines left out]")
+    assert (
+        record_pages.renewed(recorded, shown, to_do)[0]["latch"][-1] == "[4 other lines left out]"
+    )
 
 
 @pytest.mark.quick

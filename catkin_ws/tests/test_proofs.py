@@ -9,10 +9,10 @@ import json
 import re
 import shutil
 import subprocess
-import sys
 
 import check_proofs
 import pytest
+import run_page
 from check_proofs import cases
 from docutils.core import publish_doctree
 from mrp_testing.workspace import WORKSPACE
@@ -103,7 +103,7 @@ def build(root):
     """Build the pages; return the exit code and what was said."""
     options = ("-q", "-W", "--keep-going", "-d", root / "doctrees")
     done = subprocess.run(
-        [sys.executable, "-m", "sphinx", *options, root / PAGES, root / "site"],
+        [run_page.docs_python(), "-m", "sphinx", *options, root / PAGES, root / "site"],
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,
         text=True,

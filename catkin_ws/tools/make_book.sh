@@ -11,7 +11,7 @@ mkdir -p $book/latex
 version=$(sed -n 's/.*<version>\(.*\)<.*/\1/p' src/mrp/package.xml)
 
 sphinx() {
-  /usr/bin/python3 -m sphinx -q -W --keep-going -D "version=$version" -d $book/doctrees \
+  "$(tools/docs_env.sh)" -m sphinx -q -W --keep-going -D "version=$version" -d $book/doctrees \
     -b "$1" src/mrp/doc "$book/$1"
 }
 

@@ -17,7 +17,7 @@ import run_page
 from run_page import RECORDED, StepError, meaning, page_of, pages_of
 
 # How many lines are left out differs from run to run.
-_LEFT_OUT = re.compile(r"\.\.\. \d+ more lines?")
+_LEFT_OUT = re.compile(r"\[\d+ other lines? left out\]")
 
 
 # Numbers, and those at the end of a name that is anonymous: of a process, which may be a small one,

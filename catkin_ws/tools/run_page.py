@@ -38,9 +38,9 @@ PRINTS_SECONDS = 180  # that one may go on until it has printed what the page sa
 
 # Which pages need one another. One reader reads these in their order: they write ~/catkin_ws, build
 # it, run it, and break it.
-TUTORIAL = ("package", "publisher", "subscriber", "building", "launching", "inspecting", "wrong")
-# It builds the clone in ~/mrp: a second reader reads it meanwhile.
-CLONE = ("message_types",)
+TUTORIAL = ("talk", "listen", "cpp", "launch", "look", "check_it", "wrong")
+# They build the clone in ~/mrp: a second reader reads them meanwhile.
+CLONE = ("run", "message_types")
 # Each other page runs what is built in the clone, and writes nothing that another page reads: so it
 # has a reader of its own. Where it names this folder, it needs the tutorial as well.
 OF_TUTORIAL = "~/catkin_ws"
@@ -57,10 +57,16 @@ class StepError(Exception):
     """Says which step of which page failed, and how."""
 
 
+def docs_python():
+    """Return the Python that has Sphinx, which is installed if it is not there yet."""
+    script = WORKSPACE / "tools" / "docs_env.sh"
+    return subprocess.check_output([script], text=True).strip()
+
+
 def build(folder, *options):
     """Build the site. Raises StepError with what Sphinx said if that failed."""
     done = subprocess.run(
-        [sys.executable, "-m", "sphinx", "-q", "-W", "--keep-going", *options, DOC, folder],
+        [docs_python(), "-m", "sphinx", "-q", "-W", "--keep-going", *options, DOC, folder],
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,
         text=True,
@@ -204,7 +210,9 @@ class Reader:
     def _type(self, step):
         terminal = self._terminals.get(step["terminal"])
         if terminal is None:
-            terminal = self._terminals[step["terminal"]] = Terminal(self._environment())
+            terminal = self._terminals[step["terminal"]] = Terminal(
+                self._environment(), self._terminals
+            )
             for command in self._begin_with.get(step["terminal"], []):
                 terminal.run(command, 0)
         shows = step.get("shows", "").splitlines()
@@ -252,6 +260,7 @@ class Reader:
             "TERM": "dumb",
             "ROS_MASTER_URI": self._master,
             "ROS_HOSTNAME": "localhost",
+            "MRP_DOCS_ENV": str(WORKSPACE / "build" / "docs_env"),
             # The reader's master has a port of its own, for which roscore does not look there.
             "BASH_FUNC_roscore%%": f'() {{ command roscore -p {port} "$@"; }}',
             **compiler_cache.variables(self.home),
@@ -268,7 +277,8 @@ class Reader:
 class Terminal:
     """A shell in a terminal of its own, as on a desktop."""
 
-    def __init__(self, env):
+    def __init__(self, env, all_terminals=None):
+        self._all = {} if all_terminals is None else all_terminals
         self._shell = pexpect.spawn(
             "bash",
             ["--norc", "--noprofile", "-i"],
@@ -298,7 +308,7 @@ class Terminal:
         self._begin(command)
         pattern = re.compile(f"[^\r\n]*(?:{pattern})[^\r\n]*\r\n")
         end = time.monotonic() + PRINTS_SECONDS
-        if self._shell.expect([pattern, _PROMPT], timeout=PRINTS_SECONDS) == 1:
+        if self._expect([pattern, _PROMPT], PRINTS_SECONDS) == 1:
             raise StepError(f"it ended before it printed {pattern.pattern}:\n{self._text()}")
         while meaning.missing(shows, self._lines()) and time.monotonic() < end:
             self._shell.expect("\r\n")
@@ -319,8 +329,31 @@ class Terminal:
         self._printed.truncate()
         self._shell.sendline(command)
 
+    def _expect(self, patterns, seconds=SECONDS):
+        """Wait for one of the patterns; return its number. Meanwhile, read what others print.
+
+        A command that goes on in another terminal stops once nobody takes its output.
+        """
+        end = time.monotonic() + seconds
+        while True:
+            late = time.monotonic() > end
+            found = self._shell.expect([*patterns, *([] if late else [pexpect.TIMEOUT])], timeout=1)
+            if found < len(patterns):
+                return found
+            for terminal in list(self._all.values()):
+                if terminal is not self:
+                    terminal.read_on()
+
+    def read_on(self):
+        """Read what has been printed since."""
+        while True:
+            try:
+                self._shell.read_nonblocking(65536, timeout=0)
+            except pexpect.ExceptionPexpect:  # there is no more
+                return
+
     def _wait_for_prompt(self):
-        self._shell.expect(_PROMPT)
+        self._expect([_PROMPT])
         return int(self._shell.match.group(1))
 
     def _text(self):
@@ -331,12 +364,12 @@ class Terminal:
 
 
 def only(pattern, lines):
-    """Return the lines that have a pattern, and at the end how many others there are."""
+    """Return the lines that have a pattern, and at the end how many others are left out."""
     chosen = [line for line in lines if re.search(pattern, line)]
     count = len(lines) - len(chosen)
     while chosen and not chosen[0]:
         del chosen[0]
-    return chosen + [f"... {count} more line{'s' * (count > 1)}"] * (count > 0)
+    return chosen + [f"[{count} other line{'s' * (count > 1)} left out]"] * (count > 0)
 
 
 def graph(master_uri):

@@ -37,7 +37,7 @@ PRESS = """
     for (let tab = button.closest(".tab-content"); tab;
          tab = tab.parentElement.closest(".tab-content"))
       tab.previousElementSibling.click();
-    button.scrollIntoView({ block: "center" });
+    button.scrollIntoView({ block: "center", behavior: "instant" });
     const { x, y, width, height } = button.getBoundingClientRect();
     const hit = document.elementFromPoint(x + width / 2, y + height / 2);
     const code = button.parentElement.querySelector("pre").textContent;

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The site's configuration: `make docs` builds it, without a network."""
+"""The site's configuration: `make docs` builds it."""
 
 import pathlib
 import re
@@ -14,6 +14,7 @@ copyright = "The mrp maintainers. Text: CC BY 4.0"
 extensions = [
     "sphinx_inline_tabs",
     "sphinx_copybutton",
+    "sphinx_design",
     "source_code",
     "quote",
     "value",
@@ -26,10 +27,13 @@ extensions = [
     "exercises",
     "error_texts",
     "contract_keys",
+    "quiz",
     "book",
 ]
 
-html_theme = "sphinx_rtd_theme"
+html_theme = "furo"
+html_title = "ROS 1: publish and subscribe"
+html_theme_options = {"top_of_page_buttons": []}
 html_static_path = ["static"]
 html_css_files = ["page.css"]
 html_js_files = ["page.js"]

@@ -22,10 +22,19 @@ _SVG = re.compile(r'<svg[^>]* viewBox="0 0 (\S+) (\S+)"[^>]*>(.*)</svg>', re.DOT
 _SUMMARY = re.compile(r"<details><summary>(.*)</summary>")
 
 
+# Values of the theme, in light mode, which page.css uses and does not set.
+_THEME = {
+    "--color-foreground-primary": "#000000",
+    "--color-background-secondary": "#f8f9fb",
+    "--color-background-border": "#eeebee",
+}
+
+
 def style():
     """Return page.css's rules for pictures, with the values that it has in light mode."""
     text = STYLE.read_text()
-    values = dict(re.findall(r"^  (--[\w-]+): (#\w+);$", text.split("@media")[0], re.MULTILINE))
+    own = re.findall(r"^  (--[\w-]+): (#\w+);$", text.split("@media")[0], re.MULTILINE)
+    values = {**_THEME, **dict(own)}
     rules = re.findall(r"^\.picture (?!svg)(.*})$", text, re.MULTILINE)
     flat = "\n".join(rules).replace(".picture ", "")
     return re.sub(r"var\((--[\w-]+)\)", lambda match: values[match[1]], flat)
@@ -66,8 +75,10 @@ def _make_book(app, doctree):
     for node in list(doctree.findall(TabContainer)):
         label, content = node
         node.replace_self([nodes.rubric("", "", *label.children), *content.children])
-    for node in list(doctree.findall(ListOfTests)):
-        node.parent.remove(node)
+    # Photographs of a screen, each in a light and a dark one, are for the site.
+    for kind in (ListOfTests, nodes.figure):
+        for node in list(doctree.findall(kind)):
+            node.parent.remove(node)
     # A link by the name of a page's file leads nowhere here, as does one to no host.
     for node in list(doctree.findall(nodes.reference)):
         if re.fullmatch(r"[\w/]+\.html(#.*)?|\w+://", node.get("refuri", "")):

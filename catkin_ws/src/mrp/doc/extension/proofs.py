@@ -48,7 +48,9 @@ def _mark(app, doctree):
         tests = [*ledger.tests_of(sentence, rows, cases.all_tests()), *made]
         if tests:
             marks.setdefault(sentence.block, []).append((sentence.text, tests))
-    uri = app.builder.get_relative_uri(page, PAGE_OF_TESTS)
+    # The book has no marks (book.py), and its builder knows no addresses yet.
+    is_site = app.builder.format == "html"
+    uri = app.builder.get_relative_uri(page, PAGE_OF_TESTS) if is_site else ""
     for number, (block, claims) in enumerate(marks.items()):
         block += nodes.raw("", _mark_html(page, number, claims, uri), format="html")
     env.mrp_claims[page] = [(_section(block), claims) for block, claims in marks.items()]

@@ -33,7 +33,7 @@ function connectTabs() {
 
 // What scrolls sideways can be scrolled by keyboard: so the Tab key must come to it.
 function makeReachable() {
-  const boxes = ".rst-content :is(pre, .picture, .wy-table-responsive)";
+  const boxes = "article :is(pre, .picture, .table-wrapper)";
   const watcher = new ResizeObserver((entries) => {
     for (const { target } of entries) {
       const box = target.closest(boxes);
@@ -61,39 +61,196 @@ function unfold() {
   if (target) target.scrollIntoView();
 }
 
-// The phone's menu button is a mere <i>, which only a finger can press.
-function connectMenu() {
-  const button = document.querySelector("i[data-toggle='wy-nav-top']");
-  const menu = document.querySelector(".wy-nav-side");
-  const isOpen = () => menu.classList.contains("shift");
-  button.tabIndex = 0;
-  button.setAttribute("role", "button");
-  button.setAttribute("aria-label", "Menu");
-  const tell = () => button.setAttribute("aria-expanded", isOpen());
-  new MutationObserver(tell).observe(menu, { attributeFilter: ["class"] });
-  tell();
-  button.addEventListener("keydown", (event) => {
-    if (event.key === "Enter" || event.key === " ") {
-      event.preventDefault();
-      button.click();
-      if (isOpen()) menu.querySelector("a").focus();
+// The questions (extension/quiz.py): what was answered stays in this browser.
+const ANSWERS = "mrp-answers";
+function answers() {
+  try {
+    return JSON.parse(localStorage.getItem(ANSWERS)) ?? {};
+  } catch {
+    return {};
+  }
+}
+function keepAnswers(all) {
+  try {
+    localStorage.setItem(ANSWERS, JSON.stringify(all));
+  } catch {
+    // The verdict is shown all the same.
+  }
+}
+
+function showVerdict(form, answer) {
+  const right = answer === form.dataset.right;
+  form.querySelector("fieldset").className = right ? "right" : "wrong";
+  form.querySelector("[role=status]").textContent = right ? "Right!" : "Not quite. Have another go.";
+  for (const why of form.querySelectorAll(".why")) why.hidden = why.dataset.answer !== answer;
+}
+
+function connectQuestions() {
+  for (const form of document.querySelectorAll("form.quiz")) {
+    const name = form.dataset.question;
+    const before = answers()[name];
+    const chosen = form.querySelector(`input[value="${CSS.escape(before ?? "")}"]`);
+    if (chosen) {
+      chosen.checked = true;
+      showVerdict(form, before);
     }
+    form.addEventListener("submit", (event) => {
+      event.preventDefault();
+      const answer = new FormData(form).values().next().value;
+      if (answer === undefined) {
+        form.querySelector("[role=status]").textContent = "Choose an answer first.";
+        return;
+      }
+      // With the right answer beside it, for the page that counts them.
+      keepAnswers({ ...answers(), [name]: answer, [`${name}=`]: form.dataset.right });
+      showVerdict(form, answer);
+    });
+  }
+}
+
+function showScore() {
+  const kept = answers();
+  const rows = [...document.querySelectorAll("table.score tbody tr")];
+  let all = 0;
+  let right = 0;
+  for (const row of rows) {
+    const names = JSON.parse(row.dataset.questions);
+    const good = names.filter((name) => kept[name] && kept[name] === kept[`${name}=`]).length;
+    row.lastElementChild.textContent = good;
+    all += names.length;
+    right += good;
+  }
+  const total = document.querySelector(".score-total");
+  total.textContent =
+    right === all ? `All ${all} right. Well done!` : `${right} of ${all} right so far.`;
+}
+
+function connectScore() {
+  const reset = document.querySelector(".score-reset");
+  if (!reset) return;
+  showScore();
+  reset.addEventListener("click", () => {
+    keepAnswers({});
+    showScore();
+  });
+}
+
+// The theme's menu buttons are labels, which only a mouse or a finger can press: make buttons of them.
+function connectMenus() {
+  connectMenu(".nav-overlay-icon", "Menu", ".sidebar-drawer");
+  connectMenu(".toc-header-icon", "On this page", ".toc-drawer");
+}
+
+function connectMenu(selector, name, drawer) {
+  const label = document.querySelector(selector);
+  if (!label) return;
+  const box = document.getElementById(label.htmlFor);
+  const button = document.createElement("button");
+  button.type = "button";
+  button.className = label.className;
+  button.setAttribute("aria-label", name);
+  button.append(...label.childNodes);
+  label.replaceWith(button);
+  const tell = () => button.setAttribute("aria-expanded", box.checked);
+  tell();
+  box.addEventListener("change", tell);
+  button.addEventListener("click", (event) => {
+    box.checked = !box.checked;
+    tell();
+    // Pressed by a key: go on in the menu.
+    if (box.checked && event.detail === 0) document.querySelector(`${drawer} a`)?.focus();
   });
   document.addEventListener("keydown", (event) => {
-    if (event.key === "Escape" && isOpen()) {
-      button.click();
+    if (event.key === "Escape" && box.checked) {
+      box.checked = false;
+      tell();
       button.focus();
     }
   });
 }
 
+// The icons of the theme and of the copy buttons say nothing that their buttons do not say.
+window.addEventListener("load", () => {
+  for (const icon of document.querySelectorAll("svg:not([role])")) {
+    icon.setAttribute("aria-hidden", "true");
+  }
+  for (const button of document.querySelectorAll("button.copybtn")) {
+    button.setAttribute("aria-label", "Copy");
+  }
+});
+
+// The marks of what tests prove (extension/proofs.py): the switch at the end of a page shows them, and
+// a mark opens a box with its tests. They come in a script, as a page opened as a file may read no other.
+const MARKS = "mrp-marks";
+window.mrpProofs = {};
+
+function connectMarks() {
+  const show = (shown) => document.body.classList.toggle("marks", shown);
+  let kept = false;
+  try {
+    kept = localStorage.getItem(MARKS) === "shown";
+  } catch {
+    // Then they stay hidden.
+  }
+  show(kept);
+  for (const box of document.querySelectorAll(".proofs input")) {
+    box.checked = kept;
+    box.addEventListener("change", () => {
+      show(box.checked);
+      try {
+        localStorage.setItem(MARKS, box.checked ? "shown" : "hidden");
+      } catch {
+        // It holds for this page.
+      }
+    });
+  }
+  for (const mark of document.querySelectorAll("a.proof")) {
+    mark.addEventListener("click", (event) => {
+      event.preventDefault();
+      const { page, mark: number } = mark.dataset;
+      if (window.mrpProofs[page]) {
+        openProof(window.mrpProofs[page], number);
+        return;
+      }
+      const script = document.createElement("script");
+      script.src = `${document.documentElement.dataset.content_root}_proofs/${page}.js`;
+      script.addEventListener("load", () => openProof(window.mrpProofs[page], number));
+      document.head.append(script);
+    });
+  }
+}
+
+function openProof({ marks, tests }, number) {
+  const dialog = document.createElement("dialog");
+  dialog.className = "proof-box";
+  dialog.setAttribute("aria-label", "What proves this");
+  for (const [sentence, names] of marks[number]) {
+    const quote = document.createElement("blockquote");
+    quote.textContent = sentence;
+    dialog.append(quote);
+    for (const name of names) {
+      const test = document.createElement("div");
+      test.innerHTML = tests[name];
+      dialog.append(test);
+    }
+  }
+  const close = document.createElement("button");
+  close.textContent = "Close";
+  close.addEventListener("click", () => dialog.close());
+  dialog.append(close);
+  dialog.addEventListener("close", () => dialog.remove());
+  document.body.append(dialog);
+  dialog.showModal();
+}
+
 document.addEventListener("DOMContentLoaded", () => {
+  connectMarks();
+  connectMenus();
+  connectQuestions();
+  connectScore();
   connectTabs();
-  // The theme puts boxes around tables in a function that jQuery calls from another one: so it has
-  // done so when jQuery calls this.
-  jQuery(() => jQuery(makeReachable));
+  makeReachable();
   giveLevels();
   window.addEventListener("hashchange", unfold);
   unfold();
-  connectMenu();
 });
