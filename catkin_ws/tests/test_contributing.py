@@ -40,7 +40,8 @@ def test_number_of_files(title):
 
 
 def test_every_way_is_held():
-    assert re.findall(r"^## (.*)$", TEXT, re.MULTILINE) == list(FILES)
+    about_all = ["Where things are", "Commands"]
+    assert re.findall(r"^## (.*)$", TEXT, re.MULTILINE) == [*about_all, *FILES]
 
 
 @pytest.fixture
