@@ -172,7 +172,6 @@ def test_each_line_of_python_2_is_named(text, first, other, tmp_path):
     assert finding.line == first and said in finding.message
 
 
-
 def test_facts_say_what_the_source_says(tmp_path):
     text = HEAD.replace('"publisher_py_node")', '"publisher_py_node", sys.argv, True)')
     _, facts = check_rules.python_facts_of(tmp_path, text)
