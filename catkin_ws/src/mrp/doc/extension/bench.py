@@ -54,7 +54,9 @@ class Tables(SphinxDirective):
         group += [nodes.colspec(colwidth=1) for _ in one.header]
         group += nodes.thead("", self.row(one.header))
         group += nodes.tbody("", *map(self.row, one.rows))
-        yield nodes.table("", nodes.title(one.title, one.title), group, classes=["figures"])
+        # Not the table's own title: the theme would write its id twice.
+        yield nodes.paragraph("", "", nodes.strong("", one.title))
+        yield nodes.table("", group, classes=["figures"])
         yield from map(paragraph, one.after)
 
     def row(self, cells):
