@@ -27,9 +27,11 @@ CACHE := $(WITH_TESTING) /usr/bin/python3 -m mrp_testing.compiler_cache
 # ROS 1 has no authentication: unless the user says otherwise, listen on this machine only.
 LOCAL := if [ -z "$$ROS_IP$$ROS_HOSTNAME" ]; then export ROS_HOSTNAME=localhost; fi;
 
-# The tests bring their own master and talk to this machine alone, whatever the user's shell says.
+# The tests bring their own master and talk to this machine alone, whatever the user's shell says; and
+# nothing is written into the user's home.
 ALONE := unset ROS_IP ROS_NAMESPACE ROS_MASTER_URI; export ROS_HOSTNAME=localhost; \
-  export ROS_LOG_DIR=$(CURDIR)/catkin_ws/build/test_logs;
+  export ROS_LOG_DIR=$(CURDIR)/catkin_ws/build/test_logs ROS_HOME=$(CURDIR)/catkin_ws/build/ros_home \
+  XDG_CACHE_HOME=$(CURDIR)/catkin_ws/build/cache;
 
 # The lists of Debian packages, in catkin_ws/apt, that each target installs when it is first called.
 PACKAGES_run := run tools
@@ -37,11 +39,11 @@ PACKAGES_build := $(PACKAGES_run) build
 PACKAGES_lab := $(PACKAGES_run) labs
 PACKAGES_check := $(PACKAGES_run) check
 PACKAGES_learn := $(PACKAGES_check) learn
-PACKAGES_view := $(PACKAGES_build) view
+PACKAGES_view := $(PACKAGES_run) view
 PACKAGES_debug := $(PACKAGES_run) debug
 PACKAGES_test := $(PACKAGES_build) check learn view bench test
 PACKAGES_test-all := $(PACKAGES_test) docs debug cluster test-all
-PACKAGES_test-browser := $(PACKAGES_view) check docs cluster test browser
+PACKAGES_test-browser := $(PACKAGES_build) view check docs cluster test browser
 PACKAGES_bench := $(PACKAGES_build) bench
 PACKAGES_docs := docs
 PACKAGES_docs-book := docs book
@@ -60,7 +62,7 @@ FOR_EDITORS := ln -sf build/compile_commands.json .; source devel/setup.bash; to
 BUILT_TUTORIAL := catkin_ws/devel/.built_tutorial
 BUILT_LABS := catkin_ws/devel/.built_labs
 BUILT_WHOLE := catkin_ws/devel/.built_whole
-sources = $(shell find $(1) -type f -not -name '*.pyc' -not -path '*/doc/*' -not -path catkin_ws/src/CMakeLists.txt)
+sources = $(shell find $(1) -type f -not -name '*.pyc' -not -path '*/doc/*' -not -path catkin_ws/src/CMakeLists.txt 2> /dev/null)
 
 RESULTS := $(CURDIR)/catkin_ws/build/test_results
 SITE := $(CURDIR)/catkin_ws/build/docs
@@ -173,11 +175,12 @@ bench: packages-bench $(BUILT_WHOLE)  ## measure how fast nodes are; QUICK=1: le
 bench-record:  ## put what `make bench` measured into the pages
 	@/usr/bin/python3 catkin_ws/tools/record_bench.py $(BENCH)
 
-# It links to the pages if `make docs` has built them.
+# It has no C++ and no messages of its own, so it runs from its sources. It links to the pages, once
+# `make docs` has built them.
 .PHONY: view
-view: packages-view $(BUILT_WHOLE)  ## watch the graph and the messages in a browser; end it with Ctrl-C
-	@$(IN_WORKSPACE) $(LOCAL) source devel/setup.bash; \
-	exec rosrun mrp_view view_node.py --tutorial $(SITE) $(VIEW_OPTIONS)
+view: packages-view $(BUILT_TUTORIAL)  ## watch the graph and the messages in a browser; end it with Ctrl-C
+	@$(IN_WORKSPACE) $(LOCAL) source devel/setup.bash; export PYTHONPATH=src/mrp_view/src:"$$PYTHONPATH"; \
+	exec /usr/bin/python3 src/mrp_view/src/view_node.py --tutorial $(SITE) $(VIEW_OPTIONS)
 
 .PHONY: lint
 lint: packages-lint $(BUILT_TUTORIAL)  ## check the style of all sources

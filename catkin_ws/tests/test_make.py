@@ -19,7 +19,7 @@ pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("make")]
 def copy(tmp_path_factory):
     """A copy of the repository, built while another python3 is first on PATH."""
     root = tmp_path_factory.mktemp("copy") / "mrp"
-    copy_repository(root, "mrp_*")
+    copy_repository(root, "mrp_[!t]*")
     path = with_other_python(tmp_path_factory.mktemp("bin"))
     done = make("build", root=root, PATH=path, **compiler_cache.variables(root))
     assert done.returncode == 0, done.stdout
@@ -48,12 +48,15 @@ def test_build_tells_editors_how_each_file_is_compiled(copy):
 def test_run_builds_the_tutorial_and_a_whole_workspace_stays_whole(copy):
     """It only says what it would do: one option decides what is built."""
     tutorial = "-DCATKIN_WHITELIST_PACKAGES=mrp "
-    built = copy / "catkin_ws/devel/.built_whole"
+    devel = copy / "catkin_ws/devel"
+    marks = [devel / ".built_whole", devel / ".built_labs"]
     changed = ("--what-if", "catkin_ws/src/mrp/src/publisher_cpp_node.cpp")
     assert tutorial not in make("run", "--dry-run", *changed, root=copy).stdout
-    built.rename(copy / "away")
+    for mark in marks:
+        mark.rename(copy / mark.name)
     assert tutorial in make("run", "--dry-run", *changed, root=copy).stdout
-    (copy / "away").rename(built)
+    for mark in marks:
+        (copy / mark.name).rename(mark)
 
 
 def replace_tests(copy, text):
@@ -137,6 +140,13 @@ def test_check_installs_what_is_missing_and_checks():
     installs = r"install_packages\.sh [^\n]*catkin_ws/apt/check\.txt\n"
     checks = r'mrp_check/scripts/check "a_package"'
     assert re.search(rf"{installs}(.*\n)*.*{checks}", said), said
+
+
+@pytest.mark.quick
+def test_view_builds_the_tutorial_and_no_pages():
+    said = make("view", "--dry-run", "--always-make").stdout
+    assert "-DCATKIN_WHITELIST_PACKAGES" in said
+    assert "sphinx" not in said and "apt/build.txt" not in said
 
 
 @pytest.mark.quick

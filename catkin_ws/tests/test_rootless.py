@@ -8,7 +8,7 @@ import pytest
 from front_door import make
 from mrp_testing.workspace import WORKSPACE
 
-pytestmark = pytest.mark.quick
+pytestmark = [pytest.mark.quick, pytest.mark.place]
 
 NEEDED = ("bash", "dirname", "realpath", "mkdir", "ln", "sed", "tar", "touch", "rm")
 

@@ -22,7 +22,9 @@ chosen=(ctest --test-dir build --tests-regex "^($rostests)\$")
 
 status=0
 if [ -n "$rostests" ]; then
-  make --no-print-directory -C build -j "$processors" tests || status=1
+  # shellcheck disable=SC2046  # each of its words is a variable
+  env $(/usr/bin/python3 -m mrp_testing.compiler_cache) \
+    make --no-print-directory -C build -j "$processors" tests || status=1
   # One that is listed and not built would be left out in silence.
   diff <("${chosen[@]}" --show-only | sed -n 's/^ *Test .*: //p' | sort) \
     <(tr '|' '\n' <<< "$rostests" | sort) || status=1

@@ -6,6 +6,8 @@ from browser import Browser
 from built_site import SITE, served
 from firefox import Firefox
 
+pytest_plugins = ("mrp_testing.guard",)
+
 
 @pytest.fixture(scope="session")
 def browser(tmp_path_factory):

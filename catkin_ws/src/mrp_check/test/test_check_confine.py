@@ -23,7 +23,7 @@ from mrp_check.sandbox import confine
 from mrp_testing.process import processes_with
 from mrp_testing.waiting import wait_until
 
-pytestmark = [pytest.mark.slow, pytest.mark.usefixtures("open_folders")]
+pytestmark = [pytest.mark.slow, pytest.mark.place, pytest.mark.usefixtures("open_folders")]
 
 FEW_SECONDS = 3  # a limit of wall time, for what never ends by itself
 

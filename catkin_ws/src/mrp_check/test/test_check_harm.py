@@ -13,7 +13,7 @@ from mrp_check.package.package import Package
 from mrp_check.verdict import check
 from mrp_testing.process import processes_with
 
-pytestmark = [pytest.mark.slow, pytest.mark.usefixtures("open_folders")]
+pytestmark = [pytest.mark.slow, pytest.mark.place, pytest.mark.usefixtures("open_folders")]
 
 
 FLOODS = {

@@ -106,6 +106,7 @@ def compiled(tmp_path, open_folders):
     return once
 
 
+@pytest.mark.place
 @pytest.mark.slow
 @pytest.mark.parametrize("isolation", ISOLATIONS)
 def test_second_source_is_compiled_with_the_headers_of_the_first(

@@ -13,7 +13,7 @@ import pytest
 from mrp_check import sandbox
 from mrp_check.sandbox import confine
 
-pytestmark = [pytest.mark.slow, pytest.mark.usefixtures("open_folders")]
+pytestmark = [pytest.mark.slow, pytest.mark.place, pytest.mark.usefixtures("open_folders")]
 
 HAS_NAMESPACES = sandbox.isolation() is sandbox.Isolation.NAMESPACES
 

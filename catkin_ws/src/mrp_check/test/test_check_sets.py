@@ -24,7 +24,7 @@ CENTRAL = ("mrp", "py_member_misspelt")
 
 def parameters(values, name):
     """Return the values for parametrize; those whose name is in CENTRAL are marked."""
-    marks = [pytest.mark.quick, pytest.mark.xdist_group("central")]
+    marks = [pytest.mark.quick, pytest.mark.place, pytest.mark.xdist_group("central")]
     return [pytest.param(value, marks=marks if name(value) in CENTRAL else []) for value in values]
 
 

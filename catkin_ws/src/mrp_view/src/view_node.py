@@ -66,7 +66,6 @@ class ViewNode:
         self.listener = Listener(chosen.settle)
         self.graph_only = chosen.graph_only
         page = pathlib.Path(roslib.packages.get_pkg_dir("mrp_view")) / "page"
-        tutorial = pathlib.Path(chosen.tutorial) if chosen.tutorial else None
         self.view = View(
             self.name,
             self.listener,
@@ -74,7 +73,7 @@ class ViewNode:
             chosen.port,
             [*chosen.name, *forwarded_names(chosen.port)],
             page,
-            tutorial if tutorial and tutorial.is_dir() else None,
+            pathlib.Path(chosen.tutorial or page / "none"),
         )
         self.watcher = Watcher(rosgraph.get_master_uri(), self.name, self.on_look)
         self.is_node = False

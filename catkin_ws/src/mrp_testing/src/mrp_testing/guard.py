@@ -5,7 +5,7 @@ Programs that refuse come first on PATH: each notes that it was called, and exit
 test that called it fails. A test puts its own stand-ins before these: one of sudo, too, as the real
 one looks for programs in a PATH of its own. The Makefile puts /usr/bin before PATH, so it reads
 from MRP_TEST_GUARD where these programs are. MRP_TEST_ENGINE gives the tests this machine's Docker
-engine: `make docker-containers` sets it.
+engine: `make docker-containers` sets it. The home stays as it is: ROS and ccache write elsewhere.
 """
 
 import os
@@ -43,6 +43,8 @@ class Guard:
             program.chmod(0o755)
         os.environ["PATH"] = f"{self.folder}:{os.environ['PATH']}"
         os.environ["MRP_TEST_GUARD"] = str(self.folder)
+        for name in ("ROS_HOME", "XDG_CACHE_HOME"):  # so does make test
+            os.environ.setdefault(name, str(self.folder / name.lower()))
 
     def calls(self):
         """Return the commands that were refused since the last call."""

@@ -4,6 +4,7 @@
 import asyncio
 import collections
 import json
+import os
 import pathlib
 import secrets
 import subprocess
@@ -52,17 +53,17 @@ class Page(_Guarded, tornado.web.StaticFileHandler):
 
 
 class Tutorial(_Guarded, tornado.web.StaticFileHandler):
+    async def get(self, path, include_body=True):
+        if os.path.isdir(self.root):
+            return await super().get(path, include_body)
+        self.set_header("Content-Type", "text/plain; charset=utf-8")
+        self.set_status(404)
+        self.finish("The tutorial's pages are not built here. To build them: make docs\n")
+
     def set_extra_headers(self, path):
         if path.endswith(".html"):
             html = pathlib.Path(self.absolute_path).read_text(encoding="utf-8")
             self.set_header("Content-Security-Policy", access.policy_of(html))
-
-
-class NoTutorial(_Guarded, tornado.web.RequestHandler):
-    def get(self, path):
-        self.set_header("Content-Type", "text/plain; charset=utf-8")
-        self.set_status(404)
-        self.finish("The tutorial's pages are not built here. To build them: make docs\n")
 
 
 class Socket(_Guarded, tornado.websocket.WebSocketHandler):
@@ -131,7 +132,7 @@ class View:
 
     address, port: to listen on; port 0: any that is free
     names: under which the page may be asked for besides
-    page, tutorial: folders; tutorial may be None
+    page, tutorial: folders; that of the tutorial may be made later
     """
 
     def __init__(self, viewer, listener, address, port, names, page, tutorial):
@@ -141,7 +142,7 @@ class View:
         self.sockets = set()
         self._listener = listener
         self._id = secrets.token_hex(8)
-        self._tutorial = tutorial is not None
+        self._tutorial = tutorial
         self._graph = {"nodes": [], "topics": [], "edges": [], "links": []}
         self._master = {"state": "never", "uri": "", "why": ""}
         self._counts = []
@@ -156,13 +157,13 @@ class View:
         self._dot = asyncio.Lock()
 
         guarded = {"path": str(page), "default_filename": "index.html"}
-        handler = (
-            (r"/tutorial/(.*)", Tutorial, {"path": str(tutorial), "default_filename": "index.html"})
-            if tutorial
-            else (r"/tutorial/(.*)", NoTutorial)
-        )
+        pages = {"path": str(tutorial), "default_filename": "index.html"}
         application = tornado.web.Application(
-            [(r"/socket", Socket), handler, (r"/(.*)", Page, guarded)],
+            [
+                (r"/socket", Socket),
+                (r"/tutorial/(.*)", Tutorial, pages),
+                (r"/(.*)", Page, guarded),
+            ],
             view=self,
             log_function=lambda handler: None,
             websocket_ping_interval=10,
@@ -206,7 +207,7 @@ class View:
             {
                 "t": "graph",
                 "viewer": self.viewer,
-                "tutorial": self._tutorial,
+                "tutorial": self._tutorial.is_dir(),
                 "master": self._master,
                 "graph": shown,
                 "all_topics": [one["name"] for one in self._graph["topics"]],

@@ -1,0 +1,256 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Type the README's two commands in places made from scratch, and record what was seen there.
+
+A place is SYSTEM-KIND or SYSTEM-KIND-ARCHITECTURE, such as 13-chroot. SYSTEM is 12, 13 or 14, a
+release of Debian, of which mmdebstrap makes a bare root. KIND is one of
+  chroot      root in a chroot, where nobody may make namespaces; the clone is below /root
+  namespaces  root with namespaces, as on a machine
+  user        an ordinary user with sudo
+  container   root in a container of debian:SYSTEM: call it by .ci/engine, or where Docker runs
+An ARCHITECTURE that is not this machine's, as arm64, is emulated: that needs qemu-user-static.
+
+Needs root (a container needs Docker). It makes each root anew, and deletes it in the end.
+"""
+
+import argparse
+import contextlib
+import csv
+import datetime
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+
+WORKSPACE = pathlib.Path(__file__).resolve().parent.parent
+RECORD = WORKSPACE / "places.csv"
+README = WORKSPACE.parent / "README.md"
+FIELDS = (
+    "place date seconds_to_first_messages packages test passed failed skipped"
+    " lines_in_dpkg_log files_changed_elsewhere"
+).split()
+SUITES = {"12": "bookworm", "13": "trixie", "14": "forky"}
+USERS = {
+    "chroot": "root, without namespaces",
+    "namespaces": "root",
+    "user": "a user with sudo",
+    "container": "root in a container",
+}
+# What README asks of a reader: the rest, `make run` and `make test` install.
+ASKED = "git,make"
+
+# What is typed, as the user of the place. Lines that begin with "## " are what is recorded.
+_TYPED = """\
+cd ~/mrp/
+set -m  # so the nodes get their own Ctrl-C
+count() { dpkg-query --show | wc -l; }
+sudo=; [ "$(id -u)" = 0 ] || sudo=sudo
+before=$(count) begin=$(date +%s%N)
+if [ "$EMULATED" ]; then  # roslaunch gives its master 10 s, which is too short there
+  make packages-run catkin_ws/devel/.built_tutorial
+  ROS_HOSTNAME=localhost rosmaster --core > /dev/null 2>&1 &
+  until (: < /dev/tcp/localhost/11311) 2> /dev/null; do sleep 1; done
+fi
+: > /tmp/run.log
+make run > /tmp/run.log 2>&1 &
+until grep -q "R CPP NODE.*data = " /tmp/run.log && grep -q "R PY NODE.*data = " /tmp/run.log; do
+  kill -0 %make || { cat /tmp/run.log; exit 1; }
+  sleep 0.1
+done
+echo "## seconds_to_first_messages $(( ($(date +%s%N) - begin + 500000000) / 1000000000 ))"
+kill -INT %make; wait %make
+cat /tmp/run.log
+echo "## packages $(( $(count) - before ))"
+[ -z "$EMULATED" ] || kill %rosmaster
+make packages-test
+lines=$(wc -l < /var/log/dpkg.log)
+touch /tmp/before
+$TEST > /tmp/test.log 2>&1
+code=$?
+cat /tmp/test.log
+tail -n 5 /tmp/test.log | grep -oE '[0-9]+ (passed|failed|skipped)' |
+  while read -r number what; do echo "## $what $number"; done
+echo "## lines_in_dpkg_log $(( $(wc -l < /var/log/dpkg.log) - lines ))"
+$sudo find / -xdev -newer /tmp/before -type f -not -path "$HOME/mrp/*" -not -path '/tmp/*' |
+  tee /tmp/elsewhere
+echo "## files_changed_elsewhere $(wc -l < /tmp/elsewhere)"
+exit $code
+"""
+
+# Where root may make namespaces, it is the root of its mount namespace; in a chroot it is not.
+_ENTER = """\
+cd "$0"
+mount --bind . .
+cd "$0"
+mount --rbind /dev dev
+mount --rbind /sys sys
+mount -t proc proc proc
+[ "$1" = chroot ] || { pivot_root . .; umount --lazy .; }
+exec chroot . "${@:2}"
+"""
+
+
+def main():
+    arguments = parser().parse_args()
+    os.environ["PATH"] = "/usr/sbin:/sbin:" + os.environ["PATH"]
+    status = 0
+    with contextlib.ExitStack() as stack:
+        folder = pathlib.Path(stack.enter_context(tempfile.TemporaryDirectory(dir="/var/tmp")))
+        folder.chmod(0o755)
+        for place in arguments.places:
+            row = seen(place, folder, arguments)
+            print(", ".join(f"{name}: {value}" for name, value in row.items()), flush=True)
+            status |= row["failed"] != "0"
+            if arguments.record:
+                record(row)
+            if not arguments.keep:
+                empty(folder)
+    return status
+
+
+def parser():
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("places", nargs="+", metavar="PLACE")
+    parser.add_argument(
+        "--marked", action="store_true", help="run only the tests that a place can affect"
+    )
+    parser.add_argument(
+        "--keep", action="store_true", help="use one root for all places of a system"
+    )
+    parser.add_argument(
+        "--record",
+        action="store_true",
+        help=f"write into {RECORD.name} and into the README's table",
+    )
+    return parser
+
+
+def seen(place, folder, arguments):
+    """Make a place, type the commands in it, and return the row of the recording."""
+    system, kind, *architecture = place.split("-")
+    test = "make test"
+    if arguments.marked:
+        test = "env -C catkin_ws /usr/bin/python3 -m pytest -q -n 3 --dist loadgroup -m place"
+    command = ["env", f"TEST={test}", f"EMULATED={''.join(architecture)}", "bash", "-s"]
+    clone = folder / "clone"
+    if not clone.exists():
+        subprocess.run(["git", "clone", "--quiet", WORKSPACE.parent, clone], check=True)
+    if kind == "container":
+        command = [*container(system, clone), *command]
+    else:
+        command = [*root(system, kind, architecture, folder), *command]
+    row = dict.fromkeys(FIELDS, "0")
+    row["place"], row["test"] = place, "those of the place" if arguments.marked else "`make test`"
+    row["date"] = datetime.date.today().isoformat()
+    with subprocess.Popen(
+        command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
+    ) as process:
+        process.stdin.write(_TYPED)
+        process.stdin.close()
+        for line in process.stdout:
+            print(line, end="", flush=True)
+            if line.startswith("## "):
+                _, name, value = line.split()
+                row[name] = value
+    if process.returncode and row["failed"] == "0":
+        row["failed"] = "?"
+    return row
+
+
+def container(system, clone):
+    """Return the command that enters a new container, in which the clone is root's."""
+    prepare = (
+        "apt-get -qq update && apt-get -qq install -y --no-install-recommends make git > /dev/null"
+        ' && git clone --quiet /clone /root/mrp && exec "$@"'
+    )
+    return [
+        *("docker", "run", "--rm", "--interactive", "--network", "host"),
+        *("--volume", f"{clone}:/clone:ro", f"debian:{SUITES[system]}-slim"),
+        *("bash", "-c", prepare, "bash"),
+    ]
+
+
+def root(system, kind, architecture, folder):
+    """Make a bare root, if there is none yet, with a clone; return the command that enters it."""
+    made = folder / SUITES[system]
+    if not made.exists():
+        bootstrap(system, kind, architecture, made)
+    name = "learner" if kind == "user" else "root"
+    home = pathlib.Path("root" if name == "root" else f"home/{name}")
+    if kind == "user":
+        subprocess.run(["useradd", "--root", made, "-m", "-s", "/bin/bash", name], check=True)
+        (made / "etc/sudoers.d").mkdir(exist_ok=True)
+        (made / "etc/sudoers.d" / name).write_text(f"{name} ALL=(ALL) NOPASSWD:ALL\n")
+    shutil.copytree(folder / "clone", made / home / "mrp", symlinks=True)
+    inside = ["chroot", made, "chown", "-R", f"{name}:", "/" / home / "mrp"]
+    subprocess.run(inside, check=True)
+    login = ["env", "-i", f"HOME=/{home}", "PATH=/usr/local/bin:/usr/bin:/bin:/usr/sbin:/sbin"]
+    return [
+        *("unshare", "--mount", "--pid", "--fork", "--kill-child"),
+        *("bash", "-ec", _ENTER, made, kind, "runuser", "-u", name, "--", *login),
+    ]
+
+
+def bootstrap(system, kind, architecture, target):
+    """Make a bare root of a release of Debian."""
+    included = ASKED + (",sudo" if kind == "user" else "")
+    options = [f"--architecture={name}" for name in architecture]
+    if system == "14":  # a copy of its lists may be older than they allow; its keys are Debian 13's
+        options.append('--aptopt=Acquire::Check-Valid-Until "false"')
+        options.append("--keyring=/usr/share/keyrings/debian-archive-keyring.gpg")
+    subprocess.run(
+        ["mmdebstrap", "--quiet", "--variant=minbase", f"--include={included}", *options]
+        + [SUITES[system], target],
+        check=True,
+    )
+    for name in ("hosts", "hostname", "resolv.conf"):
+        (target / "etc" / name).write_text(pathlib.Path("/etc", name).read_text())
+
+
+def empty(folder):
+    for path in folder.iterdir():
+        if path.name != "clone":
+            subprocess.run(["rm", "-rf", "--one-file-system", path], check=True)
+
+
+def rows():
+    """Return the rows of the recording: of each place, the last one."""
+    if not RECORD.exists():
+        return []
+    with RECORD.open() as file:
+        return list(csv.DictReader(file))
+
+
+def record(row):
+    kept = [old for old in rows() if old["place"] != row["place"]]
+    with RECORD.open("w", newline="") as file:
+        writer = csv.DictWriter(file, FIELDS, lineterminator="\n")
+        writer.writeheader()
+        writer.writerows(sorted([*kept, row], key=lambda row: row["place"]))
+    before, header, after = README.read_text().partition(table()[0])
+    rest = after.partition("\n\n")[2]
+    README.write_text("\n".join([before + header, *table()[1:], "", rest]))
+
+
+def table():
+    """Return the lines of README's table."""
+    lines = [
+        "| where | as | first messages | new packages | tests | packages changed by tests |",
+        "| --- | --- | ---: | ---: | --- | ---: |",
+    ]
+    for row in rows():
+        system, kind, *architecture = row["place"].split("-")
+        where = " ".join(["Debian", system, *(f"on {name}, emulated" for name in architecture)])
+        seconds = f"{row['seconds_to_first_messages']} s"
+        tests = f"{row['test']}: {row['passed']} passed, {row['failed']} failed"
+        cells = [where, USERS[kind], seconds, row["packages"], tests, row["lines_in_dpkg_log"]]
+        lines.append(f"| {' | '.join(cells)} |")
+    return lines
+
+
+if __name__ == "__main__":
+    sys.exit(main())
