@@ -20,9 +20,10 @@ release() {
 
 # packages.ros.org has a python3-catkin-pkg that is newer than Debian's, and keeps Debian's catkin out.
 is_in_conflict() {
-  command -v apt-cache > /dev/null &&
-    apt-cache show --no-all-versions python3-catkin-pkg 2> /dev/null |
-    grep -qE '^(Conflicts|Breaks):(.*[ ,])?catkin([ ,(]|$)'
+  command -v apt-cache > /dev/null || return 1
+  # Not in a pipe: grep ends at the first match, and apt-cache would fail.
+  grep -qE '^(Conflicts|Breaks):(.*[ ,])?catkin([ ,(]|$)' \
+    <<< "$(apt-cache show --no-all-versions python3-catkin-pkg 2> /dev/null)"
 }
 
 # Print what works on this system, and the command for it.
