@@ -36,7 +36,7 @@ def main(arguments=None):
     except (PatchError, DefectError, CannotCheck) as error:
         fail(error)
     except KeyboardInterrupt:
-        sys.exit("learn: stopped before its end; what it ran has ended, too.")
+        sys.exit("Stopped. All that was started has ended; your changes are kept.")
 
 
 def fail(why):
@@ -49,7 +49,7 @@ def parser():
     parser.add_argument("folder", type=pathlib.Path, help="the folder of your copies")
     parser.add_argument("--once", action="store_true", help="show the next one, or check it")
     parser.add_argument("--hint", action="store_true", help="with --once: show the hint instead")
-    parser.add_argument("--reset", action="store_true", help="with --once: begin it anew")
+    parser.add_argument("--reset", action="store_true", help="with --once: start it again")
     return parser
 
 

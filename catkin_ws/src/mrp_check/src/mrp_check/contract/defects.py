@@ -16,7 +16,8 @@ The head of a patch says what it breaks, and who must find that:
     Order: 7                    its number, if it is an exercise,
     Kind: fix                   what the student does: see KINDS,
     Task: # A title             what the student reads first,
-    Hint: Look at the end.      and what the student may ask for
+    Hint: Look at the end.      what the student may ask for,
+    Learned: A sentence.        and what they know when they have passed it
     Shows: error: ...           a text that it makes a tool print, and more: see tools/why.py
 
 The value of a field goes on in the lines below it that are indented. There may be several lines In:
@@ -41,7 +42,7 @@ KINDS = ("read", "fix", "complete", "write")
 
 _FIELD = re.compile(r"([A-Z][\w-]*):(?: (.*))?")
 # A patch has all fields of a group, or none.
-_GROUPS = (("Fails", "Says"), ("Finds", "In", "Tells"), ("Order", "Kind", "Task", "Hint"))
+_GROUPS = (("Fails", "Says"), ("Finds", "In", "Tells"), ("Order", "Kind", "Task", "Hint", "Learned"))
 _WHY = ("Shows", "Also", "Why", "Fix", "Page", "General", "Try", "Needs")
 _FIELDS = (
     *("Base", "Breaks", "Erratum", "Missed", "Severity"),
@@ -87,6 +88,7 @@ class Defect:
     kind: str = ""
     task: str = ""
     hint: str = ""
+    learned: str = ""
     why: Mapping[str, Sequence[str]] = dataclasses.field(default_factory=dict)  # of tools/why.py
 
     @property

@@ -25,6 +25,7 @@ class Report:
     left_out: the ids of what was not asked, as the package has no contract
     unseen: id -> why nobody can say whether it is met, of those that are UNCHECKED
     console: the lines that roslaunch and its nodes printed, as far as they ran
+    tools: the lines that CMake, or make and g++, printed when they failed
     is_public: whether hidden requirements have been left out
     suppressed: the findings that a comment in the package suppresses
     isolation: how far the package was kept apart as it ran
@@ -40,6 +41,7 @@ class Report:
     unseen: dict[str, str] = dataclasses.field(default_factory=dict)
     left_out: list[str] = dataclasses.field(default_factory=list)
     console: list[str] = dataclasses.field(default_factory=list)
+    tools: list[str] = dataclasses.field(default_factory=list)
     is_public: bool = False
     suppressed: list[Finding] = dataclasses.field(default_factory=list)
     isolation: str = ""

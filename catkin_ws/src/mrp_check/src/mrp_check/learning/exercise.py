@@ -17,6 +17,7 @@ from typing import Iterator, NamedTuple, Sequence
 from mrp_check.contract import defects, packages, spec
 from mrp_check.contract.finding import NOTE, Finding
 from mrp_check.contract.verdict import Report
+from mrp_check.learning import opening
 from mrp_check.report import console
 
 
@@ -39,6 +40,11 @@ class Exercise(NamedTuple):
     @property
     def label(self) -> str:
         return f"Exercise {self.number} of {self.total}"
+
+    @property
+    def file(self) -> pathlib.Path:
+        """The file to open, in the student's copy."""
+        return self.place / self.defect.places[0][0]
 
     @property
     def spec(self) -> spec.Spec:
@@ -125,9 +131,19 @@ class Course:
             self._file.write_text("".join(f"{name}\n" for name in self._passed))
 
 
+def progress(course: Course) -> str:
+    """Return how many exercises are passed, such as "7 of 40."."""
+    return f"{len(course.exercises) - len(course.open)} of {len(course.exercises)}."
+
+
 def wrong(report: Report) -> list[Finding]:
-    """Return what is still wrong: an exercise is passed without errors and without warnings."""
-    return [f for f in report.findings if f.severity != NOTE and not f.consequence_of]
+    """Return what is still wrong: an exercise is passed without errors and without warnings.
+
+    Of several findings about the same line, only the first is returned: they have one cause.
+    """
+    found = [f for f in report.findings if f.severity != NOTE and not f.consequence_of]
+    by_line = {(f.file, f.line) if f.line else id(f): f for f in reversed(found)}
+    return list(reversed(by_line.values()))
 
 
 def lines_of(findings: Sequence[Finding], report: Report | None) -> list[str]:
@@ -137,5 +153,7 @@ def lines_of(findings: Sequence[Finding], report: Report | None) -> list[str]:
     for finding in findings:
         lines += ["", f"{console.where(finding, report)}: {console.plain(finding.message)}"]
         lines += console.detail_lines(finding, ("expected", "seen"))
-        lines += console.page_lines(finding)
+        for name, address in console.pages(finding):
+            page, _, anchor = address.removeprefix("pages/").partition(".html")
+            lines.append(f"  {name + ':':<10}file://{opening.page(page)}{anchor}")
     return lines

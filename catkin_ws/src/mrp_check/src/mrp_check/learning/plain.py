@@ -20,12 +20,26 @@ def say(*lines: str) -> None:
 
 
 def show_task(exercise: exercises.Exercise, what_then: str) -> None:
-    say(f"{exercise.label}\n\n{exercise.defect.task}\n", f"The package: {exercise.place}")
-    say(f"Fix it, and {what_then}.")
+    say(f"{exercise.label}\n\n{exercise.defect.task}\n")
+    say(f"Open this file, fix it, save it, and {what_then}:", f"  {exercise.file}")
 
 
 def verdict(exercise: exercises.Exercise, check: Check) -> str:
     return f"{exercise.label}, {exercise.name}: {'passed' if check.passed else 'not yet'}."
+
+
+def explanation(check: Check) -> list[str]:
+    """Return what the tools say, and what the checker says, as lines."""
+    tools = ["", "What the tools say:", *check.tools] if check.tools else []
+    return [*tools, *exercises.lines_of(check.findings, check.report)]
+
+
+def passed(course: exercises.Course, exercise: exercises.Exercise) -> list[str]:
+    """Return what a student reads who has passed an exercise."""
+    lines = [f"You've learned: {exercise.defect.learned}", f"{exercises.progress(course)}", ""]
+    if not course.open:
+        lines.append(f"You have finished all {len(course.exercises)}. Well done!")
+    return lines
 
 
 def run_once(folder: pathlib.Path, hint: bool = False, reset: bool = False) -> int:
@@ -37,7 +51,7 @@ def run_once(folder: pathlib.Path, hint: bool = False, reset: bool = False) -> i
     """
     course = exercises.Course(folder)
     if not course.open:
-        say(f"All {len(course.exercises)} exercises are passed.")
+        say(f"You have finished all {len(course.exercises)}. Well done!")
         return PASSED
     exercise = course.open[0]
     if reset:
@@ -53,12 +67,13 @@ def run_once(folder: pathlib.Path, hint: bool = False, reset: bool = False) -> i
         shown.clear()
         if check.error:
             raise CannotCheck(check.error)
-        say(verdict(exercise, check), *exercises.lines_of(check.findings, check.report))
+        say(verdict(exercise, check), *explanation(check))
         if not check.passed:
             say(f"\nThe task: {exercise.place / 'TASK.md'}", "A hint: make exercise HINT=1")
             return NOT_YET
         course.add(exercise)
-        return run_once(folder)
+        say(*passed(course, exercise))
+        return run_once(folder) if course.open else PASSED
     return PASSED
 
 
@@ -76,13 +91,13 @@ class Followed:
         course = self.watched.course
         while course.open:
             exercise = self.watched.exercise
-            show_task(exercise, "save it: then it is checked again")
+            show_task(exercise, "I check it again")
             while not course.is_passed(exercise):
                 self.show()
                 time.sleep(INTERVAL)
+            say(*passed(course, exercise))
             if course.open:
                 self.watched.open(course.open[0])
-        say(f"All {len(course.exercises)} exercises are passed.")
 
     def show(self) -> None:
         """Look at the files, and print what is new."""
@@ -93,11 +108,11 @@ class Followed:
             say(*(["", "Checking ..."] if check else []))
         if check is None or self._ended:
             return
-        done, lines = check.done, exercises.lines_of(check.findings, check.report)
+        done, lines = check.done, explanation(check)
         if lines != self._findings:
             self._findings = lines
             say(*lines)
         if done:
             self._ended = True
-            could_not = f"It could not be checked: {check.error}"
+            could_not = f"It couldn't be checked: {check.error}"
             say("", could_not if check.error else verdict(exercise, check))

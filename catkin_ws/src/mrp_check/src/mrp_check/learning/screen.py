@@ -6,20 +6,21 @@ from __future__ import annotations
 import asyncio
 import os
 import signal
+import subprocess
 from typing import Callable
 
-from prompt_toolkit.application import Application
+from prompt_toolkit.application import Application, run_in_terminal
 from prompt_toolkit.formatted_text import StyleAndTextTuples
 from prompt_toolkit.key_binding import KeyBindings
 from prompt_toolkit.layout import FormattedTextControl, HSplit, Layout, Window
 from prompt_toolkit.output import ColorDepth
 from prompt_toolkit.styles import Style
 
-from mrp_check.learning import views
+from mrp_check.learning import opening, views
 from mrp_check.learning.watch import INTERVAL, Watched
 
 _ESCAPE_SECONDS = 0.05  # after which an escape is the key, and no beginning of another
-_AGAIN = "x again deletes your changes and begins anew. Any other key keeps them."
+_AGAIN = "Press x again to discard your changes; any other key cancels."
 
 
 def show(watched: Watched) -> None:
@@ -38,7 +39,7 @@ class _Screen:
     def __init__(self, watched: Watched) -> None:
         self.watched = watched
         self.view, self.top, self.note = "task", 0, ""
-        self.hint = False
+        self.hint = self.explains = False
         self.chosen = 0
         self.diff: list[str] = []
         self.app: Application[None] = Application(
@@ -72,7 +73,7 @@ class _Screen:
             self.top = max(min(self.top, self.chosen), self.chosen - height + 1)
         self.top = max(0, min(self.top, len(lines) - height))
         shown = lines[self.top : self.top + height]
-        return [(f"class:{style}" if style else "", f" {text}\n") for style, text in shown]
+        return [fragment for line in shown for fragment in _fragments(*line)]
 
     def _lines(self) -> list[views.Line]:
         width = max(20, self.app.output.get_size().columns - 2)
@@ -82,7 +83,7 @@ class _Screen:
             return [*views.nodes(self.watched, width)]
         if self.view == "solution":
             return [*views.diff(self.diff, width)]
-        return [*views.task(self.watched, self.hint, width)]
+        return [*views.task(self.watched, self.hint, self.explains, width)]
 
     @property
     def _height(self) -> int:
@@ -112,7 +113,10 @@ class _Screen:
             return bind
 
         on("n")(self._next)
+        on("o")(self._open_file)
+        on("e")(self._explain)
         on("h")(self._hint)
+        on("p")(self._show_page)
         on("r")(self._run_nodes)
         on("l")(self._list)
         on("s")(self._solution)
@@ -133,20 +137,40 @@ class _Screen:
         course, exercise = self.watched.course, self.watched.exercise
         later = [one for one in course.open if one.number > exercise.number]
         if not course.is_passed(exercise):
-            self.note = "This exercise is still open. To leave it for later, choose another: l."
+            self.note = "This exercise is still open. To leave it for later, choose another with l."
         elif not course.open:
-            self.note = f"All {len(course.exercises)} exercises are passed."
+            self.note = f"You have finished all {len(course.exercises)}. Well done!"
         else:
             self._open((later or course.open)[0])
 
     def _open(self, exercise: views.exercises.Exercise) -> None:
         self.watched.open(exercise)
-        self.hint = False
+        self.hint = self.explains = False
         self._go("task")
 
     def _hint(self) -> None:
         self.hint = self.view != "task" or not self.hint
         self._go("task")
+
+    def _explain(self) -> None:
+        self.explains = self.view != "task" or not self.explains
+        self._go("task")
+
+    def _open_file(self) -> None:
+        file, editor = str(self.watched.exercise.file), opening.editor()
+        if editor:
+            run_in_terminal(lambda: subprocess.call([*editor, file]), in_executor=True)
+        elif opening.start("code", file):
+            self.note = "The file opens in VS Code."
+        else:
+            self.note = "To open it with o, choose an editor first: export EDITOR=nano"
+
+    def _show_page(self) -> None:
+        name = self.watched.exercise.defect.page
+        path = opening.page(name)
+        self.note = f"The page {name}: {path}"
+        if opening.show_page(name):
+            self.note = f"The page opens in your browser: {path}"
 
     def _run_nodes(self) -> None:
         self.watched.again()
@@ -165,7 +189,7 @@ class _Screen:
             self.diff = self.watched.exercise.solution()
             self._go("task" if self.view == "solution" else "solution")
         else:
-            self.note = "The solution is shown when the exercise is passed. h gives a hint."
+            self.note = "You'll see the solution when you've passed. h gives a hint, e explains."
 
     def _reset(self) -> None:
         if self._armed:
@@ -212,3 +236,16 @@ class _Screen:
                 self.note = "" if check and check.done else self.note
                 self.app.invalidate()
             await asyncio.sleep(INTERVAL)
+
+
+def _fragments(style: str, text: str) -> StyleAndTextTuples:
+    """Return a line for prompt_toolkit; a link in the way in which terminals know it (OSC 8)."""
+    if not style.startswith(views.LINK):
+        return [(f"class:{style}" if style else "", f" {text}\n")]
+    address = style.removeprefix(views.LINK)
+    return [
+        ("[ZeroWidthEscape]", f"\x1b]8;;{address}\x1b\\"),
+        ("class:place", f" {text}"),
+        ("[ZeroWidthEscape]", "\x1b]8;;\x1b\\"),
+        ("", "\n"),
+    ]

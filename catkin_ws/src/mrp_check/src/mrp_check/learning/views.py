@@ -3,16 +3,18 @@
 
 from __future__ import annotations
 
-import os
 import re
 import textwrap
 from typing import Iterator, Sequence, Tuple
 
 from mrp_check.learning import exercise as exercises
+from mrp_check.learning import opening, tool_output
 from mrp_check.learning.watch import Check, Watched
 from mrp_check.report import console
 
-Line = Tuple[str, str]  # its style, its text
+Line = Tuple[str, str]  # its style, or LINK and the address that it leads to; its text
+
+LINK = "link "
 
 STYLES = {
     "bar": "reverse",
@@ -25,8 +27,6 @@ STYLES = {
     "removed": "ansired",
 }
 
-# Colours, and the window's title that roslaunch sets.
-_ESCAPES = re.compile(r"\x1b\[[0-9;]*m|\x1b\][^\x07]*\x07")
 _DIFF = {"+": "added", "-": "removed", "@": "busy"}
 
 
@@ -39,43 +39,87 @@ def heading(watched: Watched) -> str:
 def keys(watched: Watched) -> str:
     """Return the keys that do something now."""
     passed = watched.course.is_passed(watched.exercise)
-    ways = ["n next", "s solution"] if passed else []
-    return " " + "   ".join([*ways, "h hint", "r run", "l list", "x reset", "q quit"])
+    first = ["n next", "s solution"] if passed else ["o open", "e explain", "h hint"]
+    return " " + "   ".join([*first, "p page", "r run", "l list", "x reset", "q quit"])
 
 
 def state(watched: Watched) -> Line:
     """Return how the exercise stands."""
-    check = watched.check
+    check, course = watched.check, watched.course
     if check is None or not check.done:
         doing = check.doing if check else ""
         return "busy", f"Checking: {doing or 'reading the package'} ..."
     if check.error:
-        return "wrong", "It could not be checked."
+        return "wrong", "It couldn't be checked."
     if check.passed:
-        last = not watched.course.open
-        return "passed", "Passed, as all others are." if last else "Passed. n goes on to the next."
+        return "passed", f"Passed: {exercises.progress(course)} n goes on." if course.open else (
+            f"Passed: you have finished all {len(course.exercises)}. Well done!"
+        )
     count = len(check.findings)
     return "wrong", f"Not yet: {count} {'thing is' if count == 1 else 'things are'} wrong."
 
 
-def task(watched: Watched, hint: bool, width: int) -> Iterator[Line]:
-    """Yield the task, the hint if it is asked for, and what is still wrong."""
-    exercise = watched.exercise
-    yield from _text(exercise.defect.task.split("\n", 2)[2], width, exercise.defect.title)
+def task(watched: Watched, hint: bool, explains: bool, width: int) -> Iterator[Line]:
+    """Yield the task, which file to open, and how it stands.
+
+    hint: whether the hint is asked for; explains: whether the explanation is
+    """
+    exercise, check = watched.exercise, watched.check
+    text = exercise.defect.task.split("\n", 2)[2]
+    yield from _text(re.sub(r"The page: `\w+`.*", "", text), width, exercise.defect.title)
     yield "", ""
-    yield from _wrapped(f"Your copy: {_short(str(exercise.place))}", width)
+    if check and check.passed:
+        yield from _wrapped(f"You've learned: {exercise.defect.learned}", width, "passed")
+        if not watched.course.open:
+            yield from _congratulation(watched.course, width)
+        return
+    how = "Open this file in another window (o opens it) and save your change. I check each save."
+    yield from _wrapped(how, width)
+    yield from _link(str(exercise.file), width)
     if hint:
         yield "", ""
         yield from _text(exercise.defect.hint, width, "Hint")
-    yield from _findings(watched.check, width)
+    yield from _findings(check, explains, width)
 
 
-def _findings(check: Check | None, width: int) -> Iterator[Line]:
+def _congratulation(course: exercises.Course, width: int) -> Iterator[Line]:
+    """Yield what somebody reads who has finished the last exercise."""
+    yield "", ""
+    yield "passed", "* * *  That was the last one. Congratulations!  * * *"
+    yield "", ""
+    text = (
+        f"You've read the errors of Python, g++, CMake and roslaunch, and fixed {len(course.exercises)}"
+        " packages. What's next? Start a package of your own, in the folder of the repository:"
+    )
+    yield from _wrapped(text, width)
+    yield "place", "  make new PKG=~/catkin_ws/src/my_package"
+
+
+def _findings(check: Check | None, explains: bool, width: int) -> Iterator[Line]:
+    """Yield what the tools say; and what we say, if it is asked for."""
     if check and check.done and check.error:
         yield "", ""
         yield from _wrapped(console.plain(check.error), width)
-    elif check and check.report:
-        for line in exercises.lines_of(check.findings, check.report):
+        return
+    if not check or not check.findings:
+        return
+    if check.tools:
+        yield "", ""
+        yield "title", "What the tools say"
+        for line in check.tools:
+            yield from _wrapped(line, width)
+    elif check.done:
+        yield "", ""
+        yield from _wrapped("No tool complains, and still it doesn't do its job.", width)
+    if not explains:
+        yield "", ""
+        yield from _wrapped("Find it yourself, or press e: then I explain.", width)
+        return
+    for line in exercises.lines_of(check.findings, check.report):
+        head, separator, path = line.partition("file://")
+        if separator:
+            yield from _link(path, width, head)
+        else:
             yield from _wrapped(line, width, "" if line.startswith(" ") else "place")
 
 
@@ -94,7 +138,7 @@ def nodes(watched: Watched, width: int) -> Iterator[Line]:
     report = watched.check.report if watched.check else None
     if report and report.console:
         for line in report.console:
-            yield from _wrapped(console.plain(_ESCAPES.sub("", line)), width)
+            yield from _wrapped(console.plain(tool_output.ESCAPES.sub("", line)), width)
     elif watched.check and watched.check.done:
         yield from _wrapped("The nodes did not run: see what is wrong.", width)
     else:
@@ -114,15 +158,15 @@ def _text(text: str, width: int, title: str) -> Iterator[Line]:
         yield from _wrapped(" ".join(paragraph.split()), width)
 
 
+def _link(path: str, width: int, head: str = "") -> Iterator[Line]:
+    """Yield a path as a link; head: what stands in front of it."""
+    for _, line in _wrapped(head + path, width):
+        yield LINK + opening.address(path), line
+
+
 def _wrapped(text: str, width: int, style: str = "") -> Iterator[Line]:
     """Yield a line as lines that fit; those after the first are indented as it is, or more."""
     head = re.match(r"(  \w+: +)?\s*", text)
     indent = "  " if style == "place" else " " * head.end() if head else ""
     lines = textwrap.wrap(text, width, subsequent_indent=indent, break_on_hyphens=False)
     yield from ((style, line) for line in lines or [""])
-
-
-def _short(path: str) -> str:
-    """Return a path relative to where the reader is, if it is below."""
-    relative = os.path.relpath(path)
-    return path if relative.startswith("..") else relative

@@ -17,6 +17,7 @@ from mrp_check.contract.errors import CannotCheck, PackageError
 from mrp_check.contract.finding import Finding
 from mrp_check.contract.verdict import Report
 from mrp_check.learning import exercise as exercises
+from mrp_check.learning import tool_output
 from mrp_check.package.package import BACKUP, Package, is_of_tools
 from mrp_check.sandbox import confine
 from mrp_check.verdict import check
@@ -38,6 +39,7 @@ class Check(threading.Thread):
 
     doing: what it does at the moment
     report: what is known so far; findings: those of it that keep the exercise from being passed
+    tools: the lines in which a tool says what is wrong
     done: whether that is all
     error: why it could not be checked, in a sentence
     """
@@ -53,6 +55,7 @@ class Check(threading.Thread):
         self._say = say
         self.report: Report | None = None
         self.findings: list[Finding] = []
+        self.tools: list[str] = []
         self.done = False
         self.error = ""
         self._exercise, self._scratch = exercise, scratch
@@ -90,7 +93,10 @@ class Check(threading.Thread):
     def _know(self, report: Report) -> None:
         if self._stopped.is_set():
             raise _Stopped
-        self.report, self.findings = report, exercises.wrong(report)
+        self.findings = exercises.wrong(report)
+        if self.findings:
+            self.tools = tool_output.lines_of(report, self._exercise.place)
+        self.report = report
 
     def stop(self) -> None:
         """End it, and wait for its end: nothing of it runs then."""
@@ -122,7 +128,7 @@ class Watched:
         self._seen = self._checked = None
 
     def reset(self) -> None:
-        """Begin the exercise anew."""
+        """Start the exercise again, without the student's changes."""
         self.stop()
         self.exercise.remove()
         self.exercise.prepare()

@@ -184,6 +184,7 @@ class _Examination:
             unseen={id_: unseen[id_] for id_ in self.ids if id_ in unseen},
             left_out=[id_ for id_ in REQUIREMENTS if is_any and id_ not in {*self.asked, *MORE}],
             console=_console(known.get("observed")),
+            tools=_failed_step(known.get("catkin")),
             suppressed=[finding for finding in suppressed if finding.id in self.ids],
             isolation=sandbox.isolation_text(),
             folder=package.root.resolve(),
@@ -194,6 +195,12 @@ def _console(observed):
     """Return the lines that roslaunch and its nodes printed, as far as they ran."""
     launched = observed.launch if observed else None
     return [line for _, _, line in launched.lines] if launched else []
+
+
+def _failed_step(catkin):
+    """Return the lines of the step of building that failed, as far as one has."""
+    steps = [vars(catkin).get(name) for name in ("configured", "built")] if catkin else []
+    return [line for step in steps if step and not step.ok for line in step.output.splitlines()]
 
 
 def unseen(case, ids):
