@@ -158,7 +158,7 @@ learn: packages-learn  ## show one exercise after the other, and check each when
 	@$(IN_ENVIRONMENT) PYTHONPATH=catkin_ws/src/mrp_check/src exec /usr/bin/python3 \
 	  -m mrp_check.cli.learn catkin_ws/exercises
 
-# HINT=1 shows the hint; RESET=1 begins the exercise anew. Exit code 1 only says: not yet.
+# HINT=1 shows the hint; RESET=1 starts the exercise again. Exit code 1 only says: not yet.
 .PHONY: exercise
 exercise: packages-check  ## show the next exercise, or check it; HINT=1 gives a hint
 	@$(IN_ENVIRONMENT) PYTHONPATH=catkin_ws/src/mrp_check/src /usr/bin/python3 -m mrp_check.cli.learn --once \

@@ -198,7 +198,7 @@ def use_free_master():
 
 
 def run(name, entry):
-    """Run a lab from its claim to its sum. Raises NotSeenError if it does not show what it claims."""
+    """Run a lab. Raises NotSeenError if it does not show what it claims."""
     print(f"{name}: {claim_of(name)}\n\nThe launch file: {launch_file(name)}")
     use_free_master()
     with Run(entry.get("hide")) as lab:

@@ -10,7 +10,7 @@ import pytest
 from mrp_check.cli import learn
 from mrp_check.contract import defects, packages
 from mrp_check.contract.finding import WARNING, Finding
-from mrp_check.learning import plain, watch
+from mrp_check.learning import plain, tool_output, watch
 from mrp_check.learning.exercise import Course
 from mrp_check.verdict import check
 from mrp_testing.waiting import DEADLINE, wait_until
@@ -51,7 +51,7 @@ def test_first_call_shows_the_task_and_makes_the_package(tmp_path, capsys, check
     printed = capsys.readouterr().out
     place = tmp_path / "mine" / f"01_{FIRST}"
     assert f"Exercise 1 of {COUNT}\n\n# A parenthesis" in printed
-    assert f"The package: {place}" in printed
+    assert f"  {place}/src/subscriber_py_node.py\n" in printed
     assert (place / "TASK.md").read_text() in printed
     assert (place / "package.xml").exists() and not (place / "doc").exists()
     assert checked.folders == []
@@ -71,6 +71,54 @@ def test_not_yet_says_what_and_where_and_not_how(tmp_path, capsys, checked):
     assert checked.folders == [tmp_path / f"01_{FIRST}"]
 
 
+def test_findings_about_the_same_line_are_shown_as_one(tmp_path, capsys, checked):
+    plain.run_once(tmp_path)
+    for number in range(6):
+        checked.append(Finding("launch-nodes", f"Node {number} is missing.", "launch/a.launch", 7))
+    checked.append(Finding("launch-nodes", "Another line.", "launch/a.launch", 8))
+    capsys.readouterr()
+    plain.run_once(tmp_path)
+    printed = capsys.readouterr().out
+    assert "Node 0 is missing." in printed and "Another line." in printed
+    assert "Node 1 is missing." not in printed
+
+
+@pytest.mark.parametrize(
+    ("lines", "said"),
+    [
+        (
+            ["Scanning", "/tmp/a/workspace/src/copy/src/a.cpp:3:1: error: expected ;", "  3 | int"],
+            True,
+        ),
+        (["[100%] Built target a"], False),
+    ],
+)
+def test_tools_own_words_name_the_students_file(tmp_path, lines, said):
+    report = check.Report("mrp", "", check.FINDINGS, [], {}, tools=lines)
+    expected = [f"{tmp_path}/src/a.cpp:3:1: error: expected ;", "  3 | int"] if said else []
+    assert tool_output.lines_of(report, tmp_path) == expected
+
+
+def test_own_words_of_a_node_are_its_traceback(tmp_path):
+    console = [
+        "[INFO] [1.0]: [PUBLISHER PY NODE] namespace of node = /mrp/publisher_py_node",
+        "Traceback (most recent call last):",
+        '  File "/tmp/a/workspace/devel/lib/mrp/a.py", line 15, in <module>',
+        "    exec(compile(fh.read(), python_script, 'exec'), context)",
+        '  File "/tmp/a/workspace/src/copy/src/a.py", line 3, in <module>',
+        "    main()",
+        "[ INFO] [1.1]: [SUBSCRIBER CPP NODE] received message with data = 2",
+        "NameError: name 'main' is not defined",
+    ]
+    report = check.Report("mrp", "", check.FINDINGS, [], {}, console=console)
+    assert tool_output.lines_of(report, tmp_path) == [
+        "Traceback (most recent call last):",
+        f'  File "{tmp_path}/src/a.py", line 3, in <module>',
+        "    main()",
+        "NameError: name 'main' is not defined",
+    ]
+
+
 def test_a_warning_is_not_passed(tmp_path, checked):
     plain.run_once(tmp_path)
     checked.append(Finding("warnings", "It warns.", severity=WARNING))
@@ -83,7 +131,7 @@ def test_passed_goes_on_to_the_next_until_all_are_passed(tmp_path, capsys, check
         printed = capsys.readouterr().out
         assert f"Exercise {number} of {COUNT}\n" in printed
     plain.run_once(tmp_path)
-    assert f"All {COUNT} exercises are passed." in capsys.readouterr().out
+    assert f"You have finished all {COUNT}. Well done!" in capsys.readouterr().out
     assert checked.folders == [one.place for one in Course(tmp_path).exercises]
 
 
@@ -187,7 +235,9 @@ def test_without_a_terminal_it_goes_on_to_the_last(tmp_path, capsys, checked):
     printed = capsys.readouterr().out
     for number, exercise in enumerate(Course(tmp_path).exercises, 1):
         assert f"Exercise {number} of {COUNT}, {exercise.name}: passed.\n" in printed
-    assert printed.endswith(f"All {COUNT} exercises are passed.\n")
+        learned = Course(tmp_path).exercises[number - 1].defect.learned
+        assert f"You've learned: {learned}\n{number} of {COUNT}.\n" in printed
+    assert printed.endswith(f"You have finished all {COUNT}. Well done!\n")
 
 
 def test_the_solution_is_a_diff_that_solves_it(tmp_path, monkeypatch):

@@ -36,9 +36,10 @@ def env(tmp_path):
     temporary = tmp_path / "tmp"
     temporary.mkdir(mode=0o711)
     path = os.pathsep.join(["/usr/bin", os.environ["PATH"]])
-    kept = {k: v for k, v in os.environ.items() if k != "NO_COLOR"}
+    kept = {k: v for k, v in os.environ.items() if k not in ("NO_COLOR", "VISUAL", "DISPLAY")}
     source = str(check_sets.HERE.parent / "src" / "mrp_check" / "src")
-    own = {"TMPDIR": str(temporary), "TERM": "xterm", "PYTHONPATH": source}
+    editor = r"sed -i 's/\(msg.data\)$/\1)/'"
+    own = {"TMPDIR": str(temporary), "TERM": "xterm", "PYTHONPATH": source, "EDITOR": editor}
     return {**kept, **own, "PATH": path, variables.CCACHE: CACHE}
 
 
@@ -47,12 +48,6 @@ def assert_nothing_is_left(tmp_path):
     it ends with."""
     assert processes_with(str(tmp_path)) == {}
     assert [path.name for path in (tmp_path / "tmp").iterdir()] == []
-
-
-def solve(folder):
-    """Fix the first exercise, as somebody does who edits its file."""
-    place = Course(folder).exercises[0].place
-    check_sets.break_(place, FIRST, "--reverse")
 
 
 class Terminal:
@@ -112,20 +107,29 @@ def test_first_exercise_at_a_terminal(tmp_path, env):
     mine = tmp_path / "mine"
     terminal = Terminal(env, *COMMAND, str(mine))
     terminal.wait_for("A parenthesis", "Exercise 1 of", "| 0 passed")
-    terminal.wait_for("src/subscriber_py_node.py:", "  page:     pages/", "Not yet: 1")
+    script = Course(mine).exercises[0].place / "src" / "subscriber_py_node.py"
+    terminal.wait_for(
+        str(script)[-60:], "What the tools say", "SyntaxError: '(' was never", "Not yet: 1"
+    )
+    assert "A bracket is opened there" not in terminal.text
+    terminal.press("e", "A bracket is opened there", "  page:     /")
+    terminal.press("e", "press e: then I explain.")
     terminal.press("h", "Hint", "Count the parentheses")
-    terminal.press("s", "The solution is shown when the exercise is passed.")
+    terminal.press("s", "You'll see the solution when you've passed.")
+    terminal.press("p", "The page subscriber: /")
     terminal.press("l", ">   1  open    read      A parenthesis", "    2  open")
     terminal.press("l", "Hint")
-    terminal.press("x", "x again deletes your changes")
-    script = Course(mine).exercises[0].place / "src" / "subscriber_py_node.py"
+    terminal.press("x", "Press x again to discard your changes")
     broken = script.read_text()
-    solve(mine)
-    terminal.wait_for("Passed. n goes on to the next.", "| 1 passed")
+    # The test's editor solves it.
+    terminal.press("o", "Checking: ")
+    terminal.wait_for(
+        "Passed: 1 of 40. n goes on.", "| 1 passed", "You've learned: Python's last line"
+    )
     terminal.press("s", "+++ b/src/subscriber_py_node.py")
     terminal.press("r", "started roslaunch server")
     terminal.scroll_to("[SUBSCRIBER PY NODE] received message")
-    terminal.press("x", "x again deletes your changes")
+    terminal.press("x", "Press x again to discard your changes")
     terminal.press("x", "A parenthesis")
     assert script.read_text() == broken
     terminal.press("n", "Exercise 2 of", "Checking: ")
@@ -147,7 +151,7 @@ def test_lines_without_a_terminal_and_the_end_by_a_signal(tmp_path, env):
         program.wait_for(lambda: any(line.startswith(found) for line in program.lines), found)
         assert program.stop(signal.SIGINT) == 1
     assert "# A parenthesis" in program.lines
-    assert "learn: stopped before its end; what it ran has ended, too." == program.lines[-1]
+    assert "Stopped. All that was started has ended; your changes are kept." == program.lines[-1]
     assert_nothing_is_left(tmp_path)
 
 

@@ -42,7 +42,11 @@ KINDS = ("read", "fix", "complete", "write")
 
 _FIELD = re.compile(r"([A-Z][\w-]*):(?: (.*))?")
 # A patch has all fields of a group, or none.
-_GROUPS = (("Fails", "Says"), ("Finds", "In", "Tells"), ("Order", "Kind", "Task", "Hint", "Learned"))
+_GROUPS = (
+    ("Fails", "Says"),
+    ("Finds", "In", "Tells"),
+    ("Order", "Kind", "Task", "Hint", "Learned"),
+)
 _WHY = ("Shows", "Also", "Why", "Fix", "Page", "General", "Try", "Needs")
 _FIELDS = (
     *("Base", "Breaks", "Erratum", "Missed", "Severity"),

@@ -19,8 +19,9 @@ _MOST = 12  # lines: of the first error, not of what follows from it
 # Colours, and the window's title that roslaunch sets.
 ESCAPES = re.compile(r"\x1b\[[0-9;]*m|\x1b\][^\x07]*\x07")
 _COPY = re.compile(r"/[^\s\"':]*/workspace/src/[^/\s]+/")  # of the package, in the scratch folder
-_BUILD_ERROR = re.compile(r"\berror:|CMake Error|undefined reference|\*\*\* ")
-_LOG_LINE = re.compile(r"\[ ?(INFO|DEBUG)\]|process\[|started ")
+_BUILD_ERROR = re.compile(r"\berror:|CMake Error|undefined reference")
+# What nodes log meanwhile, and what make adds to an error of g++.
+_NOISE = re.compile(r"\[ ?(INFO|DEBUG)\]|process\[|started |make(\[\d+\])?: |.*/ld: .*: in function")
 _RUN_ERROR = re.compile(
     r"Traceback|\[ ?(WARN|ERROR|FATAL)\]|^ERROR|RLException|\w+Warning:|terminate called|env: "
     r"|process has died|escalating to SIG"
@@ -46,11 +47,11 @@ def lines_of(report: Report, place: pathlib.Path) -> list[str]:
 
 
 def _from_first(pattern: re.Pattern[str], lines: Iterable[str]) -> Iterator[str]:
-    """Yield the lines from the first that a pattern is found in, but what nodes log meanwhile."""
+    """Yield the lines from the first that a pattern is found in, without noise."""
     begun = False
     for line in lines:
         begun = begun or bool(pattern.search(line))
-        if begun and line.strip() and not _LOG_LINE.match(line):
+        if begun and line.strip() and not _NOISE.match(line):
             yield line
 
 

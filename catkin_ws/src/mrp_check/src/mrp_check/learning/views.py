@@ -88,8 +88,9 @@ def _congratulation(course: exercises.Course, width: int) -> Iterator[Line]:
     yield "passed", "* * *  That was the last one. Congratulations!  * * *"
     yield "", ""
     text = (
-        f"You've read the errors of Python, g++, CMake and roslaunch, and fixed {len(course.exercises)}"
-        " packages. What's next? Start a package of your own, in the folder of the repository:"
+        "You've read the errors of Python, g++, CMake and roslaunch, and fixed"
+        f" {len(course.exercises)} packages. What's next? Start a package of your own, in the"
+        " folder of the repository:"
     )
     yield from _wrapped(text, width)
     yield "place", "  make new PKG=~/catkin_ws/src/my_package"
