@@ -21,7 +21,9 @@ ESCAPES = re.compile(r"\x1b\[[0-9;]*m|\x1b\][^\x07]*\x07")
 _COPY = re.compile(r"/[^\s\"':]*/workspace/src/[^/\s]+/")  # of the package, in the scratch folder
 _BUILD_ERROR = re.compile(r"\berror:|CMake Error|undefined reference")
 # What nodes log meanwhile, and what make adds to an error of g++.
-_NOISE = re.compile(r"\[ ?(INFO|DEBUG)\]|process\[|started |make(\[\d+\])?: |.*/ld: .*: in function")
+_NOISE = re.compile(
+    r"\[ ?(INFO|DEBUG)\]|process\[|started |make(\[\d+\])?: |.*/ld: .*: in function"
+)
 _RUN_ERROR = re.compile(
     r"Traceback|\[ ?(WARN|ERROR|FATAL)\]|^ERROR|RLException|\w+Warning:|terminate called|env: "
     r"|process has died|escalating to SIG"
