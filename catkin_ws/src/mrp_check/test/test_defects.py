@@ -127,6 +127,7 @@ def test_head_is_read(tmp_path):
             kind="fix",
             task="# A title\n\nA text,\n  which goes on. The page: `queues`.",
             hint="Look\nat it.",
+            learned="It works.",
         )
     ]
 
@@ -146,7 +147,11 @@ def test_head_is_read(tmp_path):
         ("Says: != 0\n", "", "the field Says is missing, as one of Fails, Says is there"),
         ("Tells: colon\n", "", "the field Tells is missing, as one of Finds, In, Tells is"),
         ("Hint: Look\n    at it.\n", "", "the field Hint is missing, as one of Order, Kind, Task"),
-        ('Kind: fix\n', '', 'the field Kind is missing, as one of Order, Kind, Task, Hint, Learned'),
+        (
+            "Kind: fix\n",
+            "",
+            "the field Kind is missing, as one of Order, Kind, Task, Hint, Learned",
+        ),
         ("Kind: fix", "Kind: guess", "expected one of read, fix, complete, write, in the field"),
         ("The page: `queues`.", "", "an empty line, a text, and 'The page: `queues`.', in the"),
         ("Erratum: E5", "Erratum: 5", "expected the number of an erratum, such as E5, in"),

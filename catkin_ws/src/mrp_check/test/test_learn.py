@@ -109,7 +109,10 @@ def test_first_exercise_at_a_terminal(tmp_path, env):
     terminal.wait_for("A parenthesis", "Exercise 1 of", "| 0 passed")
     script = Course(mine).exercises[0].place / "src" / "subscriber_py_node.py"
     terminal.wait_for(
-        "src/subscriber_py_node.py", "What the tools say", "SyntaxError: '(' was never", "Not yet: 1"
+        "src/subscriber_py_node.py",
+        "What the tools say",
+        "SyntaxError: '(' was never",
+        "Not yet: 1",
     )
     assert "A bracket is opened there" not in terminal.text
     terminal.press("e", "A bracket is opened there", "  page:     /")
