@@ -115,13 +115,19 @@ def env(request, tmp_path, known_compiler, roscore):
     """The environment of a user with a home of its own, and a master if the entry needs one. A
     master that entries share would go on to know nodes that were ended and could not say so."""
     # Below make, a make says make[1]. The logs belong into the home.
-    not_theirs = ("CCACHE", "MAKE", "MFLAGS", "ROS_LOG_DIR")
+    not_theirs = ("CCACHE", "MAKE", "MFLAGS", "ROS_HOME", "ROS_LOG_DIR", "XDG_CACHE_HOME")
     env = {k: v for k, v in os.environ.items() if not k.startswith(not_theirs)}
     needs = request.getfixturevalue("entry").needs.split()
     port = free_port()
     if "roscpp" in needs:
         env["CPLUS_INCLUDE_PATH"] = str(request.getfixturevalue("headers"))
     env.update(HOME=str(tmp_path), LC_ALL="C.UTF-8", PORT=str(port), ROS_MASTER_URI=uri_of(port))
+    # These entries bring the real apt-get: it only simulates, with lists in the test's own folder, or
+    # runs as nobody.
+    programs = tmp_path / "programs"
+    programs.mkdir()
+    (programs / "apt-get").symlink_to("/usr/bin/apt-get")
+    env["PATH"] = f"{programs}:{env['PATH']}"
     env.update(WORKSPACE=str(WORKSPACE), CMAKE_TOOLCHAIN_FILE=known_compiler, ROS_ETC_DIR=roscore)
     # roslaunch imports distutils: that of setuptools takes as long as half of ROS. From Python 3.12
     # on, there is no other.

@@ -3,7 +3,7 @@
 
 .. question:: NAME
    :right: 2                      the number of the right answer, from 1
-   :proof: mrp/values/test_...    the test that backs it, or
+   :test: mrp/values/test_...    the test that backs it, or
    :output: NAME                  the recorded console that shows it
 
    What is asked.
@@ -35,7 +35,7 @@ class Question(SphinxDirective):
     has_content = True
     option_spec = {
         "right": directives.positive_int,
-        "proof": directives.unchanged_required,
+        "test": directives.unchanged_required,
         "output": directives.unchanged_required,
     }
 
@@ -56,9 +56,9 @@ class Question(SphinxDirective):
         return self._drawn(name, right, prompt, choices)
 
     def _hold_to_proof(self):
-        proof, output = self.options.get("proof"), self.options.get("output")
+        proof, output = self.options.get("test"), self.options.get("output")
         if bool(proof) == bool(output):
-            raise self.error("expected one of :proof: and :output:")
+            raise self.error("expected one of :test: and :output:")
         if output:
             recorded(self, "outputs.json", output)
         elif proof not in cases.all_tests():

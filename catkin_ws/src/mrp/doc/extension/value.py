@@ -13,6 +13,7 @@ The text is an expression in Python, such as `contract.QUEUE_SIZE + 1` or `len(l
 import difflib
 import importlib
 import json
+import logging
 import re
 import sys
 import xml.etree.ElementTree as ElementTree
@@ -51,6 +52,7 @@ class Sources(dict):
 
     def __missing__(self, name):
         if name in self.modules:
+            logging.getLogger(name).setLevel(logging.WARNING)  # rospy logs that it is imported
             found = importlib.import_module(self.modules[name])
             self.used.add(found.__file__)
             return found

@@ -97,31 +97,31 @@ def _congratulation(course: exercises.Course, width: int) -> Iterator[Line]:
 
 
 def _findings(check: Check | None, explains: bool, width: int) -> Iterator[Line]:
-    """Yield what the tools say; and what we say, if it is asked for."""
+    """Yield what the tools say; or, if it is asked for, what we say."""
     if check and check.done and check.error:
         yield "", ""
         yield from _wrapped(console.plain(check.error), width)
         return
     if not check or not check.findings:
         return
+    yield "", ""
+    if explains:
+        yield "title", "What is wrong, explained (e: back)"
+        for line in exercises.lines_of(check.findings, check.report):
+            head, separator, path = line.partition("file://")
+            if separator:
+                yield from _link(path, width, head)
+            else:
+                yield from _wrapped(line, width, "" if line.startswith(" ") else "place")
+        return
     if check.tools:
-        yield "", ""
         yield "title", "What the tools say"
         for line in check.tools:
             yield from _wrapped(line, width)
     elif check.done:
-        yield "", ""
         yield from _wrapped("No tool complains, and still it doesn't do its job.", width)
-    if not explains:
-        yield "", ""
-        yield from _wrapped("Find it yourself, or press e: then I explain.", width)
-        return
-    for line in exercises.lines_of(check.findings, check.report):
-        head, separator, path = line.partition("file://")
-        if separator:
-            yield from _link(path, width, head)
-        else:
-            yield from _wrapped(line, width, "" if line.startswith(" ") else "place")
+    yield "", ""
+    yield from _wrapped("Find it yourself, or press e: then I explain.", width)
 
 
 def list_of(watched: Watched, chosen: int) -> Iterator[Line]:
