@@ -122,7 +122,7 @@ def env(request, tmp_path, known_compiler, roscore):
     if "roscpp" in needs:
         env["CPLUS_INCLUDE_PATH"] = str(request.getfixturevalue("headers"))
     env.update(HOME=str(tmp_path), LC_ALL="C.UTF-8", PORT=str(port), ROS_MASTER_URI=uri_of(port))
-    # These entries bring the real apt-get: it only simulates, with lists in the test's own folder, or
+    # These entries bring the real apt-get: it only simulates, with lists in the test's folder, or
     # runs as nobody.
     programs = tmp_path / "programs"
     programs.mkdir()

@@ -31,11 +31,13 @@ def errors(report):
 def reports():
     """Return a report with all that a finding can have, and one of no package."""
     findings = [
-        Finding("spin", "It never spins.", "src/a.py", 3, ERROR, "spin()", "nothing", "Add it."),
-        Finding("queue", "It is 1.", "src/a b.py", 3, change=("1", "10"), column=7),
-        Finding("values", "It is not seen.", None, None, WARNING, consequence_of="spin"),
+        Finding("spin", "It never spins.", "src/a.py", 3, fix="Add it.", severity=ERROR),
+        Finding("queue", "It is 1.", "src/a b.py", 3, change=("1", "10"), column=7, severity=ERROR),
+        Finding("values", "It is not seen.", consequence_of="spin", severity=WARNING),
     ]
-    kept = Finding("text", "It is as it is.", "CMakeLists.txt", None, NOTE, suppressed="It works.")
+    kept = Finding(
+        "text", "It is as it is.", "CMakeLists.txt", suppressed="It works.", severity=NOTE
+    )
     verdicts = dict.fromkeys(REQUIREMENTS, MET)
     verdicts["spin"] = BROKEN
     whole = Report("a", "", UNCHECKED, findings, verdicts, "It is busy.", folder=WORKSPACE)

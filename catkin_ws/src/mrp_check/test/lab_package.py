@@ -10,6 +10,7 @@ from mrp_check.code.facts import Facts
 from mrp_check.contract import spec
 from mrp_check.package.package import Package
 from mrp_check.rules import RULES
+from mrp_check.verdict.severity import severity
 
 MAIN = """
 
@@ -256,8 +257,8 @@ def findings_of(folder, contract, scratch):
     case = check_rules.case_of(Package(folder), scratch, contract, built=None, facts=Facts())
     found = []
     for rule in OF_RUN:
-        of_rule = list(rule.findings(case))
-        assert {finding.id for finding in of_rule} <= {*rule.ids}
-        found += of_rule
+        found += rule.ask(case)
     case.close()
+    for finding in found:
+        finding.severity = severity(finding.certainty, has_contract=True)
     return found

@@ -158,7 +158,7 @@ def test_another_package_of_the_workspace_is_not_found(tmp_path):
     cmake.write_text(cmake.read_text().replace("COMPONENTS", "COMPONENTS sibling"))
     report = check.check(Package(folder), None, ("configure",), timeout=300)
     assert report.verdict == check.UNCHECKED
-    assert "sibling is not on this machine" in report.reason
+    assert "sibling (not in Debian)" in report.reason
 
 
 def test_a_header_of_another_computer_is_found_where_nothing_can_be_built(tmp_path):
@@ -211,7 +211,7 @@ def test_what_needs_nothing_that_is_missing_is_built_and_run(tmp_path):
     found = {(f.id, f.file, f.line) for f in report.findings if f.severity == ERROR}
     right = {("compile", "src/says.cpp", 5), ("exit", "src/stays.cpp", 6)}
     assert found - {("starts", None, None)} == right, shown(report.findings)
-    assert report.reason.count("nowhere_msgs is not on this machine") == 1, report.reason
+    assert report.reason.count("nowhere_msgs (not in Debian)") == 1, report.reason
 
 
 NEEDS = """\

@@ -54,7 +54,8 @@ def test_it_marks_a_package_that_meets_the_contract(autograder):
     assert [id_ for id_, test in tests.items() if test["score"] != test["max_score"]] == [], found
     assert {id_ for id_, test in tests.items() if test["visibility"] == "hidden"} == {*HIDDEN}
     count = len(ASKED) - len(HIDDEN)
-    assert found["output"] == f"All public requirements are met: {count} of {count}."
+    verdict = f"All public requirements are met: {count} of {count}."
+    assert found["output"].splitlines()[0] == verdict
 
 
 def test_a_checker_that_is_killed_leaves_a_score_of_0(autograder):

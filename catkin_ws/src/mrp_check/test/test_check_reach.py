@@ -114,7 +114,7 @@ CONFINED = """
 import json, sys
 package, command, scratch = json.loads(sys.argv[1])
 sys.path.insert(0, package)
-from mrp_check import confine
+from mrp_check.sandbox import confine
 done = confine.run(command, scratch)
 print(done.code, done.output, done.errors)
 """
@@ -127,7 +127,7 @@ def test_nothing_of_the_host_is_within_reach(tmp_path, user):
     """No socket, be it in a file or not; no file of the user's; no setting of the kernel's.
     Without namespaces, root still promises all that has an owner."""
     code, scratch, secret = tmp_path / "code", tmp_path / "scratch", tmp_path / "secret"
-    shutil.copytree(pathlib.Path(confine.__file__).parent, code / "mrp_check")
+    shutil.copytree(pathlib.Path(confine.__file__).parents[1], code / "mrp_check")
     scratch.mkdir()
     secret.write_text("of the host")
     secret.chmod(0o600)

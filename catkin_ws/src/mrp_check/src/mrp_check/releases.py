@@ -13,18 +13,17 @@ from typing import Mapping, NamedTuple
 
 
 class Release(NamedTuple):
-    """What ROS 1 meets on a release. cpp_info: how roscpp begins a line of ROS_INFO."""
+    """What ROS 1 meets on a release."""
 
     name: str
     python: str
     cmake: str
-    cpp_info: str
 
 
 RELEASES: Mapping[int, Release] = {
-    12: Release("bookworm", "3.11", "3.25", "[ INFO]"),
-    13: Release("trixie", "3.13", "3.31", "[ INFO]"),
-    14: Release("forky", "3.14", "4.3", "[INFO]"),
+    12: Release("bookworm", "3.11", "3.25"),
+    13: Release("trixie", "3.13", "3.31"),
+    14: Release("forky", "3.14", "4.3"),
 }
 
 # CMake 4 refuses what is written for a CMake older than 3.5, as catkin's own toplevel.cmake is,

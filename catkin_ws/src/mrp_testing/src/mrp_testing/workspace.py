@@ -13,7 +13,12 @@ def copy_repository(target, *without):
 
     without: patterns of more names to leave out
     """
-    built = (".git", "build", "devel", "install", "__pycache__", ".*_cache")
-    ignore = shutil.ignore_patterns(*built, *without)
-    shutil.copytree(ROOT, target, ignore=ignore, symlinks=True)
+    by_name = shutil.ignore_patterns(".git", "__pycache__", ".*_cache", *without)
+
+    def ignored(folder, names):
+        # Only here: the checker has a folder build, too.
+        built = {"build", "devel", "install"} if pathlib.Path(folder) == WORKSPACE else set()
+        return by_name(folder, names) | built
+
+    shutil.copytree(ROOT, target, ignore=ignored, symlinks=True)
     (target / "catkin_ws" / "src" / "CMakeLists.txt").unlink(missing_ok=True)

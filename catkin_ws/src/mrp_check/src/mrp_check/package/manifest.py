@@ -6,13 +6,11 @@ from __future__ import annotations
 import re
 import xml.parsers.expat
 import xml.sax.saxutils
-from typing import Iterator
 
 from catkin_pkg.package import InvalidPackage, parse_package_string
 from catkin_pkg.package import Package as Manifest
 
 from mrp_check.contract.finding import Finding
-from mrp_check.contract.words import line_of
 from mrp_check.package.package import Package
 from mrp_check.package.workspace import Workspace
 from mrp_check.package.xml_file import elements, xml_finding
@@ -81,17 +79,6 @@ def named(manifest: Manifest, tests: bool = True) -> set[str]:
     """Return the names of all packages that a manifest declares, with or without those of tests."""
     known = declared(manifest).items()
     return set().union(*(names for kind, names in known if kind != "test" or tests))
-
-
-def doubled(package: Package) -> Iterator[tuple[str, int]]:
-    """Yield (name, line) of each package that stands in one kind of tag already.
-
-    catkin_pkg refuses it for <depend>, and takes it for all others."""
-    seen: set[tuple[str, str]] = set()
-    for match in _DEPENDENCY.finditer(package.text(FILE)):
-        if match[1] and match.groups() in seen:
-            yield match[2], line_of(match, 1)
-        seen.add((match[1], match[2]))
 
 
 def first_dependency(package: Package, tag: str = "") -> int:

@@ -10,7 +10,7 @@ import shutil
 import textwrap
 import time
 
-from mrp_check.contract.finding import ERROR, NOTE, WARNING
+from mrp_check.contract.finding import ERROR, NOTE, WARNING, Finding
 from mrp_check.contract.requirements import STAGES
 from mrp_check.contract.verdict import BROKEN, MET, UNCHECKED
 from mrp_check.rules import REQUIREMENTS
@@ -112,7 +112,7 @@ def causes(findings):
 
     The same cause is the same requirement, broken in the same way: the same is expected.
     """
-    found = {}
+    found: dict[tuple, tuple[Finding, list, list]] = {}
     for finding, following in with_consequences(findings):
         what = finding.expected or id(finding)
         key = finding.id, finding.severity, finding.consequence_of, what

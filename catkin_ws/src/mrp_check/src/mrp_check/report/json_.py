@@ -23,7 +23,8 @@ def data(report):
         for name in _INNER:
             del finding[name]
         finding["section"] = REQUIREMENTS[finding["id"]].section
-    del result["console"], result["folder"], result["is_public"]
+    for name in ("console", "tools", "folder", "is_public"):
+        del result[name]
     for name in ("reason", "left_out", "suppressed", "isolation"):
         if not result[name]:
             del result[name]
