@@ -45,6 +45,7 @@ def test_it_shows_what_runs_and_what_is_done(tmp_path, browser):
 
 
 def stream(browser):
-    """Return the names of all tasks in the stream, once there are as many as students."""
-    names = browser.run(DONE, "task_stream")
+    """Return the names of the tasks that mark a student, once there is one for each."""
+    # A busy machine shows there, too, what the scheduler itself spends time on.
+    names = [name for name in browser.run(DONE, "task_stream") or [] if name == "mark"]
     return names if len(names) >= len(STUDENTS) else None

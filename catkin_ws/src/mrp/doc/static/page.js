@@ -52,6 +52,15 @@ function giveLevels() {
   }
 }
 
+// The theme's page of search results has no heading of its own.
+function headSearch() {
+  const results = document.getElementById("search-results");
+  if (!results || document.querySelector("h1")) return;
+  const heading = document.createElement("h1");
+  heading.textContent = "Search";
+  results.before(heading);
+}
+
 // A link may lead into what is folded.
 function unfold() {
   const target = document.getElementById(decodeURIComponent(location.hash.slice(1)));
@@ -251,6 +260,7 @@ document.addEventListener("DOMContentLoaded", () => {
   connectTabs();
   makeReachable();
   giveLevels();
+  headSearch();
   window.addEventListener("hashchange", unfold);
   unfold();
 });

@@ -89,6 +89,7 @@ def policy_of(html):
     styles into its pages, and these very ones are allowed, by their hashes."""
     scripts = re.findall(r"<script(?![^>]*\ssrc=)[^>]*>(.*?)</script>", html, re.DOTALL)
     styles = re.findall(r'\sstyle="([^"]*)"', html)
+    styles += re.findall(r"<style[^>]*>(.*?)</style>", html, re.DOTALL)
     return (
         f"default-src 'self'; script-src 'self'{_hashes(scripts)}; "
         f"style-src 'self' 'unsafe-hashes'{_hashes(styles)}; img-src 'self' data:; "
