@@ -271,8 +271,8 @@ IN_BOUNDS := docker run --rm --init --network none --hostname localhost \
 need-docker:
 	@command -v docker > /dev/null || { \
 	  echo "error: this needs Docker, which is not installed on this machine" >&2; exit 1; }
-	@said=$$(docker info 2>&1 > /dev/null) || { \
-	  echo "error: 'docker info' says: $${said%%$$'\n'*}" >&2; \
+	@said=$$(docker ps 2>&1 > /dev/null) || { \
+	  echo "error: 'docker ps' says: $${said%%$$'\n'*}" >&2; \
 	  [[ "$$said" != *[Cc]"annot connect"* && "$$said" != *"failed to connect"* ]] || \
 	    echo "fix: start Docker's engine" >&2; exit 1; }
 

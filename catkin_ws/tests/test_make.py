@@ -120,7 +120,7 @@ def test_what_docker_says_reaches_the_user(says, fix, tmp_path):
     docker.write_text(f"#!/bin/sh\necho '{says}' >&2\necho more >&2\nexit 1\n")
     docker.chmod(0o755)
     said = make("need-docker", PATH=f"{tmp_path}:/usr/bin:/bin").stdout.splitlines()
-    assert said[0] == f"error: 'docker info' says: {says}"
+    assert said[0] == f"error: 'docker ps' says: {says}"
     assert ("fix: start Docker's engine" in said) == fix
 
 

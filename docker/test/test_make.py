@@ -98,7 +98,7 @@ def test_without_docker(tmp_path):
 def test_without_engine(tmp_path, monkeypatch):
     monkeypatch.setenv("DOCKER_HOST", f"unix://{tmp_path}/no-socket")
     error, fix = make_docker_build(tmp_path, "bash", "docker")
-    assert error.startswith("error: 'docker info' says: ") and "no-socket" in error
+    assert error.startswith("error: 'docker ps' says: ") and "no-socket" in error
     assert fix == "fix: start Docker's engine"
 
 
