@@ -13,6 +13,7 @@ import pathlib
 
 import cases
 import ledger
+import per_page
 import sentences
 from docutils import nodes
 from sphinx.util import logging
@@ -113,16 +114,6 @@ def _table(app, docname, page):
     return nodes.section("", nodes.title(title, title), content, ids=[nodes.make_id(name)])
 
 
-def _begin(app, env, docnames):
-    if not hasattr(env, "mrp_claims"):
-        env.mrp_claims = {}
-
-
-def _forget(app, env, docname):
-    if hasattr(env, "mrp_claims"):
-        env.mrp_claims.pop(docname, None)
-
-
 def _check_others(app, env):
     """Hold the README against its ledger; find a ledger without a page."""
     path = _ledger_of("README")
@@ -166,10 +157,9 @@ def _test_html(app, name, results):
 
 def setup(app):
     app.add_directive("tests", Tests)
-    app.connect("env-before-read-docs", _begin)
+    per_page.keep(app, "mrp_claims")
     app.connect("doctree-read", _mark)
     app.connect("doctree-resolved", _fill)
-    app.connect("env-purge-doc", _forget)
     app.connect("env-updated", _check_others)
     app.connect("build-finished", _write)
     return {"parallel_read_safe": False, "env_version": 3}

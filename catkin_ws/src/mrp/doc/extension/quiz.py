@@ -22,6 +22,7 @@ import pathlib
 import zipfile
 
 import cases
+import per_page
 from docutils import nodes
 from docutils.parsers.rst import directives
 from sphinx.util.docutils import SphinxDirective
@@ -190,16 +191,6 @@ def _item(name, question):
     )
 
 
-def _begin(app, env, docnames):
-    if not hasattr(env, "mrp_questions"):
-        env.mrp_questions = {}
-
-
-def _forget(app, env, docname):
-    if hasattr(env, "mrp_questions"):
-        env.mrp_questions.pop(docname, None)
-
-
 def _write(app, exception):
     if exception is None and app.builder.name == "html":
         (pathlib.Path(app.outdir) / "quiz.zip").write_bytes(qti(_in_order(app.env)))
@@ -208,8 +199,7 @@ def _write(app, exception):
 def setup(app):
     app.add_directive("question", Question)
     app.add_directive("score", Score)
-    app.connect("env-before-read-docs", _begin)
-    app.connect("env-purge-doc", _forget)
+    per_page.keep(app, "mrp_questions")
     app.connect("doctree-resolved", _fill)
     app.connect("build-finished", _write)
     return {"parallel_read_safe": False, "env_version": 1}

@@ -8,21 +8,13 @@ them.
 import json
 import pathlib
 
+import per_page
+
 
 def add_step(env, **step):
     """Add a step of the page that is being read."""
     step["page"] = env.docname
     env.mrp_steps.setdefault(env.docname, []).append(step)
-
-
-def _begin(app, env, docnames):
-    if not hasattr(env, "mrp_steps"):
-        env.mrp_steps = {}
-
-
-def _forget(app, env, docname):
-    if hasattr(env, "mrp_steps"):
-        env.mrp_steps.pop(docname, None)
 
 
 def _write(app, exception):
@@ -35,6 +27,5 @@ def _write(app, exception):
 
 def connect(app):
     """Have the steps collected while the pages are read, and written when all is built."""
-    app.connect("env-before-read-docs", _begin)
-    app.connect("env-purge-doc", _forget)
+    per_page.keep(app, "mrp_steps")
     app.connect("build-finished", _write)
