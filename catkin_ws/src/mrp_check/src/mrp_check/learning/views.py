@@ -89,11 +89,11 @@ def _congratulation(course: exercises.Course, width: int) -> Iterator[Line]:
     yield "", ""
     text = (
         "You've read the errors of Python, g++, CMake and roslaunch, and fixed"
-        f" {len(course.exercises)} packages. What's next? Start a package of your own, in the"
+        f" {len(course.exercises)} packages. What's next? Check a package of your own, in the"
         " folder of the repository:"
     )
     yield from _wrapped(text, width)
-    yield "place", "  make new PKG=~/catkin_ws/src/my_package"
+    yield "place", "  make check PKG=~/catkin_ws/src/my_package ANY=1"
 
 
 def _findings(check: Check | None, explains: bool, width: int) -> Iterator[Line]:
