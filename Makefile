@@ -8,7 +8,7 @@ MAKEFLAGS += --no-print-directory
 # What a recipe begins with that builds or runs anything of the workspace:
 # - a pyenv or conda python first on PATH breaks catkin and every Python node;
 # - another workspace, sourced in the user's shell, is none of this one's business;
-# - Debian 14's CMake 4 refuses what catkin itself asks for, unless it is told to take it as 3.5;
+# - Debian 14's CMake 4 refuses catkin's own files, unless this variable lets it treat them as 3.5;
 # - ROS One and ROS Noetic have a file to source, Debian's ROS has not;
 # - in a test, mrp_testing/guard.py puts programs in the place of sudo and its like.
 export MRP_OPT_ROS ?= /opt/ros

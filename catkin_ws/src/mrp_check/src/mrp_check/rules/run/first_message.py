@@ -23,18 +23,18 @@ _LATER = 1.0  # seconds for which it was watched after that
 
 
 def _findings(case: Case) -> Iterator[Finding]:
-    told = set()
+    reported = set()
     for run in logged.runs(case.observed):
         for one in run.seen.publications:
             topic = one.topic.rsplit("/", 1)[-1]
-            if one.node != run.path or (run.node, topic) in told or one.topic in ROS_TOPICS:
+            if one.node != run.path or (run.node, topic) in reported or one.topic in ROS_TOPICS:
                 continue
             times = [
                 m.time for m in run.seen.messages if (m.node, m.topic) == (run.path, one.topic)
             ]
             if not times or not _is_lost(case, run, one, times):
                 continue
-            told.add((run.node, topic))
+            reported.add((run.node, topic))
             heard = any(s.topic == one.topic for s in run.seen.subscriptions)
             call = "get_num_connections()" if case.spec.nodes[run.node].language == "python" else ""
             yield Finding(

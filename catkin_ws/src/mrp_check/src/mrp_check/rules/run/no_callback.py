@@ -17,14 +17,14 @@ _SECONDS = 2.0  # for which the first of them must have waited
 
 
 def _findings(case: Case) -> Iterator[Finding]:
-    told = set()
+    reported = set()
     for launched in case.observed.launches:
         where = f"under {launched.file}" if launched.file else "together with the other nodes"
         for path, name in launched.nodes.items():
-            topic = _unheard(launched.seen, path) if name not in told else None
+            topic = _unheard(launched.seen, path) if name not in reported else None
             is_cpp = any(case.package.kind(f) == "cpp" for f in case.facts.sources.get(name, ()))
             if topic and is_cpp:
-                told.add(name)
+                reported.add(name)
                 file, line = case.places.of(name, Kind.SPIN, Kind.SUBSCRIBER)
                 yield Finding(
                     "spin",
