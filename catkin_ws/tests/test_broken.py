@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The tests of the tests: each broken variant of the package must fail, for the right reason.
 
-A variant is a patch in catkin_ws/defects/. Its lines Fails and Says name the test case of a
+A variant is a patch in mrp_check/defects/. Its lines Fails and Says name the test case of a
 rostest, and what it says about the variant.
 """
 

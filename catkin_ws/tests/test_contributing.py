@@ -46,9 +46,9 @@ def test_every_way_is_held():
 
 @pytest.fixture
 def copy(tmp_path):
-    """The checker, the tutorial and the defects in a folder of their own, with the example."""
+    """The checker and the tutorial in a folder of their own, with the example."""
     ignore = shutil.ignore_patterns("__pycache__", "doc", "test")
-    for folder in ("src/mrp_check", "src/mrp", "defects"):
+    for folder in ("src/mrp_check", "src/mrp"):
         shutil.copytree(WORKSPACE / folder, tmp_path / "catkin_ws" / folder, ignore=ignore)
     for path, content in examples(section("A rule of the checker")).items():
         assert not (tmp_path / path).exists(), path
@@ -78,7 +78,7 @@ def check(copy):
 
 def test_a_new_rule_finds_its_defect_and_nothing_else(copy):
     assert check(copy) == []
-    patch = copy / "defects" / "manifest_not_described.patch"
+    patch = copy / "src" / "mrp_check" / "defects" / "manifest_not_described.patch"
     fields = dict(re.findall(r"^(\w+): (.*)$", patch.read_text(), re.MULTILINE))
     subprocess.run(
         ["patch", "-p1", "--fuzz=0", "--silent", f"--input={patch}"],

@@ -77,7 +77,7 @@ def test_broken_links_are_found(tmp_path):
     assert broken_links(tmp_path) == [f"page.html: {link}" for link in links]
 
 
-SOURCES = ("catkin_ws/src", "catkin_ws/defects", "catkin_ws/tests", "docker", "README.md")
+SOURCES = ("catkin_ws/src", "catkin_ws/tests", "docker", "README.md")
 _CODE = re.compile(r"^ *\.\. (excerpt|file|literalinclude|code-block|original|ours):: (\S+)", re.M)
 
 

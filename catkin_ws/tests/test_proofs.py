@@ -76,7 +76,7 @@ class TestOne:
         pass
 ''',
     "catkin_ws/src/mrp/test/test_one.cpp": "// Blocks.\nTEST(One, publisherCpp)\n{\n}\n",
-    "catkin_ws/defects/one.patch": (
+    "catkin_ws/src/mrp_check/defects/one.patch": (
         "Breaks: it\nFails: one.test test_both\nSays: it\n\n--- a/src/one.cpp\n+++ b/src/one.cpp\n"
     ),
     "docker/test/test_run.py": "def test_it():\n    pass\n",

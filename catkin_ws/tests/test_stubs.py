@@ -81,9 +81,11 @@ def vscode(name):
 
 
 def test_vscode_has_the_settings_of_pyright():
-    """It looks for pyrightconfig.json only in the folder that it has opened."""
-    lines = (WORKSPACE / "pyrightconfig.json").read_text().splitlines()
-    wanted = json.loads("\n".join(line for line in lines if not line.strip().startswith("//")))
+    """It looks for pyproject.toml only in the folder that it has opened."""
+    text = (WORKSPACE / "pyproject.toml").read_text()
+    section = text.split("[tool.pyright]\n")[1].split("\n[")[0]
+    lines = [line.split(" = ") for line in section.splitlines() if not line.startswith("#")]
+    wanted = {key: json.loads(value) for key, value in lines}
     settings = vscode("settings")
     assert settings["python.analysis.stubPath"] == "catkin_ws/" + wanted["stubPath"]
     for name in ("extraPaths", "typeCheckingMode"):

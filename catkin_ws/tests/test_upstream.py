@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What ROS itself does wrong: with its patch in upstream/, each lab goes as one would expect.
+"""What ROS itself does wrong: with its patch in doc/upstream/, each lab goes as one would expect.
 
 What happens without it is shown by the lab's own test, which the report names. The patches are
 applied to what is installed; tools/rebuild_upstream.sh builds Debian's sources with them, and runs
@@ -23,7 +23,7 @@ from mrp_testing.workspace import WORKSPACE
 
 pytestmark = pytest.mark.slow
 
-UPSTREAM = WORKSPACE / "upstream"
+UPSTREAM = WORKSPACE / "src" / "mrp" / "doc" / "upstream"
 INSTALLED = pathlib.Path(rosgraph.__file__).parent.parent
 # Where Debian's source package of ros_comm has the Python packages that a patch touches.
 SOURCES = {"clients/rospy/src": "rospy", "tools/rosmaster/src": "rosmaster"}

@@ -33,7 +33,7 @@ def clangd(file):
 
 
 def pyright(*files):
-    """Return file -> the errors that pyright reports; pyrightconfig.json names the stubs."""
+    """Return file -> the errors that pyright reports; pyproject.toml names the stubs."""
     report = json.loads(run(*PYRIGHT, "--outputjson", *files))
     assert report["summary"]["filesAnalyzed"] == len(files), report
     errors = {file: [] for file in files}

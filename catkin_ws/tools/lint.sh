@@ -46,7 +46,7 @@ check "mypy" $tools/mypy --no-error-summary --cache-dir $lint/mypy --config-file
 check "clangd and pyright" catkin_ws/tools/check_editor.py
 check "SARIF" catkin_ws/tools/check_sarif.py
 check "eslint" $tools/node $lint/node_modules/.bin/eslint --max-warnings 0 \
-  --config catkin_ws/eslint.config.mjs "${javascript[@]}"
+  --config catkin_ws/tools/eslint.config.mjs "${javascript[@]}"
 check "shellcheck" shellcheck "${shell[@]}"
 check "xmllint" xmllint --noout "${xml[@]}"
 # What shows how something is wrong is spelt wrong on purpose.

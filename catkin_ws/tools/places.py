@@ -25,7 +25,7 @@ import sys
 import tempfile
 
 WORKSPACE = pathlib.Path(__file__).resolve().parent.parent
-RECORD = WORKSPACE / "places.csv"
+RECORD = pathlib.Path(__file__).with_suffix(".csv")
 README = WORKSPACE.parent / "README.md"
 FIELDS = (
     "place date seconds_to_first_messages packages test passed failed skipped"

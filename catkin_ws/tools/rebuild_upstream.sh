@@ -2,12 +2,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # Usage: rebuild_upstream.sh FOLDER
 # Fetches Debian's sources of rospy, rosmaster, librostime and catkin into a folder. Builds them as they
-# are, where tests/test_upstream.py must fail, and with the patches in upstream, where it must pass. It
+# are, where tests/test_upstream.py must fail, and with the patches in src/mrp/doc/upstream, where it must pass. It
 # needs the network, some minutes, and a workspace that is built and sourced.
 #
 # A folder FOLDER/roscpp_core, or catkin, that is there is taken for the sources of librostime, or catkin.
 set -euo pipefail
-here=$(cd "$(dirname "$0")/../upstream" && pwd)
+here=$(cd "$(dirname "$0")/../src/mrp/doc/upstream" && pwd)
 mkdir -p "$1/lists/partial" "$1/cache/archives/partial"
 cd "$1"
 
@@ -61,7 +61,7 @@ complaints() {
 }
 
 tests() {
-  cd "$here/.."
+  cd "$here/../../../.."
   MRP_UPSTREAM="$OLDPWD/$1/workspace/install/lib/python3/dist-packages" \
     /usr/bin/python3 -m pytest -q tests/test_upstream.py
 }

@@ -4,8 +4,8 @@
 
 Usage: why.py [TEXT]; without a text it reads what is pasted or piped into it, such as a whole log.
 
-An entry stands in a file of the folder why/, below its name in brackets, or in the head of a patch
-in defects/. Its fields:
+An entry stands in a file of mrp/doc/why/, below its name in brackets, or in the head of a patch
+in mrp_check/defects/. Its fields:
 
     Shows: [rospack] Error: ...    a text as it is printed; lines that belong together stand below
     Also: rospack: ...             the same in another version; nothing here prints it
@@ -37,7 +37,7 @@ sys.path.insert(0, str(WORKSPACE / "src" / "mrp_check" / "src"))
 
 from mrp_check.contract import defects  # noqa: E402
 
-FOLDER = WORKSPACE / "why"
+FOLDER = WORKSPACE / "src" / "mrp" / "doc" / "why"
 ANSWERS = 3
 REQUIRED, SEVERAL = ("Shows", "Why", "Fix", "Try"), ("Shows", "Also")
 FIELDS = (*REQUIRED, "Also", "Page", "Above", "General", "Needs")

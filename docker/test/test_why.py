@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The error texts that Docker prints: those of the list in catkin_ws/why that need it."""
+"""The error texts that Docker prints: those of the list in mrp/doc/why that need it."""
 
 import os
 import pathlib

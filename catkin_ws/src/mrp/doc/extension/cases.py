@@ -5,7 +5,7 @@
     workspace/FILE/CASE   a test case of FILE.py, which pytest runs: in catkin_ws/tests, or in the
                           folder test of a package
     docker/FILE/CASE      a test case of docker/test/FILE.py
-    broken/NAME           a defect of catkin_ws/defects/ that a rostest of the tutorial must find
+    broken/NAME           a defect of mrp_check/defects/ that a rostest of the tutorial must find
 
 A test case names its language, as in test_publisher_py and publisherCpp. If it names none, a test
 in C++ is of C++, a defect is of the language that it breaks, and any other test is of both.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The defects: each is a patch in the workspace's folder defects/, which breaks a correct package.
+"""The defects: each is a patch in the package's folder defects/, which breaks a correct package.
 
 The head of a patch says what it breaks, and who must find that:
 
@@ -200,7 +200,7 @@ def _faults_of_value(field: str, value: str) -> Iterator[str]:
 def read_all(folder: pathlib.Path | None = None) -> list[Defect]:
     """Return all defects, by name. Raises DefectError if one is not as it must be.
 
-    folder: of the patches; without it, that of the workspace, or where it is installed
+    folder: of the patches; without it, that of this package, or where it is installed
     """
     folder = folder or resources.folder("defects")
     found = [read(path) for path in sorted(folder.glob("*.patch"))]

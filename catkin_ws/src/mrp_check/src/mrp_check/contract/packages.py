@@ -82,7 +82,7 @@ def lay_out(style: str, folder: pathlib.Path) -> None:
 
 
 def _copy_tutorial(folder: pathlib.Path) -> None:
-    tutorial = resources.folder("defects").parent / "src" / TUTORIAL
+    tutorial = resources.folder("defects").parents[1] / TUTORIAL
     if not (tutorial / "src").is_dir():
         raise PatchError(
             f"The exercises are built from the tutorial's sources, and there is no {tutorial}:"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The files beside the Python code: specs, schemas, templates, and the workspace's defects."""
+"""The files beside the Python code: specs, schemas, templates, and defects."""
 
 import pathlib
 
@@ -10,7 +10,7 @@ _HERE = pathlib.Path(__file__).resolve().parent
 
 
 def folder(name: str) -> pathlib.Path:
-    """Return the folder `name` of the package or of its workspace, or where it is installed."""
+    """Return the folder `name` of the package, or where it is installed."""
     installed = _HERE.parents[4] / "share" / "mrp_check" / name
-    in_sources = (_HERE.parents[2] / name, _HERE.parents[4] / name)
-    return next((folder for folder in in_sources if folder.is_dir()), installed)
+    in_sources = _HERE.parents[2] / name
+    return in_sources if in_sources.is_dir() else installed

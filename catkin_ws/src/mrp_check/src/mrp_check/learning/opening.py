@@ -37,7 +37,7 @@ def page(name: str) -> pathlib.Path:
 
     name: such as "subscriber"
     """
-    workspace = resources.folder("defects").parent
+    workspace = resources.folder("defects").parents[2]
     built = workspace / "build" / "docs" / "pages" / f"{name}.html"
     return built if built.exists() else workspace / "src/mrp/doc/pages" / f"{name}.rst"
 

@@ -14,9 +14,9 @@ from mrp_check.package.package import Package
 from mrp_check.run.observing import Observed
 from mrp_check.run.traces import ends
 
-# The entries that explain error texts: a folder of the whole workspace, which a package lacks that
-# is installed by itself.
-ENTRIES = pathlib.Path(__file__).resolve().parents[5] / "why"
+# The entries that explain error texts: a folder beside the tutorial's pages. A checker that is
+# installed by itself has none.
+ENTRIES = pathlib.Path(__file__).resolve().parents[4] / "mrp/doc/why"
 _ENTRY = re.compile(r"\[([a-z][\w-]*)\]")
 _TEXT = re.compile(r"(?:Shows|Also): (?:\d\d\| )?(.+)")
 # How roscpp and rospy begin a line on the console; and what differs from one run to the next.

@@ -3,7 +3,7 @@
 
 import { createRequire } from "node:module";
 
-const require = createRequire(new URL("build/lint/", import.meta.url));
+const require = createRequire(new URL("../build/lint/", import.meta.url));
 const js = require("@eslint/js");
 const { browser } = require("globals");
 
