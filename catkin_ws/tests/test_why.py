@@ -20,6 +20,8 @@ import rosgraph
 import rosmaster.main
 import rospkg
 import why
+import why_entries
+import why_search
 from front_door import environment, make
 from mrp_check import releases
 from mrp_check.build import configuring, cpp_words
@@ -33,7 +35,7 @@ from mrp_testing.workspace import ROOT, WORKSPACE
 
 pytestmark = pytest.mark.slow
 
-ENTRIES = why.entries()
+ENTRIES = why_entries.entries()
 HERE = [one for one in ENTRIES if one.needs != "docker"]  # the others: docker/test/test_why.py
 THREADS = [
     (head.split(" or "), text.strip())
@@ -154,9 +156,9 @@ def master(port):
 def missing(entry, process):
     """Return the lines of an entry's texts that were not printed. CMake breaks long lines, and what
     else it prints may come between those of an error."""
-    printed = [why.mask(" ".join(list(lines))) for lines in (process.lines, process.errors)]
-    expected = [line for text in entry.shows for line in why.shown_on(text, RELEASE)]
-    return [line for line in expected if not any(why.mask(line) in one for one in printed)]
+    printed = [why_search.mask(" ".join(list(lines))) for lines in (process.lines, process.errors)]
+    expected = [line for text in entry.shows for line in why_entries.shown_on(text, RELEASE)]
+    return [line for line in expected if not any(why_search.mask(line) in one for one in printed)]
 
 
 def parameters():
@@ -203,7 +205,7 @@ def end(process):
 
 @pytest.fixture(scope="module")
 def index():
-    return why.Index(ENTRIES)
+    return why_search.Index(ENTRIES)
 
 
 def names(index, text):
@@ -213,7 +215,7 @@ def names(index, text):
 @pytest.mark.parametrize("entry", ENTRIES, ids=lambda entry: entry.name)
 def test_each_text_leads_to_its_entry(entry, index):
     for text in (*entry.shows, *entry.also):
-        text = "\n".join(why.shown_on(text))
+        text = "\n".join(why_entries.shown_on(text))
         assert entry.name == names(index, text)[0], text
         if entry.name != "catkin-make-failed":
             assert entry.name == names(index, text + LAST_LINES)[0], text

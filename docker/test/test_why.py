@@ -12,9 +12,10 @@ from containers import PREFIX
 TOOLS = pathlib.Path(__file__).resolve().parents[2] / "catkin_ws" / "tools"
 sys.path.insert(0, str(TOOLS))
 
-import why  # noqa: E402
+import why_entries  # noqa: E402
+import why_search  # noqa: E402
 
-ENTRIES = [one for one in why.entries() if one.needs == "docker"]
+ENTRIES = [one for one in why_entries.entries() if one.needs == "docker"]
 
 
 @pytest.mark.parametrize("entry", ENTRIES, ids=lambda entry: entry.name)
@@ -26,8 +27,8 @@ def test_text_is_printed(entry, image):
         stderr=subprocess.STDOUT,
         text=True,
     )
-    printed = why.mask(done.stdout.replace(PREFIX + "why", "mrp"))
+    printed = why_search.mask(done.stdout.replace(PREFIX + "why", "mrp"))
     for text in entry.shows:
         # Which Docker runs is no matter of this machine's Debian.
-        texts = [why.shown_on(text, release) for release in ("12", "13")]
-        assert any(all(why.mask(line) in printed for line in lines) for lines in texts), text
+        texts = [why_entries.shown_on(text, release) for release in ("12", "13")]
+        assert any(all(why_search.mask(line) in printed for line in lines) for lines in texts), text

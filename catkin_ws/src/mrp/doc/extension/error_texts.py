@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Directive `why`: each error text that has an entry, with its cause and its fix (tools/why.py).
+"""Directive `why`: each error text that has an entry, with its cause and its fix.
 
 A heading is the text itself: so the site's search finds it, and leads to its place. The cause and
 the fix are sentences of the page, which stand in its list.
@@ -13,7 +13,7 @@ import cases
 from listing import Generated
 
 sys.path.append(str(cases.WORKSPACE / "tools"))
-import why as tool
+import why_entries as tool
 
 
 class Why(Generated):

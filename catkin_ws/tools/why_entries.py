@@ -1,0 +1,99 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Read the entries of `make why`: error texts, each with its cause and its fix.
+
+An entry is in a file of mrp/doc/why/, below its name in brackets, or in the head of a patch in
+mrp_check/defects/. Its fields:
+
+    Shows: [rospack] Error: ...    a text as it is printed; lines that belong together follow
+    Also: rospack: ...             the same in another version; nothing here prints it
+    Why: The terminal ...          the cause, in one or two sentences
+    Fix: Source ...                what to do, in one or two sentences
+    Page: wrong#there-is-no-master where the pages say more
+    Above: yes                     the cause is above: such an entry comes last
+    General: yes                   right for any name, where other entries need a certain one
+    Try: rostopic list             the commands that make ROS print it
+    Needs: master                  what they need: see tests/test_why.py, or docker/test/test_why.py
+
+There may be several fields Shows and Also. A line of Shows that begins with "12| " or "13| " is
+from one Debian release. tests/test_why.py runs Try, and compares Shows with what is printed.
+"""
+
+import dataclasses
+import pathlib
+import re
+import sys
+
+WORKSPACE = pathlib.Path(__file__).resolve().parents[1]
+sys.path.insert(0, str(WORKSPACE / "src" / "mrp_check" / "src"))
+
+from mrp_check.contract import defects  # noqa: E402
+
+FOLDER = WORKSPACE / "src" / "mrp" / "doc" / "why"
+REQUIRED, SEVERAL = ("Shows", "Why", "Fix", "Try"), ("Shows", "Also")
+FIELDS = (*REQUIRED, "Also", "Page", "Above", "General", "Needs")
+
+
+@dataclasses.dataclass(frozen=True)
+class Entry:
+    """What is printed, why, and what to do. theme: the heading under which it is listed."""
+
+    name: str
+    theme: str
+    shows: tuple
+    why: str
+    fix: str
+    try_: str
+    also: tuple = ()
+    page: str = ""
+    above: str = ""
+    general: str = ""
+    needs: str = ""
+    defect: defects.Defect = None
+
+    @property
+    def address(self):
+        """Its place on the pages: that of the page that explains it, or of the list."""
+        return self.page or f"why#{self.name}"
+
+
+class EntryError(Exception):
+    """An entry is malformed; the text is one sentence."""
+
+
+def entries():
+    """Return all entries: those of the files, by theme, and then those of defects."""
+    found = [entry for path in sorted(FOLDER.glob("*.txt")) for entry in _of_file(path)]
+    for defect in defects.read_all():
+        if defect.why:
+            name = defect.name.replace("_", "-")
+            found.append(_entry(name, "Mistakes in a package", defect.why, defect=defect))
+    return found
+
+
+def _of_file(path):
+    theme, *parts = re.split(r"^\[([\w-]+)\]\n", path.read_text(), flags=re.MULTILINE)
+    for name, text in zip(parts[::2], parts[1::2]):
+        yield _entry(name, theme.strip("# \n"), defects.fields_of(text, f"{path.name}, {name}"))
+
+
+def _entry(name, theme, found, **more):
+    missing = [field for field in REQUIRED if field not in found]
+    unknown = [field for field in found if field not in FIELDS]
+    twice = [field for field in found if len(found[field]) > 1 and field not in SEVERAL]
+    if missing or unknown or twice:
+        what = f"missing {missing}, unknown {unknown}, more than once {twice}"
+        raise EntryError(f"{name}: expected fields among {', '.join(FIELDS)}; {what}.")
+    once = {field: values[0] for field, values in found.items() if field not in SEVERAL}
+    texts = {field.lower(): tuple(map(_dedent, found.get(field, ()))) for field in SEVERAL}
+    plain = {field.lower(): " ".join(once[field].split()) for field in once if field != "Try"}
+    return Entry(name=name, theme=theme, try_=once["Try"], **texts, **plain, **more)
+
+
+def _dedent(text):
+    return "\n".join(line.strip() for line in text.splitlines())
+
+
+def shown_on(text, release=None):
+    """Return the lines of a text that is printed, on one Debian release or on any."""
+    lines = [re.fullmatch(r"(?:(\d+)\| )?(.*)", line).groups() for line in text.splitlines()]
+    return [line for debian, line in lines if not debian or release in (None, debian)]

@@ -1,0 +1,307 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Find the entries of `make why` that are nearest to a text, by the words they share.
+
+A word counts the more the fewer entries have it, and two words side by side count as one more word.
+Names, paths and numbers are the reader's own: only an entry about a certain name, such as rospy,
+asks for it.
+"""
+
+import collections
+import dataclasses
+import itertools
+import math
+import re
+
+from why_entries import shown_on
+
+ANSWERS = 3
+
+# A colour code may have lost its first character on its way through a browser.
+COLOURS = re.compile(
+    r"(?:\x1b|\^\[|\\x1b|\\033|\\u001b|\\e|\uFFFD)\[[0-9;]*[mK]|\[\d[0-9;]*m|\x1b\][^\x07]*\x07"
+)
+# What differs from one run to the next, and from one machine to another. An exit code stays: it
+# says what happened.
+_MASKS = (
+    (COLOURS, ""),
+    (re.compile("[‘’`´]"), "'"),
+    (re.compile("[“”]"), '"'),
+    (re.compile(r"(?<![\w.])~?/[^\s:;,'\"()\[\]<>]+"), "/#"),
+    (re.compile(r"\b(?:0x[0-9a-f]+|[0-9a-f]{32,})\b"), "#"),
+    (re.compile(r"(?<!exit code )(?<!exit code -)(?<!\d)(?:(?<=\s)-)?\d+(?:\.\d+)*"), "#"),
+)
+# What the system, the shell and g++ say in other languages: Chinese, Japanese, German, Spanish,
+# French and Portuguese. Longer texts come first.
+_ENGLISH = {
+    ": ": "：",
+    ", ": "，",
+    "No such file or directory": "没有那个文件或目录|そのようなファイルやディレクトリはありません"
+    "|Datei oder Verzeichnis nicht gefunden|No existe el (?:archivo|fichero) o el directorio"
+    "|Aucun fichier ou dossier de ce (?:type|nom)|(?:Arquivo|Ficheiro) ou \\w+ inexistente",
+    "Permission denied": "权限不够|許可がありません|Keine Berechtigung|Permiso denegado"
+    "|Permission non accordée|Permissão (?:negada|recusada)",
+    "command not found": "未找到命令|コマンドが見つかりません|(?:Kommando|Befehl) nicht gefunden"
+    "|(?:orden|comando) no encontrad[oa]|commande introuvable|comando não encontrado",
+    "Unable to locate package": "无法定位软件包|No se ha podido localizar el paquete"
+    "|Impossible de trouver le paquet|(?:Não foi possível|Impossível) encontrar o pacote",
+    "Segmentation fault": "段错误|セグメンテーション違反|Speicherzugriffsfehler"
+    "|Violación de segmento|Erreur de segmentation|Falha de segmentação",
+    "core dumped": "核心已转储|コアダンプ|Speicherabzug geschrieben|.core. generado"
+    "|imagem do núcleo gravada",
+    "Aborted": "已放弃|Abgebrochen|Abortado",
+    "Killed": "已杀死|Getötet",
+    "Connection refused": "拒绝连接|接続を拒否されました|Verbindungsaufbau abgelehnt"
+    "|Conexión rehusada|Connexion refusée|Conexão recusada",
+    "No space left on device": "设备上没有空间|Auf dem Gerät ist kein Speicherplatz mehr verfügbar",
+    "was not declared in this scope": "在此作用域中(?:尚未|未)声明"
+    "|はこのスコープで宣言されていません|wurde in diesem Gültigkeitsbereich nicht definiert"
+    "|no se declaró en este ámbito|n.a pas été déclaré dans cette portée",
+    "undefined reference to": "未定义的引用|に対する定義されていない参照"
+    "|Nicht definierter Verweis auf|référence indéfinie vers",
+    "Waiting for unfinished jobs": "正在等待未完成的任务",
+    "fatal error": "致命错误|致命的エラー|schwerwiegender Fehler|erreur fatale|error fatal",
+    "error": "错误|エラー|\\bFehler\\b|\\berreur\\b|\\berro\\b",
+    "warning": "警告|\\bWarnung\\b|\\bavertissement\\b",
+}
+# Of a path, only the last part counts, and whether it is one of ROS's own.
+_FOLDERS = re.compile(r"(?<![\w.])~?(/opt/ros/\w+)?/(?:[^\s/:;,'\"()\[\]<>]+/)*")
+# What only ROS 2 prints: an entry must have such a word, too. The names of its packages, such as
+# ament_cmake, turn up in what ROS 1 prints.
+_ROS2 = re.compile(
+    r"(?<![\w/-])ros2(?![\w/.-])|rosbag2|\brcl(?:cpp|py)?\b|\brmw_\w+|\bcolcon\b|\[rviz2"
+    r"|/opt/ros/(?:foxy|galactic|humble|iron|jazzy)\b"
+    r"|(?<![\w/])[a-z]\w*/(?:msg|srv|action)/[A-Z]\w*\b(?!\.)"
+)
+_OF_ROS2 = "rosii"  # the word that stands for it
+# Other languages and programs, and what shows that a text is about ROS all the same.
+_OTHERS = re.compile(
+    r"\.(?:[cm]?js|jsx|tsx?|java|kt|rs|rb|php|cs|swift|c):[\d(]|\.go:\d+:\d"
+    r"|\bat \S+ \(\S+:\d|^goroutine |^panic: |^configure: |\bgit@|\bgithub\.com|nodesource"
+    r"|docker-ce|/lib/modules/|\bfixture '"
+    r"|\b(?:npm|yarn|node_modules|webpack|java|gradle|maven|cargo|rustc|PHP|ENOENT|CUDA|pytest)\b"
+    r"|\b(?:django|flask|pandas|tensorflow|jinja2|sqlalchemy|selenium|requests\.exceptions)\."
+    r"|(?:dist|site)-packages/(?:django|flask|pandas|torch|tensorflow)/"
+    r"|\b(?:systemd(?:-\w+)?\[|systemctl|journalctl|kubelet|kubectl|ansible|terraform)"
+    r"|(?<![\w/.-])(?i:postgres\w*|psycopg\w*|mysql|mongodb?|redis|nginx|apache2?)(?![\w/])"
+    r"|[A-Z]:[/\\](?:Program|Users|Windows)",
+    re.MULTILINE,
+)
+_ROS = re.compile(
+    r"\bros(?:[_\d]|\b|bag|bash|build|cd|clean|comm|console|core|cpp|dep|distro|graph|install|launch"
+    r"|lib|make|master|msg|node|out|pack|param|pkg|py|run|serial|service|srv|test|topic|version)"
+    r"|catkin|\.launch\b|package\.xml|_msgs\b|\bxacro|\bgazebo|\brviz|\btf2?[._]|actionlib|nodelet"
+    r"|/devel/|\brqt_",
+    re.IGNORECASE,
+)
+_WORD = re.compile(r"[^\W\d_]+|\d+")
+# A name in quotes or brackets is somebody's own: that of a package, a topic, a parameter.
+_NAME = re.compile(
+    r"""'[^'\s]+'|"[^"\s]+"|\[[^][\s]+\]|'(?:[\w:]+ )?~?\w+(?:::|[(<])[^'\n]*'"""
+    r"|\b[A-Z]+(?:_[A-Z]+){2,}\b|\b(?:ros|python3?|lib\w+)-[\w.-]+"
+)
+_NO_MODULE = re.compile(r"No module named ([\w.]+)")  # Python 2 has no quotes
+# How much of an entry's words a text must have, or how much of the text's words the entry must
+# explain; and the least sum of the two.
+_OF_ENTRY, _OF_TEXT, _BOTH = 0.55, 0.6, 1.1
+_LEAST = 7.0  # the weight of the words that both have
+_RARE, _CANDIDATES = 80, 60  # texts of entries
+_TOGETHER = 2  # lines: messages are broken into that many
+_LONG = 2000  # characters: a line is cut there
+_MANY = 500  # lines: of a longer text, only those around an error are searched
+_NO_DIGITS = dict.fromkeys(map(ord, "0123456789"))
+_PROBLEMS = ("rror", "RROR", "xception", "ail", "atal", "FATAL", "arning", "WARN", "not ", "died")
+# The last lines of roslaunch, make and catkin: the cause is above them. A negative exit code, or
+# one of a shell (128 and the signal), does say something.
+_ENDING = re.compile(
+    r".*process has died \[pid \d+, exit code (?!-|13[2-9])\d+\b.*|log files?: .*"
+    r"|=*(?:REQUIRED )?process \[.*\] has died!|Initiating shutdown!"
+    r"|.*make(?:\[\d+\])?: \*\*\* .*(?:Error \d+|Waiting for unfinished jobs.*)"
+    r"|.*recipe for target .* failed|compilation terminated\.?"
+    r"|.*collect2: error: ld returned \d+ exit status|-- Configuring incomplete, errors occurred!"
+    r'|Invoking "(?:make|cmake)\b.*" failed'
+)
+# Lines around any error, which say nothing of it.
+_EVERYWHERE = re.compile(
+    r"Traceback \(most recent call last\):|\.\.\. logging to .*|Checking log directory .*"
+    r"|Press Ctrl-C to interrupt|Done checking log file .*|The traceback for the exception .*"
+    r"|auto-starting new master|started (?:roslaunch server|core service) .*|ROS_MASTER_URI=.*"
+    r"|process\[.*\]: started with pid .*"
+)
+# What begins a warning; indented lines below belong to it. That the standard of C++ is too old is a
+# cause, though g++ only warns.
+_WARNING = re.compile(r"\b(?:warning:(?!.* only available with )|\w*Warning\b|WARN(?:ING)?\b)")
+
+
+def mask(text):
+    """Return a text without what differs from run to run: paths, numbers, colours."""
+    for pattern, stand_in in _MASKS:
+        text = pattern.sub(stand_in, text)
+    return " ".join(text.split())
+
+
+@dataclasses.dataclass(frozen=True)
+class Answer:
+    """An entry that is near to a text, the lines it explains, and how near it is. doubtful: the two
+    have little in common."""
+
+    entry: object
+    lines: tuple
+    score: float
+    doubtful: bool
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class _Text:
+    """One text of an entry, or some lines of what the reader asks about. words: outside of names.
+    ends: only the last lines of roslaunch or make."""
+
+    words: frozenset
+    names: frozenset
+    ends: bool
+    entry: object = None
+    lines: tuple = ()
+    warns: bool = False
+
+
+class Index:
+    """All entries, to be searched by the words of a text."""
+
+    def __init__(self, entries):
+        self._texts = [
+            _text("\n".join(shown_on(text)), entry=entry)
+            for entry in entries
+            for text in (*entry.shows, *entry.also)
+        ]
+        entries_of, self._having = collections.defaultdict(set), collections.defaultdict(list)
+        for text in self._texts:
+            for word in text.words | text.names:
+                entries_of[word].add(text.entry.name)
+            for word in text.words:
+                self._having[word].append(text)
+        self._weight = {
+            word: math.log(1 + len(entries) / len(having)) * (0.6 if " " in word else 1)
+            for word, having in entries_of.items()
+        }
+        # A text that says what a general entry says, and names somebody: it needs this name.
+        general = {text.words for text in self._texts if text.entry.general}
+        self._special = {
+            text
+            for text in self._texts
+            if text.names and not text.entry.general
+            if any(words <= text.words for words in general)
+        }
+        self._sums = {text: self._sum(text.words) for text in self._texts}
+
+    def nearest(self, text, count=ANSWERS):
+        """Return the answers to a text, the nearest one first. Entries that only say that the cause
+        is above come last."""
+        text = COLOURS.sub("", "\n".join(_near_problems(text.splitlines())))
+        if _OTHERS.search(text) and not _ROS.search(text):
+            return []
+        for words, others in _ENGLISH.items():
+            text = re.sub(others, f" {words} ", text)
+        lines = text.splitlines()
+        found = self._answers(line for line in lines if not _ENDING.fullmatch(line.strip()))
+        found = found or self._answers(lines)
+        last = [answer for answer in found if answer.entry.above][:1]
+        causes = [
+            answer
+            for answer in found
+            if not answer.entry.above
+            and not any(a.lines == answer.lines and a.score > 1.2 * answer.score for a in last)
+        ]
+        return [*causes, *last][:count]
+
+    def _answers(self, lines):
+        """Return all answers, the best one first, and those to warnings last."""
+        best = {}
+        for passage in _passages(lines):
+            for answer in self._scored(passage):
+                rank = (not passage.warns, answer.score)
+                if rank > best.get(answer.entry.name, ((False, 0.0), None))[0]:
+                    best[answer.entry.name] = rank, answer
+        return [
+            answer for _, answer in sorted(best.values(), key=lambda item: item[0], reverse=True)
+        ]
+
+    def _scored(self, passage):
+        """Yield an answer for each text that is near to a passage."""
+        all_words = self._sum(passage.words)
+        for text in self._candidates(passage.words):
+            shared = self._sum(passage.words & text.words)
+            of_entry, of_text = shared / self._sums[text], shared / all_words
+            same = passage.names & text.names
+            if passage.ends != text.ends or (text in self._special and not same):
+                continue
+            if _OF_ROS2 in passage.words and _OF_ROS2 not in text.words:
+                continue
+            if (of_entry < 0.99 or of_text < 0.7) and not passage.ends:
+                if max(of_entry / _OF_ENTRY, of_text / _OF_TEXT) < 1 or shared < _LEAST:
+                    continue
+                if of_entry + of_text < _BOTH:
+                    continue
+            score = shared * (0.3 + 0.7 * of_entry) * (0.3 + 0.7 * of_text)
+            score += sum(self._weight[word] for word in same)
+            if text in self._special:
+                score *= 0.7 + 0.3 * len(same) / len(text.names)
+            doubtful = min(of_entry, of_text) < 0.3 or of_entry + of_text < 0.9
+            yield Answer(text.entry, passage.lines, score, doubtful)
+
+    def _candidates(self, words):
+        """Return the texts that share the rarest words: all of them would take too long."""
+        having = sorted((self._having[word] for word in words if word in self._having), key=len)
+        rare = [texts for texts in having if len(texts) <= _RARE] or having[:2]
+        shared = collections.Counter(itertools.chain.from_iterable(rare))
+        return [text for text, _ in shared.most_common(_CANDIDATES)]
+
+    def _sum(self, words):
+        return sum(self._weight.get(word, 0) for word in words) or 1.0
+
+
+def _text(text, **more):
+    """Return the words of a text, with pairs of words, and the words of its names."""
+    readable = _NO_MODULE.sub(r"No module named '\1'", text)
+    readable = _ROS2.sub(f" {_OF_ROS2} ", readable)
+    readable = mask(_FOLDERS.sub(lambda match: " optros " if match[1] else " ", readable))
+    names = {name.strip("'\"[]").lower() for name in _NAME.findall(readable)} - {""}
+    names |= {name.partition(".")[0] for name in names}
+    words = {_OF_ROS2} if _OF_ROS2 in readable else set()
+    for part in _NAME.split(readable):
+        found = _WORD.findall(part.lower())
+        words.update(found, (f"{first} {second}" for first, second in itertools.pairwise(found)))
+    ends = all(_ENDING.fullmatch(line.strip()) for line in text.splitlines())
+    return _Text(frozenset(words), frozenset(names), ends, **more)
+
+
+def _near_problems(lines):
+    """Return the lines of a text; of a very long one, those with an error and those around them."""
+    if len(lines) > _MANY:
+        first = {}
+        for at, line in enumerate(lines):
+            if any(word in line for word in _PROBLEMS):
+                first.setdefault(line[:_LONG].translate(_NO_DIGITS), at)
+        ats = [*first.values()]
+        ats = sorted({*ats[: _MANY // 2], *ats[-_MANY // 2 :]})
+        around = sorted({near for at in ats for near in range(max(at - 2, 0), at + 3)})
+        lines = [lines[at] for at in around if at < len(lines)] or lines[-_MANY:]
+    return [line[:_LONG] for line in lines]
+
+
+def _passages(lines):
+    """Yield each line of a text, and lines that follow each other."""
+    kept, warns, lines = [], False, list(lines)
+    for line in lines:
+        warns = bool(_WARNING.search(line)) or (warns and line.startswith(" "))
+        if line.strip() and not _EVERYWHERE.fullmatch(line.strip()):
+            kept.append((line.strip(), warns))
+    kept = kept or [(line.strip(), False) for line in lines[-1:]]
+    seen = set()
+    for length in range(1, _TOGETHER + 1):
+        for begin in range(max(len(kept) - length, 0) + 1):
+            together = kept[begin : begin + length]
+            passage = "\n".join(line for line, _ in together)
+            key = mask(passage)
+            if key and key not in seen:
+                seen.add(key)
+                warning = any(warns for _, warns in together)
+                yield _text(passage, lines=tuple(line for line, _ in together), warns=warning)
