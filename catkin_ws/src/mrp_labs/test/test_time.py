@@ -2,10 +2,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Which timers go by a simulated clock: when there is none, when it is fast, when it jumps."""
 
+import inspect
 import re
 import unittest
 
 import rosgraph
+import rospy
 import rostest
 from mrp_testing import log_line
 from mrp_testing.graph import Graph
@@ -26,6 +28,8 @@ ROS_CPP, ROS_PY = ROS
 RESET_PY = "/time/publisher_reset_py"
 CLOCK = "/time/clock"
 MOVED_BACKWARDS = "rospy.exceptions.ROSTimeMovedBackwardsException"
+# From rospy 1.17.4 on, Debian 14's, a jump back ends no timer.
+ENDS = "MovedBackwards" not in inspect.getsource(rospy.timer.Timer)
 
 
 def published(running, publisher, begin=0, end=None):
@@ -89,7 +93,7 @@ class TestTime(unittest.TestCase):
                 self.assertAlmostEqual(factor, 10, delta=3, msg=publisher)
 
     def test_jump(self):
-        publishers = (ROS_CPP, ROS_PY, RESET_PY)
+        publishers = (ROS_PY, ROS_CPP, RESET_PY)
         with Lab("time_jump.launch", traceback=True) as running:
             wait_until_published(running, publishers, 1)
 
@@ -98,9 +102,10 @@ class TestTime(unittest.TestCase):
                 return found[0] if found else None
 
             running.wait_for(lambda: line_of(CLOCK + " jumps 3600 s back"), "the jump back")
-            running.wait_for(lambda: line_of(MOVED_BACKWARDS), "rospy's timer ends")
+            if ENDS:
+                running.wait_for(lambda: line_of(MOVED_BACKWARDS), "rospy's timer ends")
             end = len(running.lines)
-            wait_until_published(running, (ROS_CPP, RESET_PY), 6, end)
+            wait_until_published(running, publishers[ENDS:], 6, end)
 
             # Forward: all go on, but nobody publishes the 7200 values of an hour. When it is busy,
             # the clock may jump several times before rospy's timer sleeps at a jump back.
@@ -112,10 +117,11 @@ class TestTime(unittest.TestCase):
                 self.assertEqual(values, list(range(1, len(values) + 1)), publisher)
             # Back: rospy's timer has ended, and its node does not. A line of stdout may come in
             # after a later one of stderr.
-            self.assertLessEqual(len(published(running, ROS_PY, end)), 1)
+            if ENDS:
+                self.assertLessEqual(len(published(running, ROS_PY, end)), 1)
             self.assertIsNotNone(pid_of(ROS_PY))
             tracebacks = [line for line in running.lines if line.startswith("Traceback")]
-            self.assertEqual(len(tracebacks), 1)
+            self.assertEqual(len(tracebacks), ENDS)
 
 
 if __name__ == "__main__":
