@@ -16,7 +16,7 @@ pytest_plugins = ("mrp_testing.guard",)
 KINDS = ("quick", "slow", "sets")
 
 # They take longest: begun last, they would keep one processor busy after all others are done.
-FIRST = ("test_page", "test_broken", "test_make")
+FIRST = ("test_page", "test_broken", "test_make", "test_check_sets", "test_check_runs")
 
 
 def pytest_ignore_collect(collection_path):
