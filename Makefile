@@ -346,10 +346,16 @@ need-pytest: need-docker
 	@/usr/bin/python3 -c 'import pytest, xdist' 2> /dev/null || \
 	  catkin_ws/tools/install_packages.sh <(printf '%s\n' '# to test the containers' python3-pytest-xdist)
 
+TEST_CONTAINERS = MRP_TEST_ENGINE=yes /usr/bin/python3 -m pytest -n 4 --dist loadgroup -m 'not dev' \
+  --junit-xml=$(DOCKER_RESULTS)/containers.xml
+
 .PHONY: docker-containers
 docker-containers: docker-build-ssh docker-build-class need-pytest
-	@MRP_TEST_ENGINE=yes /usr/bin/python3 -m pytest -n 4 --dist loadgroup -m 'not dev' \
-	  --junit-xml=$(DOCKER_RESULTS)/containers.xml docker/test
+	@$(TEST_CONTAINERS) docker/test
+
+.PHONY: docker-image
+docker-image: docker-build need-pytest
+	@$(TEST_CONTAINERS) docker/test/test_image.py docker/test/test_run.py
 
 # A node is built there, before it can run.
 .PHONY: docker-dev

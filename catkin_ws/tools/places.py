@@ -10,7 +10,10 @@ release of Debian, of which mmdebstrap makes a bare root. KIND is one of
   container   root in a container of debian:SYSTEM: call it by .ci/engine, or where Docker runs
 An ARCHITECTURE that is not this machine's, as arm64, is emulated: that needs qemu-user-static.
 
-Needs root (a container needs Docker). It makes each root anew, and deletes it in the end.
+Needs root and mmdebstrap (a container needs Docker). It makes each place anew, and deletes it in
+the end; what one has fetched, the next of its system need not fetch.
+
+Exit code: 1 if a place failed; 69 if this machine cannot make one, and none failed.
 """
 
 import argparse
@@ -23,6 +26,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
+import time
 
 WORKSPACE = pathlib.Path(__file__).resolve().parent.parent
 RECORD = pathlib.Path(__file__).with_suffix(".csv")
@@ -48,13 +52,15 @@ set -m  # so the nodes get their own Ctrl-C
 count() { dpkg-query --show | wc -l; }
 sudo=; [ "$(id -u)" = 0 ] || sudo=sudo
 before=$(count) begin=$(date +%s%N)
+export ROS_MASTER_URI=http://localhost:21311  # what runs beside it may have the usual port
 if [ "$EMULATED" ]; then  # roslaunch gives its master 10 s, which is too short there
   make packages-run catkin_ws/devel/.built_tutorial
-  ROS_HOSTNAME=localhost rosmaster --core > /dev/null 2>&1 &
-  until (: < /dev/tcp/localhost/11311) 2> /dev/null; do sleep 1; done
+  ROS_HOSTNAME=localhost rosmaster --core --port 21311 > /dev/null 2>&1 &
+  until (: < /dev/tcp/localhost/21311) 2> /dev/null; do sleep 1; done
 fi
 : > /tmp/run.log
 make run > /tmp/run.log 2>&1 &
+unset ROS_MASTER_URI
 until grep -q "R CPP NODE.*data = " /tmp/run.log && grep -q "R PY NODE.*data = " /tmp/run.log; do
   kill -0 %make || { cat /tmp/run.log; exit 1; }
   sleep 0.1
@@ -79,35 +85,52 @@ echo "## files_changed_elsewhere $(wc -l < /tmp/elsewhere)"
 exit $code
 """
 
-# Where root may make namespaces, it is the root of its mount namespace; in a chroot it is not.
+# Where root may make namespaces, it is the root of its mount namespace; in a chroot it is not. What
+# fails here is the machine's fault.
 _ENTER = """\
-cd "$0"
-mount --bind . .
-cd "$0"
+trap 'exit 69' ERR
+root=$0 kind=$1 archives=$2
+[ "$kind" = chroot ] || mount --bind "$root" "$root"
+cd "$root"
 mount --rbind /dev dev
 mount --rbind /sys sys
 mount -t proc proc proc
-[ "$1" = chroot ] || { pivot_root . .; umount --lazy .; }
-exec chroot . "${@:2}"
+mount --bind "$archives" var/cache/apt/archives
+[ "$kind" = chroot ] || { pivot_root . .; umount --lazy .; }
+exec chroot . "${@:3}"
 """
+
+# The exit code of what cannot be done on this machine.
+UNAVAILABLE = 69
+
+
+class UnavailableError(Exception):
+    """This machine cannot make a place."""
 
 
 def main():
     arguments = parser().parse_args()
     os.environ["PATH"] = "/usr/sbin:/sbin:" + os.environ["PATH"]
-    status = 0
+    codes = set()
     with contextlib.ExitStack() as stack:
         folder = pathlib.Path(stack.enter_context(tempfile.TemporaryDirectory(dir="/var/tmp")))
         folder.chmod(0o755)
+        clone = ["git", "clone", "--quiet", WORKSPACE.parent, folder / "clone"]
+        subprocess.run(clone, check=True)
         for place in arguments.places:
-            row = seen(place, folder, arguments)
-            print(", ".join(f"{name}: {value}" for name, value in row.items()), flush=True)
-            status |= row["failed"] != "0"
+            begin = time.monotonic()
+            try:
+                row = seen(place, folder, arguments.marked)
+            except UnavailableError as error:
+                print(f"## PLACE: {place} was NOT made on this machine: {error}", flush=True)
+                codes.add(UNAVAILABLE)
+                continue
+            what = ", ".join(f"{name}: {value}" for name, value in row.items())
+            print(f"## PLACE: {time.monotonic() - begin:.0f} s, {what}", flush=True)
+            codes.add(int(row["failed"] != "0"))
             if arguments.record:
                 record(row)
-            if not arguments.keep:
-                empty(folder)
-    return status
+    return 1 if 1 in codes else max(codes)
 
 
 def parser():
@@ -119,9 +142,6 @@ def parser():
         "--marked", action="store_true", help="run only the tests that a place can affect"
     )
     parser.add_argument(
-        "--keep", action="store_true", help="use one root for all places of a system"
-    )
-    parser.add_argument(
         "--record",
         action="store_true",
         help=f"write into {RECORD.name} and into the README's table",
@@ -129,39 +149,46 @@ def parser():
     return parser
 
 
-def seen(place, folder, arguments):
+def seen(place, folder, marked):
     """Make a place, type the commands in it, and return the row of the recording."""
     system, kind, *architecture = place.split("-")
     test = "make test"
-    if arguments.marked:
-        test = "env -C catkin_ws /usr/bin/python3 -m pytest -q -n 3 --dist loadgroup -m place"
-    command = ["env", f"TEST={test}", f"EMULATED={''.join(architecture)}", "bash", "-s"]
-    clone = folder / "clone"
-    if not clone.exists():
-        subprocess.run(["git", "clone", "--quiet", WORKSPACE.parent, clone], check=True)
-    if kind == "container":
-        command = [*container(system, clone), *command]
-    else:
-        command = [*root(system, kind, architecture, folder), *command]
+    if marked:  # the other files import what only `make test` builds
+        test = (
+            "cd catkin_ws; /usr/bin/python3 -m pytest -q -n 3 --dist loadgroup -m place"
+            " $(grep -rl --include='test_*.py' mark.place tests src)"
+        )
+    enter = container(system, folder)
+    if kind != "container":
+        enter = root(system, kind, architecture, folder)
     row = dict.fromkeys(FIELDS, "0")
-    row["place"], row["test"] = place, "those of the place" if arguments.marked else "`make test`"
+    row["place"], row["test"] = place, "those of the place" if marked else "`make test`"
     row["date"] = datetime.date.today().isoformat()
+    typed = _TYPED.replace("$TEST", f"({test})")
     with subprocess.Popen(
-        command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
+        [*enter, "env", f"EMULATED={''.join(architecture)}", "bash", "-s"],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
     ) as process:
-        process.stdin.write(_TYPED)
+        process.stdin.write(typed)
         process.stdin.close()
         for line in process.stdout:
             print(line, end="", flush=True)
             if line.startswith("## "):
                 _, name, value = line.split()
                 row[name] = value
+    if process.returncode == UNAVAILABLE:
+        raise UnavailableError("see above")
     if process.returncode and row["failed"] == "0":
         row["failed"] = "?"
+    if kind != "container":
+        subprocess.run(["rm", "-rf", "--one-file-system", folder / "root"], check=True)
     return row
 
 
-def container(system, clone):
+def container(system, folder):
     """Return the command that enters a new container, in which the clone is root's."""
     prepare = (
         "apt-get -qq update && apt-get -qq install -y --no-install-recommends make git > /dev/null"
@@ -169,52 +196,51 @@ def container(system, clone):
     )
     return [
         *("docker", "run", "--rm", "--interactive", "--network", "host"),
-        *("--volume", f"{clone}:/clone:ro", f"debian:{SUITES[system]}-slim"),
+        *("--volume", f"{folder}/clone:/clone:ro", f"debian:{SUITES[system]}-slim"),
         *("bash", "-c", prepare, "bash"),
     ]
 
 
 def root(system, kind, architecture, folder):
-    """Make a bare root, if there is none yet, with a clone; return the command that enters it."""
-    made = folder / SUITES[system]
-    if not made.exists():
-        bootstrap(system, kind, architecture, made)
+    """Make a bare root with a clone; return the command that enters it."""
+    bare = folder / "-".join(["bare", system, *architecture])
+    archives = folder / bare.name.replace("bare", "archives")
+    if not bare.exists():
+        bootstrap(SUITES[system], architecture, bare)
+        shutil.copytree(bare / "var/cache/apt/archives", archives)
+    made = folder / "root"
+    subprocess.run(["cp", "--archive", bare, made], check=True)
     name = "learner" if kind == "user" else "root"
     home = pathlib.Path("root" if name == "root" else f"home/{name}")
+    inside = ["chroot", made]
     if kind == "user":
-        subprocess.run(["useradd", "--root", made, "-m", "-s", "/bin/bash", name], check=True)
-        (made / "etc/sudoers.d").mkdir(exist_ok=True)
+        install = "apt-get -qq update && apt-get -qq install -y sudo > /dev/null"
+        subprocess.run([*inside, "sh", "-c", install], check=True)
+        subprocess.run([*inside, "useradd", "-m", "-s", "/bin/bash", name], check=True)
         (made / "etc/sudoers.d" / name).write_text(f"{name} ALL=(ALL) NOPASSWD:ALL\n")
     shutil.copytree(folder / "clone", made / home / "mrp", symlinks=True)
-    inside = ["chroot", made, "chown", "-R", f"{name}:", "/" / home / "mrp"]
-    subprocess.run(inside, check=True)
+    subprocess.run([*inside, "chown", "-R", f"{name}:", "/" / home / "mrp"], check=True)
     login = ["env", "-i", f"HOME=/{home}", "PATH=/usr/local/bin:/usr/bin:/bin:/usr/sbin:/sbin"]
     return [
         *("unshare", "--mount", "--pid", "--fork", "--kill-child"),
-        *("bash", "-ec", _ENTER, made, kind, "runuser", "-u", name, "--", *login),
+        *("bash", "-ec", _ENTER, made, kind, archives, "runuser", "-u", name, "--", *login),
     ]
 
 
-def bootstrap(system, kind, architecture, target):
-    """Make a bare root of a release of Debian."""
-    included = ASKED + (",sudo" if kind == "user" else "")
+def bootstrap(suite, architecture, target):
+    """Make a bare root of a release of Debian. Raises UnavailableError."""
     options = [f"--architecture={name}" for name in architecture]
-    if system == "14":  # a copy of its lists may be older than they allow; its keys are Debian 13's
+    # As in Docker's images of Debian, dpkg does not wait for the disk.
+    options.append("--dpkgopt=force-unsafe-io")
+    if suite == "forky":  # a copy of its lists may be older than they allow
         options.append('--aptopt=Acquire::Check-Valid-Until "false"')
-        options.append("--keyring=/usr/share/keyrings/debian-archive-keyring.gpg")
-    subprocess.run(
-        ["mmdebstrap", "--quiet", "--variant=minbase", f"--include={included}", *options]
-        + [SUITES[system], target],
-        check=True,
-    )
+    command = ["mmdebstrap", "--quiet", "--variant=minbase", f"--include={ASKED}", *options]
+    try:
+        subprocess.run([*command, suite, target], check=True)
+    except (OSError, subprocess.CalledProcessError) as error:
+        raise UnavailableError(error) from None
     for name in ("hosts", "hostname", "resolv.conf"):
         (target / "etc" / name).write_text(pathlib.Path("/etc", name).read_text())
-
-
-def empty(folder):
-    for path in folder.iterdir():
-        if path.name != "clone":
-            subprocess.run(["rm", "-rf", "--one-file-system", path], check=True)
 
 
 def rows():
