@@ -76,8 +76,13 @@ def test_packages_are_unpacked_in_the_folder_that_is_built_in(tmp_path):
     [
         ({}, "it has no apt-get, and neither of them answers"),
         (
-            {"docker": "exit 1\n", "apt-get": "", "unshare": "exit 1\n"},
-            "it lets no user make a namespace",
+            {
+                "docker": "printf 'too old\\nnext\\n' >&2; exit 1\n",
+                "apt-get": "",
+                "unshare": "echo 'not permitted' >&2; exit 1\n",
+            },
+            "it lets no user make a namespace\n'unshare' says: not permitted\n"
+            "'docker info' says: too old",
         ),
     ],
     ids=["no_apt_get", "no_namespace"],

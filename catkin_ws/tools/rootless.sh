@@ -14,18 +14,21 @@ fail() {
 }
 
 # podman understands what make says to docker.
+refused=
 for engine in docker podman; do
-  if $engine info > /dev/null 2>&1; then
+  command -v $engine > /dev/null || continue
+  if words=$($engine info 2>&1 > /dev/null); then
     mkdir -p "$folder/engine"
     ln -sf "$(command -v $engine)" "$folder/engine/docker"
     PATH=$folder/engine:$PATH exec make docker-run
   fi
+  refused+=$'\n'"'$engine info' says: ${words%%$'\n'*}"
 done
 
-command -v apt-get > /dev/null ||
-  fail "without root, this system needs Docker or podman: it has no apt-get, and neither of them answers"
-unshare --user --map-root-user --mount true 2> /dev/null ||
-  fail "without root, this system needs Docker or podman: it lets no user make a namespace"
+needs="without root, this system needs Docker or podman"
+command -v apt-get > /dev/null || fail "$needs: it has no apt-get, and neither of them answers$refused"
+words=$(unshare --user --map-root-user --mount true 2>&1) ||
+  fail "$needs: it lets no user make a namespace"$'\n'"'unshare' says: ${words%%$'\n'*}$refused"
 
 # As the user, with lists and archives of its own.
 apt_get() {

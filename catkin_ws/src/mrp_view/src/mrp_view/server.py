@@ -225,6 +225,8 @@ class View:
                 layout = {
                     "error": "dot is not installed, which draws the graph: apt install graphviz"
                 }
+            except subprocess.CalledProcessError as error:
+                layout = {"error": f"dot could not lay out the graph, and says: {error.stderr}"}
             except (OSError, subprocess.SubprocessError) as error:
                 layout = {"error": f"dot could not lay out the graph: {error}"}
         self._being_laid_out.discard(structure.key)
