@@ -41,7 +41,7 @@ WELL = {
     "master's port": "{port} is free",
     "scripts": "every script is executable",
     "build": "setup.bash and both C++ nodes are there",
-    "build spaces": "build and devel are of catkin_make, over workspaces that exist",
+    "build spaces": "catkin_make built build and devel",
     "log files": "0.0 GB in ~/.ros/log",
     "shell": "devel/setup.bash is sourced",
 }
@@ -51,7 +51,7 @@ NEEDING_PACKAGES = {
     "build": "skipped: needs packages",
     "shell": "skipped: needs build",
 }
-TAKE_OUT = "take its line out of ~/.bashrc (grep -n setup ~/.bashrc) and open a new terminal"
+TAKE_OUT = "delete its line from ~/.bashrc (grep -n setup ~/.bashrc) and open a new terminal"
 
 LINE = re.compile(r"(\[OK\]   |\[FAIL\] |\[--\]   )([^:]+): (.*)")
 FIX = "       fix: "

@@ -96,7 +96,7 @@ def test_cmake_4_needs_a_variable_in_ones_own_workspace(patient, number):
     os_release = patient.system(ID="debian", VERSION_CODENAME=release.name)
     found = patient.examine(os_release=os_release).checks["CMake"]
     if number < 14:
-        assert found == Check("OK", "this system's takes all that ROS asks for", [])
+        assert found == Check("OK", "this system's CMake fits", [])
     else:
         text = "make does not need it, but catkin_make in your own workspace: Debian 14's CMake 4.3"
         assert found == Check("--", text, ["export CMAKE_POLICY_VERSION_MINIMUM=3.5"])
@@ -214,7 +214,7 @@ def test_other_distribution_sourced(patient):
     patient.examine().assert_only_failure(
         "installation",
         ONE_ROS + "ROS_DISTRO=foxy; /opt/ros/foxy/share in ROS_PACKAGE_PATH, "
-        "which is of another ROS",
+        "which belongs to another ROS",
         TAKE_OUT,
     )
 
@@ -225,7 +225,7 @@ def test_other_ros_in_path(patient, name):
     (foxy / "share").mkdir(parents=True)
     patient.env[name] = f"{patient.env.get(name, '')}:{foxy}/share"
     patient.examine(opt_ros=patient.folder / "ros").assert_only_failure(
-        "installation", f"{ONE_ROS}{foxy}/share in {name}, which is of another ROS", TAKE_OUT
+        "installation", f"{ONE_ROS}{foxy}/share in {name}, which belongs to another ROS", TAKE_OUT
     )
 
 

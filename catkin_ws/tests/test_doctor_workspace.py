@@ -27,7 +27,7 @@ def test_not_built(patient, name):
 def check_spaces(patient, found):
     patient.examine().assert_only_failure(
         "build spaces",
-        "expected catkin_make to have built build and devel, over workspaces that exist; found "
+        "expected build and devel to come from catkin_make, on top of workspaces that exist; found "
         + found,
         "make clean build",
     )

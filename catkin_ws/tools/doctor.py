@@ -66,7 +66,7 @@ def check_cmake(machine):
         return ok(f"{releases.CMAKE_VARIABLE} is set")
     number = releases.here(machine.os_release)
     if not number or number < releases.GONE["cmake"].since:
-        return ok("this system's takes all that ROS asks for")
+        return ok("this system's CMake fits")
     name = f"Debian {number}'s CMake {releases.RELEASES[number].cmake}"
     fix = f"export {releases.CMAKE_VARIABLE}={releases.CMAKE_VALUE}"
     return note(f"make does not need it, but catkin_make in your own workspace: {name}", fix)
@@ -116,13 +116,13 @@ def check_installation(machine):
             if is_inside(path, machine.workspace) or mine and is_inside(path, mine):
                 continue
             if is_inside(path, machine.opt_ros):
-                wrong.append(f"{path} in {name}, which is of another ROS")
+                wrong.append(f"{path} in {name}, which belongs to another ROS")
             elif name != "PYTHONPATH" and not os.path.isdir(path):
                 wrong.append(f"{path} in {name}, which does not exist")
             elif any(glob.glob(os.path.join(glob.escape(path), mrp)) for mrp in copies):
                 wrong.append(f"{path} in {name}, which has another mrp")
     if wrong:
-        fix = "take its line out of ~/.bashrc (grep -n setup ~/.bashrc) and open a new terminal"
+        fix = "delete its line from ~/.bashrc (grep -n setup ~/.bashrc) and open a new terminal"
         return fail(f"this shell to know one ROS, {distro}, and one mrp", "; ".join(wrong), fix)
     debian = sorted(installed(machine, ["ros-environment", "python3-rospy"])[0])
     if mine and debian:
@@ -247,9 +247,9 @@ def check_spaces(machine):
         gone = [path for path in paths.split(";") if not os.path.isdir(path)]
         wrong += [f"that devel remembers {path}, which does not exist" for path in gone]
     if wrong:
-        expected = "catkin_make to have built build and devel, over workspaces that exist"
+        expected = "build and devel to come from catkin_make, on top of workspaces that exist"
         return fail(expected, "; ".join(wrong), "make clean build")
-    return ok("build and devel are of catkin_make, over workspaces that exist")
+    return ok("catkin_make built build and devel")
 
 
 def check_logs(machine):
