@@ -3,6 +3,7 @@
 """The publisher of the labs: what it publishes, and how, is said by its private parameters."""
 
 import contextlib
+import math
 import os
 import sys
 import threading
@@ -28,8 +29,8 @@ class LabPublisher:
         self.burst = parameters.number("burst", 1, least=1)  # messages in each period
         self.first_burst = parameters.number("first_burst", self.burst, least=1)
         self.count = parameters.number("count", 0)  # messages in all, 0: no end
-        self.start_value = parameters.number("start", 1, least=None)
-        self.step = parameters.number("step", 1, least=None)
+        self.start_value = parameters.number("start", 1, least=-math.inf)
+        self.step = parameters.number("step", 1, least=-math.inf)
         self.values = parameters.texts("values")
         self.size = parameters.number("size", 0)  # bytes, to which a String is filled up
         self.delay = parameters.seconds("delay", 0)  # seconds before it advertises

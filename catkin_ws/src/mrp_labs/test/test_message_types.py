@@ -3,7 +3,6 @@
 """Every type of message gets through whole, at its extremes too; what happens out of its range."""
 
 import unittest
-import zlib
 
 import rostest
 from mrp_testing.lab import PACKAGE, Lab, path_of
@@ -42,7 +41,7 @@ STRUCTURES = {
     # Of two topics, a short and a long one each.
     "std_msgs/String": [
         *('""', '"Grüße, Welt: 世界 🤖"', '"äöüß" (100000 bytes)'),
-        f"CRC-32 {zlib.crc32(LONG_TEXT.encode()):08x} (100000 bytes)",
+        f'"{LONG_TEXT}" (100000 bytes)',
     ],
     "std_msgs/Time": ["0 0", "4294967295 999999999"],
     "std_msgs/Duration": ["-2147483648 0", "2147483647 999999999"],

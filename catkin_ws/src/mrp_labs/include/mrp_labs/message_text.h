@@ -38,7 +38,6 @@
 #include <std_msgs/UInt32.h>
 #include <std_msgs/UInt64.h>
 #include <std_msgs/UInt8.h>
-#include <boost/crc.hpp>
 
 namespace mrp_labs
 {
@@ -208,25 +207,13 @@ inline std::string toText(const std_msgs::Empty&)
   return "nothing";
 }
 
-// A long text is shown by its checksum; spaces at the end, which make a message large, by their
-// number.
+// Spaces at the end, which make a message large, are shown by their number.
 inline std::string toText(const std_msgs::String& message)
 {
-  std::string text = message.data.substr(0, message.data.find_last_not_of(' ') + 1);
-  std::string shown = "\"" + text + "\"";
-  if (text.size() > 60)
-  {
-    boost::crc_32_type crc;
-    crc.process_bytes(text.data(), text.size());
-    std::ostringstream stream;
-    stream << "CRC-32 " << std::hex << std::setw(8) << std::setfill('0') << crc.checksum();
-    shown = stream.str();
-  }
-  if (message.data.size() > text.size() || text.size() > 60)
-  {
-    shown += " (" + std::to_string(message.data.size()) + " bytes)";
-  }
-  return shown;
+  const std::string text = message.data.substr(0, message.data.find_last_not_of(' ') + 1);
+  const bool padded = message.data.size() > text.size();
+  return "\"" + text + "\"" +
+         (padded ? " (" + std::to_string(message.data.size()) + " bytes)" : "");
 }
 
 inline std::string toText(const std_msgs::ColorRGBA& message)

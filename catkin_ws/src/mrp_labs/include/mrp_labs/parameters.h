@@ -31,22 +31,15 @@ public:
   /// A string that is not empty.
   std::string text(const std::string& name, const std::string& fallback)
   {
-    if (!isSet(name))
-    {
-      return fallback;
-    }
-    XmlRpc::XmlRpcValue& value = all_[name];
-    if (value.getType() != XmlRpc::XmlRpcValue::TypeString || std::string(value).empty())
-    {
-      throw wrong(name, "a string that is not empty");
-    }
-    return value;
+    const auto check = [](Value& value)
+    { return value.getType() == Value::TypeString && !std::string(value).empty(); };
+    return isSet(name, "a string that is not empty", check) ? std::string(all_[name]) : fallback;
   }
 
   /// The name of a topic.
   std::string topic(const std::string& name, const std::string& fallback)
   {
-    const std::string topic = text(name, fallback);
+    std::string topic = text(name, fallback);
     std::string error;
     if (!ros::names::validate(topic, error))
     {
@@ -58,19 +51,15 @@ public:
   /// One of a few strings. The first one is the default.
   std::string choice(const std::string& name, const std::vector<std::string>& allowed)
   {
-    if (!isSet(name))
-    {
-      return allowed.front();
-    }
-    XmlRpc::XmlRpcValue& value = all_[name];
+    const std::string choice = text(name, allowed.front());
     std::string list;
-    for (const std::string& one : allowed)
+    for (const std::string& text : allowed)
     {
-      if (value.getType() == XmlRpc::XmlRpcValue::TypeString && std::string(value) == one)
+      if (text == choice)
       {
-        return one;
+        return choice;
       }
-      list += (list.empty() ? "\"" : ", \"") + one + "\"";
+      list += (list.empty() ? "" : ", ") + text;
     }
     throw wrong(name, "one of " + list);
   }
@@ -78,101 +67,64 @@ public:
   /// A list of strings.
   std::vector<std::string> texts(const std::string& name)
   {
-    std::vector<std::string> result;
-    if (!isSet(name))
+    const auto check = [](Value& value) { return value.getType() == Value::TypeArray; };
+    std::vector<std::string> texts;
+    for (int i = 0; isSet(name, "a list of strings", check) && i < all_[name].size(); ++i)
     {
-      return result;
-    }
-    XmlRpc::XmlRpcValue& value = all_[name];
-    const std::string allowed = "a list of strings";
-    if (value.getType() != XmlRpc::XmlRpcValue::TypeArray)
-    {
-      throw wrong(name, allowed);
-    }
-    for (int i = 0; i < value.size(); ++i)
-    {
-      if (value[i].getType() != XmlRpc::XmlRpcValue::TypeString)
+      if (all_[name][i].getType() != Value::TypeString)
       {
-        throw wrong(name, allowed);
+        throw wrong(name, "a list of strings");
       }
-      result.push_back(value[i]);
+      texts.push_back(all_[name][i]);
     }
-    return result;
+    return texts;
   }
 
   /// A whole number from `least` to 2^31-1, the largest that a ROS parameter can hold.
   int number(const std::string& name, int fallback, int least = 0)
   {
-    if (!isSet(name))
-    {
-      return fallback;
-    }
-    XmlRpc::XmlRpcValue& value = all_[name];
-    if (value.getType() != XmlRpc::XmlRpcValue::TypeInt || int(value) < least)
-    {
-      const bool any = least == std::numeric_limits<int>::min();
-      throw wrong(name, "a whole number" + (any ? "" : ", " + std::to_string(least) + " or more"));
-    }
-    return value;
+    const bool any = least == std::numeric_limits<int>::min();
+    const std::string allowed = any ? "" : ", " + std::to_string(least) + " or more";
+    const auto check = [least](Value& value)
+    { return value.getType() == Value::TypeInt && int(value) >= least; };
+    return isSet(name, "a whole number" + allowed, check) ? int(all_[name]) : fallback;
   }
 
   /// Seconds, 0 or more. A whole number will do.
   double seconds(const std::string& name, double fallback)
   {
-    if (!isSet(name))
+    const auto toDouble = [](Value& value)
     {
-      return fallback;
-    }
-    XmlRpc::XmlRpcValue& value = all_[name];
-    double result = -1;
-    if (value.getType() == XmlRpc::XmlRpcValue::TypeInt)
-    {
-      result = int(value);
-    }
-    else if (value.getType() == XmlRpc::XmlRpcValue::TypeDouble)
-    {
-      result = value;
-    }
-    if (!std::isfinite(result) || result < 0)
-    {
-      throw wrong(name, "a number of seconds, 0 or more");
-    }
-    return result;
+      const bool whole = value.getType() == Value::TypeInt;
+      return whole ? int(value) : value.getType() == Value::TypeDouble ? double(value) : -1;
+    };
+    const auto check = [toDouble](Value& value)
+    { return std::isfinite(toDouble(value)) && toDouble(value) >= 0; };
+    const bool set = isSet(name, "a number of seconds, 0 or more", check);
+    return set ? toDouble(all_[name]) : fallback;
   }
 
   /// true or false.
   bool flag(const std::string& name, bool fallback)
   {
-    if (!isSet(name))
-    {
-      return fallback;
-    }
-    XmlRpc::XmlRpcValue& value = all_[name];
-    if (value.getType() != XmlRpc::XmlRpcValue::TypeBoolean)
-    {
-      throw wrong(name, "true or false");
-    }
-    return bool(value);
+    const auto check = [](Value& value) { return value.getType() == Value::TypeBoolean; };
+    return isSet(name, "true or false", check) ? bool(all_[name]) : fallback;
   }
 
   /// The parameters of each topic of the node. Without ~topics it is one topic, and all parameters
   /// are its own; with it, each topic has some by its name, and the node's count for all topics.
   std::vector<Parameters> ofEachTopic()
   {
-    if (!isSet("topics"))
+    const std::string allowed = "a struct of topics, each with a struct of parameters";
+    const auto check = [](Value& value) { return value.getType() == Value::TypeStruct; };
+    if (!isSet("topics", allowed, check))
     {
       return {*this};
     }
-    const std::string allowed = "a struct of topics, each with a struct of parameters";
-    XmlRpc::XmlRpcValue& topics = all_["topics"];
-    if (topics.getType() != XmlRpc::XmlRpcValue::TypeStruct || topics.size() == 0)
-    {
-      throw wrong("topics", allowed);
-    }
     std::vector<Parameters> result;
-    for (auto& [topic, own] : topics)
+    for (auto& [topic, own] : all_["topics"])
     {
-      if (own.getType() != XmlRpc::XmlRpcValue::TypeStruct)
+      if (!check(own))
       {
         throw wrong("topics", allowed);
       }
@@ -194,9 +146,9 @@ public:
       if (known_.count(name) == 0)
       {
         std::string list;
-        for (const std::string& one : known_)
+        for (const std::string& known : known_)
         {
-          list += (list.empty() ? "~" : ", ~") + one;
+          list += (list.empty() ? "~" : ", ~") + known;
         }
         throw std::invalid_argument("parameter ~" + name + " is not known, only " + list);
       }
@@ -206,43 +158,28 @@ public:
   /// The error that says what is wrong with a parameter.
   std::invalid_argument wrong(const std::string& name, const std::string& allowed)
   {
-    return std::invalid_argument("parameter ~" + name + " is " + shown(all_[name]) +
-                                 ", but must be " + allowed);
+    std::ostringstream value;
+    all_[name].write(value);
+    return std::invalid_argument("parameter ~" + name + " is " + value.str() + ", but must be " +
+                                 allowed);
   }
 
 private:
-  bool isSet(const std::string& name)
+  using Value = XmlRpc::XmlRpcValue;
+
+  // Returns whether anybody has set the parameter; what is not allowed is an error.
+  template <class Check>
+  bool isSet(const std::string& name, const std::string& allowed, Check check)
   {
     known_.insert(name);
+    if (all_.hasMember(name) && !check(all_[name]))
+    {
+      throw wrong(name, allowed);
+    }
     return all_.hasMember(name);
   }
 
-  static std::string shown(XmlRpc::XmlRpcValue& value)
-  {
-    std::ostringstream stream;
-    switch (value.getType())
-    {
-      case XmlRpc::XmlRpcValue::TypeBoolean:
-        return bool(value) ? "true" : "false";
-      case XmlRpc::XmlRpcValue::TypeString:
-        return "\"" + std::string(value) + "\"";
-      case XmlRpc::XmlRpcValue::TypeInt:
-        return std::to_string(int(value));
-      case XmlRpc::XmlRpcValue::TypeDouble:
-        stream << double(value);
-        return stream.str();
-      case XmlRpc::XmlRpcValue::TypeArray:
-        for (int i = 0; i < value.size(); ++i)
-        {
-          stream << (i == 0 ? "" : ", ") << shown(value[i]);
-        }
-        return "[" + stream.str() + "]";
-      default:
-        return "no plain value";
-    }
-  }
-
-  XmlRpc::XmlRpcValue all_;
+  Value all_;
   std::set<std::string> known_;
 };
 }  // namespace mrp_labs

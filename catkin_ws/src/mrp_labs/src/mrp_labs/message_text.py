@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The labs' types of message, and the text of a message. The twin of message_text.h."""
 
-import zlib
-
 import rospy
 from std_msgs import msg as std_msgs
 
@@ -65,7 +63,10 @@ def to_text(message):
     if isinstance(message, std_msgs.Empty):
         return "nothing"
     if isinstance(message, std_msgs.String):
-        return _string_text(message.data)
+        # Spaces at the end, which make a message large, are shown by their number.
+        text = message.data.rstrip(" ")
+        size = len(message.data.encode())
+        return f'"{text}"' + (f" ({size} bytes)" if text != message.data else "")
     if isinstance(message, std_msgs.Float32):
         return f"{message.data:.9g}"
     if isinstance(message, std_msgs.Float64):
@@ -82,14 +83,3 @@ def to_text(message):
         milliseconds = (rospy.Time.now() - message.header.stamp).to_sec() * 1000
         return f"{message.counter}, counted in {message.language}, sent {milliseconds:.1f} ms ago"
     return str(int(message.data))
-
-
-def _string_text(data):
-    """A long text is shown by its checksum; spaces at the end, which make a message large, by their
-    number."""
-    text = data.rstrip(" ")
-    size = len(text.encode())
-    shown = f'"{text}"' if size <= 60 else f"CRC-32 {zlib.crc32(text.encode()):08x}"
-    if len(data) > len(text) or size > 60:
-        shown += f" ({len(data.encode())} bytes)"
-    return shown

@@ -2,6 +2,7 @@
 """The private parameters of a lab's node, each checked as it is read. The twin of parameters.h."""
 
 import copy
+import json
 import math
 
 import rosgraph
@@ -21,12 +22,9 @@ class Parameters:
 
     def text(self, name, fallback):
         """Return a string that is not empty."""
-        if not self._is_set(name):
-            return fallback
-        value = self._all[name]
-        if not isinstance(value, str) or not value:
-            raise self.wrong(name, "a string that is not empty")
-        return value
+        return self._get(
+            name, fallback, "a string that is not empty", lambda value: _is(str, value) and value
+        )
 
     def topic(self, name, fallback):
         """Return the name of a topic."""
@@ -39,61 +37,47 @@ class Parameters:
 
     def choice(self, name, allowed):
         """Return one of a few strings. The first one is the default."""
-        if not self._is_set(name):
-            return allowed[0]
-        value = self._all[name]
-        if value not in allowed:
-            raise self.wrong(name, "one of " + ", ".join(f'"{one}"' for one in allowed))
-        return value
+        choice = self.text(name, allowed[0])
+        if choice not in allowed:
+            raise self.wrong(name, "one of " + ", ".join(allowed))
+        return choice
 
     def texts(self, name):
         """Return a list of strings."""
-        if not self._is_set(name):
-            return []
-        value = self._all[name]
-        if not isinstance(value, list) or not all(isinstance(one, str) for one in value):
-            raise self.wrong(name, "a list of strings")
-        return value
+        return self._get(
+            name,
+            [],
+            "a list of strings",
+            lambda value: _is(list, value) and all(_is(str, text) for text in value),
+        )
 
     def number_or_none(self, name, fallback):
         """Return a whole number, 0 or more; or None if it is "none", as some of rospy may be."""
-        if self._is_set(name) and self._all[name] == "none":
-            return None
-        return self.number(name, fallback)
+        self._known.add(name)
+        return None if self._all.get(name) == "none" else self.number(name, fallback)
 
     def number(self, name, fallback, least=0):
-        """Return a whole number from `least` (None: any) on."""
-        if not self._is_set(name):
-            return fallback
-        value = self._all[name]
-        # To Python, True and False are numbers too.
-        if not isinstance(value, int) or isinstance(value, bool):
-            value = None
-        if value is None or (least is not None and value < least):
-            raise self.wrong(
-                name, "a whole number" + ("" if least is None else f", {least} or more")
-            )
-        return value
+        """Return a whole number from `least` on."""
+        allowed = "" if least == -math.inf else f", {least} or more"
+        return self._get(
+            name,
+            fallback,
+            "a whole number" + allowed,
+            lambda value: _is(int, value) and value >= least,
+        )
 
     def seconds(self, name, fallback):
         """Return seconds, 0 or more. A whole number will do."""
-        if not self._is_set(name):
-            return fallback
-        value = self._all[name]
-        if not isinstance(value, (int, float)) or isinstance(value, bool):
-            value = -1
-        if not math.isfinite(value) or value < 0:
-            raise self.wrong(name, "a number of seconds, 0 or more")
-        return float(value)
+        return self._get(
+            name,
+            fallback,
+            "a number of seconds, 0 or more",
+            lambda value: _is((int, float), value) and math.isfinite(value) and value >= 0,
+        )
 
     def flag(self, name, fallback):
         """Return True or False."""
-        if not self._is_set(name):
-            return fallback
-        value = self._all[name]
-        if not isinstance(value, bool):
-            raise self.wrong(name, "true or false")
-        return value
+        return self._get(name, fallback, "true or false", lambda value: isinstance(value, bool))
 
     def of_each_topic(self):
         """Return the parameters of each topic of the node.
@@ -101,16 +85,16 @@ class Parameters:
         Without ~topics it is one topic, and all parameters are its own; with it, each topic has
         some by its name, and the node's count for all topics.
         """
-        if not self._is_set("topics"):
+        topics = self._get(
+            "topics",
+            None,
+            "a struct of topics, each with a struct of parameters",
+            lambda value: _is(dict, value) and all(_is(dict, own) for own in value.values()),
+        )
+        if topics is None:
             return [self]
-        allowed = "a struct of topics, each with a struct of parameters"
-        topics = self._all["topics"]
-        if not isinstance(topics, dict) or not topics:
-            raise self.wrong("topics", allowed)
         result = []
         for topic, own in sorted(topics.items()):
-            if not isinstance(own, dict):
-                raise self.wrong("topics", allowed)
             result.append(copy.deepcopy(self))
             result[-1]._all.update({"topic": topic, **own})
         return result
@@ -119,27 +103,23 @@ class Parameters:
         """Call this last: a parameter that nobody has asked for is a misspelt one."""
         for name in sorted(self._all):
             if name not in self._known:
-                known = ", ".join("~" + one for one in sorted(self._known))
+                known = ", ".join("~" + known for known in sorted(self._known))
                 raise ValueError(f"parameter ~{name} is not known, only {known}")
 
     def wrong(self, name, allowed):
         """Return the error that says what is wrong with a parameter."""
-        return ValueError(f"parameter ~{name} is {_shown(self._all[name])}, but must be {allowed}")
+        value = json.dumps(self._all[name])
+        return ValueError(f"parameter ~{name} is {value}, but must be {allowed}")
 
-    def _is_set(self, name):
+    def _get(self, name, fallback, allowed, check):
+        """Return a parameter, or the fallback if nobody has set it."""
         self._known.add(name)
-        return name in self._all
+        value = self._all.get(name, fallback)
+        if name in self._all and not check(value):
+            raise self.wrong(name, allowed)
+        return value
 
 
-def _shown(value):
-    if isinstance(value, bool):
-        return "true" if value else "false"
-    if isinstance(value, str):
-        return f'"{value}"'
-    if isinstance(value, int):
-        return str(value)
-    if isinstance(value, float):
-        return f"{value:g}"
-    if isinstance(value, list):
-        return "[" + ", ".join(_shown(one) for one in value) + "]"
-    return "no plain value"
+def _is(type_, value):
+    """Return whether a value is of a type. To Python, True and False are numbers, too."""
+    return isinstance(value, type_) and not isinstance(value, bool)
