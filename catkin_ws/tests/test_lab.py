@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""`make labs` and `make lab`: labs.yaml against the launch files, and some that run."""
+"""`make labs` and `make lab`: every lab shows what labs.yaml says."""
 
 import re
 
@@ -36,8 +36,6 @@ def test_list_has_every_lab_with_its_claim():
     for name, text in launch_files.items():
         claim = re.match(r"<!-- (.*) -->\n", text).group(1)
         assert f"{claim} make lab NAME={name}" in words
-    tests = [path.read_text() for path in FOLDER.glob("test/test_*.py")]
-    assert [n for n in launch_files if not any(f'"{n}.launch"' in test for test in tests)] == []
 
 
 @pytest.mark.quick
@@ -72,8 +70,9 @@ def test_unknown_name_says_which_labs_exist(name, found):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", ["latch", "kill", "bags", "kill_master"])
-def test_lab_marks_its_line_sums_up_and_ends(name, tmp_path):
+@pytest.mark.parametrize("name", LABS)
+def test_lab_shows_its_claim(name, tmp_path):
+    """It marks each line of labs.yaml, prints none that must not come, sums up, and ends."""
     with Process(LAB, name, extra_env=own(tmp_path)) as lab:
         assert lab.wait() == 0, str(lab)
     claim = (FOLDER / "launch" / f"{name}.launch").read_text().splitlines()[0]

@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Which parameter reaches which node, when it is read, and how long it stays."""
 
-import itertools
 import pathlib
 import signal
 import tempfile
@@ -11,7 +10,7 @@ import unittest
 import rosgraph
 import rostest
 from mrp_testing import log_line
-from mrp_testing.lab import PACKAGE, Lab, path_of
+from mrp_testing.lab import PACKAGE, path_of
 from mrp_testing.nodes import program
 from mrp_testing.process import LIVE, Process
 
@@ -40,28 +39,6 @@ class TestParam(unittest.TestCase):
             lambda: last_of(process, node) == says(*expected), f"{node}: {says(*expected)}"
         )
 
-    def test_scope(self):
-        with Lab("param_scope.launch") as lab:
-            for language in PROGRAMS:
-                before, after, own = (
-                    f"/param_scope/{kind}_{language}" for kind in ("before", "after", "own")
-                )
-                self.check(lab, before, "robbie", 1.0, 1.0)
-                self.check(lab, after, "robbie", 2.0, 2.0)
-                self.check(lab, own, "robbie", 3.0, 3.0)
-                # While it runs: what was read once stays.
-                self.master.setParam(own + "/speed", 5.0)
-                self.check(lab, own, "robbie", 3.0, 5.0)
-
-    def test_type_cpp(self):
-        with Lab("param_type.launch") as lab:
-            self.check(lab, "/param_type/text_cpp", "nobody", 1.0, 1.0)
-            self.assertEqual(lab.logged("/param_type/text_cpp", ("WARN", "ERROR")), [])
-
-    def test_type_py(self):
-        with Lab("param_type.launch") as lab:
-            self.check(lab, "/param_type/text_py", "nobody", "fast", "fast")
-
     def test_type_is_double(self):
         path = pathlib.Path(path_of("param_type.launch"))
         text = path.read_text().replace('value="fast"', 'value="fast" type="double"')
@@ -71,16 +48,6 @@ class TestParam(unittest.TestCase):
             with Process("roslaunch", file.name) as roslaunch:
                 self.assertEqual(roslaunch.wait(), 1)
         self.assertIn("could not convert string to float: 'fast'", str(roslaunch))
-
-    def test_left(self):
-        for kind, language in itertools.product(("kept", "cleared"), PROGRAMS):
-            self.set(f"/param_left/{kind}_{language}/speed", 7.0)
-        with Lab("param_left.launch") as lab:
-            for language in PROGRAMS:
-                self.check(lab, f"/param_left/kept_{language}", "nobody", 7.0, 7.0)
-                self.check(lab, f"/param_left/cleared_{language}", "nobody", 1.0, 1.0)
-            for language in PROGRAMS:  # for the clean-up
-                self.master.setParam(f"/param_left/cleared_{language}/speed", 7.0)
 
     def run_once(self, name, *arguments):
         """Run the node, and check the speed that it reads: the last of the arguments."""
