@@ -2,11 +2,15 @@
 """A workspace and a shell that are well, for the tests of make doctor to spoil."""
 
 import collections
+import contextlib
 import json
 import os
 import re
 import shutil
+import socket
+import socketserver
 import subprocess
+import threading
 
 from mrp_testing.waiting import DEADLINE
 from mrp_testing.workspace import WORKSPACE
@@ -155,3 +159,33 @@ class Patient:
         (self.folder / "ros" / name).mkdir(parents=True)
         self.env["ROS_DISTRO"] = name
         return {"opt_ros": self.folder / "ros", "dpkg_query": "/no/dpkg-query"}
+
+
+# Programs that have the master's port; each yields its port.
+
+
+@contextlib.contextmanager
+def serving(server):
+    thread = threading.Thread(target=server.serve_forever, args=(0.01,))
+    thread.start()
+    try:
+        yield server.server_address[1]
+    finally:
+        server.shutdown()
+        thread.join()
+        server.server_close()
+
+
+@contextlib.contextmanager
+def silent():
+    with socket.create_server(("localhost", 0)) as listener:
+        yield listener.getsockname()[1]
+
+
+class _Ssh(socketserver.BaseRequestHandler):
+    def handle(self):
+        self.request.sendall(b"SSH-2.0-OpenSSH_9.2\r\n")
+
+
+def talker():
+    return serving(socketserver.TCPServer(("localhost", 0), _Ssh))

@@ -1,17 +1,33 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""make doctor: the script itself, in a workspace and a shell that are well but for one thing."""
+"""make doctor, in a workspace and a shell that are well but for one thing."""
 
 import contextlib
 import os
 import pty
 import subprocess
+import xmlrpc.client
+import xmlrpc.server
 
 import pytest
-from doctor_patient import NEEDING_PACKAGES, PYTHON, REAL_PATH, TAKE_OUT, WELL, Check
+from doctor_patient import (
+    NEEDING_PACKAGES,
+    PYTHON,
+    REAL_PATH,
+    TAKE_OUT,
+    WELL,
+    Check,
+    serving,
+    silent,
+    talker,
+)
 from mrp_check import releases
+from mrp_testing.process import Process
 from mrp_testing.waiting import DEADLINE
 
 pytestmark = pytest.mark.slow
+
+ONE_ROS = "expected this shell to know one ROS, Debian, and one mrp; found "
+ONE_ADDRESS = "ROS_HOSTNAME and ROS_IP"
 
 
 @pytest.mark.quick
@@ -28,11 +44,11 @@ def test_every_failure_is_counted(patient):
     patient.write("src/mrp/src/node.py", "#!/usr/bin/env python3\n")
     patient.env.update(ROS_HOSTNAME="192.0.2.1", ROS_MASTER_URI="http://localhost")
     report = patient.examine()
-    assert list(report.of("FAIL")) == ["ROS_HOSTNAME and ROS_IP", "ROS_MASTER_URI", "scripts"]
+    assert list(report.of("FAIL")) == [ONE_ADDRESS, "ROS_MASTER_URI", "scripts"]
     assert (report.summary, report.code) == ("14 checks, 3 failed", 1)
 
 
-# packages
+# Packages, and where ROS comes from.
 
 
 @pytest.mark.quick
@@ -41,7 +57,7 @@ def test_package_missing(patient):
     patient.write("apt/tools.txt", "no-such-one | no-such-other # neither\n")
     expected = "expected all of run.txt and tools.txt; found "
     found = "no no-such-one | no-such-other, no no-such-package"
-    for name in (*(one.name for one in releases.RELEASES.values()), "jammy"):
+    for name in (*(release.name for release in releases.RELEASES.values()), "jammy"):
         os_release = patient.system(ID="any", VERSION_CODENAME=name)
         patient.examine(os_release=os_release).assert_only_failure(
             "packages", expected + found, "make deps", skipped=NEEDING_PACKAGES
@@ -51,11 +67,6 @@ def test_package_missing(patient):
 @pytest.mark.parametrize(
     ("fields", "advice"),
     [
-        (
-            {"ID": "ubuntu", "VERSION_CODENAME": "noble"},
-            "Ubuntu 24.04 has no ROS 1; install ROS One (https://ros.packages.techfak.net),"
-            " or use the container",
-        ),
         (
             {"ID": "linuxmint", "VERSION_CODENAME": "wilma", "UBUNTU_CODENAME": "noble"},
             "Ubuntu 24.04 has no ROS 1; install ROS One (https://ros.packages.techfak.net),"
@@ -79,31 +90,11 @@ def test_system_without_ros(patient, fields, advice):
 
 
 @pytest.mark.quick
-def test_what_dpkg_says_reaches_the_user(patient):
+def test_what_other_programs_say_reaches_the_user(patient):
     said = "dpkg-query: error: failed to open package info file: Permission denied"
     query = patient.write("dpkg-query", f"#!/bin/sh\necho '{said}' >&2\nexit 2\n", mode=0o755)
     text = patient.examine(dpkg_query=query).checks["packages"].text
     assert text.endswith(f"({said})")
-
-
-# CMake
-
-
-@pytest.mark.parametrize("number", releases.RELEASES)
-def test_cmake_4_needs_a_variable_in_ones_own_workspace(patient, number):
-    del patient.env["CMAKE_POLICY_VERSION_MINIMUM"]
-    release = releases.RELEASES[number]
-    os_release = patient.system(ID="debian", VERSION_CODENAME=release.name)
-    found = patient.examine(os_release=os_release).checks["CMake"]
-    if number < 14:
-        assert found == Check("OK", "this system's CMake fits", [])
-    else:
-        text = "make does not need it, but catkin_make in your own workspace: Debian 14's CMake 4.3"
-        assert found == Check("--", text, ["export CMAKE_POLICY_VERSION_MINIMUM=3.5"])
-
-
-@pytest.mark.quick
-def test_list_of_packages_missing(patient):
     path = patient.workspace / "apt" / "tools.txt"
     path.unlink()
     patient.examine().assert_only_failure(
@@ -114,20 +105,83 @@ def test_list_of_packages_missing(patient):
     )
 
 
+@pytest.mark.parametrize("number", releases.RELEASES)
+def test_cmake_4_needs_a_variable_in_ones_own_workspace(patient, number):
+    del patient.env["CMAKE_POLICY_VERSION_MINIMUM"]
+    os_release = patient.system(ID="debian", VERSION_CODENAME=releases.RELEASES[number].name)
+    found = patient.examine(os_release=os_release).checks["CMake"]
+    if number < 14:
+        assert found == Check("OK", "this system's CMake fits", [])
+    else:
+        text = "make does not need it, but catkin_make in your own workspace: Debian 14's CMake 4.3"
+        assert found == Check("--", text, ["export CMAKE_POLICY_VERSION_MINIMUM=3.5"])
+
+
 @pytest.mark.parametrize("name", ["noetic", "one"])
 def test_packages_do_not_matter_with_noetic(patient, name):
     patient.write("apt/run.txt", "no-such-package\n")
-    report = patient.examine(**patient.noetic(name))
+    facts = patient.noetic(name)
+    patient.env["CMAKE_PREFIX_PATH"] += f":{patient.folder}/ros/{name}"
+    report = patient.examine(**facts)
     assert report.of("--") == {"packages": f"skipped: ROS comes from {patient.folder}/ros/{name}"}
     assert report.checks["installation"].text == f"ROS comes from {patient.folder}/ros/{name}"
     assert (report.summary, report.code) == ("14 checks, 0 failed", 0)
+    patient.env["ROS_DISTRO"] = "Debian"
+    expected = f"expected this shell to know one ROS, {name}, and one mrp; found ROS_DISTRO=Debian"
+    assert patient.examine(**facts).of("FAIL") == {"installation": expected}
 
 
-# python3
+def test_debian_beside_noetic(patient):
+    facts = patient.noetic()
+    del facts["dpkg_query"]
+    assert patient.examine(**facts).checks["installation"] == Check(
+        "FAIL",
+        f"expected no ROS but {patient.folder}/ros/noetic; "
+        "found Debian's python3-rospy and ros-environment too",
+        ["sudo apt-get remove python3-rospy ros-environment"],
+    )
 
 
 @pytest.mark.parametrize(
-    "script, says",
+    ("name", "folder", "content", "found"),
+    [
+        ("ROS_PACKAGE_PATH", "ros/foxy/share", "x", "belongs to another ROS"),
+        ("PYTHONPATH", "ros/foxy/share", "x", "belongs to another ROS"),
+        ("CMAKE_PREFIX_PATH", "no/such/folder", "", "does not exist"),
+        ("ROS_PACKAGE_PATH", "other/src", "mrp/package.xml", "has another mrp"),
+        ("ROS_PACKAGE_PATH", "other/src", "tutorials/mrp/package.xml", "has another mrp"),
+        ("CMAKE_PREFIX_PATH", "other", "share/mrp/cmake/mrpConfig.cmake", "has another mrp"),
+        ("ROS_PACKAGE_PATH", "other/src", "robot/package.xml", ""),
+        ("CMAKE_PREFIX_PATH", "other", "share/robot/cmake/robotConfig.cmake", ""),
+        ("PYTHONPATH", "no/such/folder", "", ""),  # Python does not mind, nor does ROS
+    ],
+)
+def test_folder_in_a_path(patient, name, folder, content, found):
+    folder = patient.folder / folder
+    if content:
+        patient.write(folder / content, "")
+    patient.env[name] = f"{patient.env.get(name, '')}:{folder}:"
+    report = patient.examine(opt_ros=patient.folder / "ros")
+    if found:
+        text = f"{ONE_ROS}{folder} in {name}, which {found}"
+        report.assert_only_failure("installation", text, TAKE_OUT)
+    else:
+        assert report.code == 0
+
+
+def test_other_ros_not_in_use(patient):
+    foxy = patient.folder / "ros" / "foxy"
+    foxy.mkdir(parents=True)
+    report = patient.examine(opt_ros=patient.folder / "ros")
+    assert report.checks["installation"].text == f"ROS comes from Debian; {foxy} is not in use"
+    assert report.code == 0
+
+
+# Python
+
+
+@pytest.mark.parametrize(
+    ("script", "says"),
     [
         (
             "#!/bin/sh\necho Traceback >&2; echo \"No module named 'rospy'\" >&2; exit 1\n",
@@ -166,136 +220,190 @@ def test_no_python_on_path(patient):
     )
 
 
-def test_other_python_that_can_import(patient):
-    bin_folder = patient.folder / "bin"
-    bin_folder.mkdir()
-    (bin_folder / "python3").symlink_to(PYTHON)
-    patient.env["PATH"] = str(bin_folder)
-    report = patient.examine()
-    assert report.checks["python3"].text == f"{bin_folder}/python3 imports catkin_pkg and rospy"
-    assert report.code == 0
-
-
-def hide_rospy(patient):
+@pytest.mark.parametrize("sourced", [True, False])
+def test_rospy_hidden(patient, sourced):
+    """Where ROS is Debian's, another module hides it; else nobody has sourced its folder."""
     patient.env["PATH"] = REAL_PATH
     path = patient.write("hidden/rospy.py", "raise ImportError('not ROS')\n")
     patient.env["PYTHONPATH"] = os.path.dirname(path)
+    report = patient.examine(**({} if sourced else patient.noetic()))
+    found = report.checks["python3"]
+    assert found.text.endswith("found /usr/bin/python3, which says: ImportError: not ROS")
+    noetic = f"source {patient.folder}/ros/noetic/setup.bash"
+    unset = "unset PYTHONPATH PYTHONHOME; export PYTHONNOUSERSITE=1"
+    assert found.fixes == [unset if sourced else noetic]
+    assert list(report.of("FAIL")) == ["python3"]
 
 
-HIDDEN_ROSPY = (
-    "expected the first one on PATH to import catkin_pkg and rospy; "
-    "found /usr/bin/python3, which says: ImportError: not ROS"
-)
+# Names and addresses
 
 
-def test_rospy_hidden(patient):
-    hide_rospy(patient)
-    patient.examine().assert_only_failure(
-        "python3", HIDDEN_ROSPY, "unset PYTHONPATH PYTHONHOME; export PYTHONNOUSERSITE=1"
-    )
+# glibc gives ::1 for localhost where /etc/hosts has nothing else for it; nodes listen on IPv4.
+@pytest.mark.parametrize("localhost", ["::1", "192.0.2.1"])
+def test_localhost_that_cannot_be_connected_to(patient, localhost):
+    report = patient.examine(LOCALHOST=localhost, CONNECT_TIMEOUT=0.5)
+    begin = f"expected {localhost} to be this machine; found that it cannot be connected to: "
+    assert report.of("FAIL").keys() == {"localhost"}
+    assert report.checks["localhost"].text.startswith(begin)
+    fix = f'echo "127.0.0.1 {localhost}" | sudo tee -a /etc/hosts'
+    assert report.checks["localhost"].fixes == [fix]
+    assert set(report.of("--").values()) == {
+        "skipped: needs localhost",
+        "skipped: needs ROS_MASTER_URI",
+    }
 
 
-def test_noetic_not_sourced(patient):
-    hide_rospy(patient)
-    report = patient.examine(**patient.noetic())
-    fix = f"source {patient.folder}/ros/noetic/setup.bash"
-    assert report.checks["python3"] == Check("FAIL", HIDDEN_ROSPY, [fix])
-    assert (report.summary, report.code) == ("14 checks, 1 failed", 1)
-
-
-# installation
-
-ONE_ROS = "expected this shell to know one ROS, Debian, and one mrp; found "
-
-
-def test_other_distribution_sourced(patient):
-    patient.env["ROS_DISTRO"] = "foxy"
-    patient.env["ROS_PACKAGE_PATH"] += ":/opt/ros/foxy/share"
-    patient.examine().assert_only_failure(
-        "installation",
-        ONE_ROS + "ROS_DISTRO=foxy; /opt/ros/foxy/share in ROS_PACKAGE_PATH, "
-        "which belongs to another ROS",
-        TAKE_OUT,
-    )
-
-
-@pytest.mark.parametrize("name", ["ROS_PACKAGE_PATH", "CMAKE_PREFIX_PATH", "PYTHONPATH"])
-def test_other_ros_in_path(patient, name):
-    foxy = patient.folder / "ros" / "foxy"
-    (foxy / "share").mkdir(parents=True)
-    patient.env[name] = f"{patient.env.get(name, '')}:{foxy}/share"
-    patient.examine(opt_ros=patient.folder / "ros").assert_only_failure(
-        "installation", f"{ONE_ROS}{foxy}/share in {name}, which belongs to another ROS", TAKE_OUT
-    )
-
-
-def test_other_ros_not_in_use(patient):
-    foxy = patient.folder / "ros" / "foxy"
-    foxy.mkdir(parents=True)
-    report = patient.examine(opt_ros=patient.folder / "ros")
-    assert report.checks["installation"].text == f"ROS comes from Debian; {foxy} is not in use"
-    assert report.code == 0
-
-
-def test_debian_beside_noetic(patient):
-    facts = patient.noetic()
-    del facts["dpkg_query"]
-    report = patient.examine(**facts)
-    assert report.checks["installation"] == Check(
-        "FAIL",
-        f"expected no ROS but {patient.folder}/ros/noetic; "
-        "found Debian's python3-rospy and ros-environment too",
-        ["sudo apt-get remove python3-rospy ros-environment"],
-    )
-    assert report.code == 1
-
-
-def test_noetic_in_paths(patient):
-    facts = patient.noetic()
-    patient.env["CMAKE_PREFIX_PATH"] += f":{patient.folder}/ros/noetic"
-    assert patient.examine(**facts).code == 0
-    patient.env["ROS_DISTRO"] = "Debian"
-    report = patient.examine(**facts)
-    expected = "expected this shell to know one ROS, noetic, and one mrp; found ROS_DISTRO=Debian"
-    assert report.of("FAIL") == {"installation": expected}
-
-
-@pytest.mark.parametrize("name", ["ROS_PACKAGE_PATH", "CMAKE_PREFIX_PATH"])
-def test_path_that_does_not_exist(patient, name):
-    patient.env[name] += ":/no/such/folder"
-    patient.examine().assert_only_failure(
-        "installation", f"{ONE_ROS}/no/such/folder in {name}, which does not exist", TAKE_OUT
-    )
+def test_ros_ipv6(patient):
+    patient.env["ROS_IPV6"] = "on"
+    text = "expected IPv4, which all nodes understand; found ROS_IPV6=on"
+    assert patient.examine().checks["localhost"] == Check("FAIL", text, ["unset ROS_IPV6"])
 
 
 @pytest.mark.parametrize(
-    "name, folder, content",
+    ("host_name", "found", "fix"),
     [
-        ("ROS_PACKAGE_PATH", "src", "mrp/package.xml"),
-        ("ROS_PACKAGE_PATH", "src", "tutorials/mrp/package.xml"),
-        ("CMAKE_PREFIX_PATH", "devel", "share/mrp/cmake/mrpConfig.cmake"),
+        (
+            "no-such-host.invalid",
+            "does not resolve",
+            'echo "127.0.1.1 $(hostname)" | sudo tee -a /etc/hosts',
+        ),
+        ("192.0.2.1", "cannot be connected to: ", "export ROS_HOSTNAME=localhost"),
     ],
 )
-def test_other_workspace_with_mrp(patient, name, folder, content):
-    other = patient.folder / "other_ws" / folder
-    patient.write(other / content, "")
-    patient.env[name] += f":{other}"
+def test_host_name_of_another_machine(patient, host_name, found, fix):
+    del patient.env["ROS_HOSTNAME"]
+    report = patient.examine(host_name=host_name, CONNECT_TIMEOUT=0.5)
+    begin = f"expected {host_name} to be this machine; found that it {found}"
+    assert report.of("FAIL").keys() == {"host name"}
+    assert report.checks["host name"].text.startswith(begin)
+    assert report.checks["host name"].fixes == [fix]
+
+
+@pytest.mark.parametrize(
+    ("variables", "host_name", "address"),
+    [
+        ({}, "localhost is this machine", "neither is set"),
+        (
+            {"ROS_IP": "127.0.0.1"},
+            "not in use, because ROS_IP is set",
+            "ROS_IP=127.0.0.1 is this machine",
+        ),
+        (
+            {"ROS_IP": "192.0.2.1", "ROS_HOSTNAME": "localhost"},
+            "not in use, because ROS_HOSTNAME is set",
+            "ROS_HOSTNAME=localhost is this machine; ROS ignores ROS_IP",
+        ),
+    ],
+)
+def test_ros_hostname_beside_ros_ip(patient, variables, host_name, address):
+    del patient.env["ROS_HOSTNAME"]
+    patient.env.update(variables)
+    report = patient.examine(host_name="localhost")
+    assert report.checks["host name"].text == host_name
+    assert report.checks[ONE_ADDRESS].text == address
+    assert report.code == 0
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "problem"),
+    [
+        ("ROS_HOSTNAME", "http://localhost", "does not resolve"),
+        ("ROS_HOSTNAME", "no..host", "does not resolve"),
+        ("ROS_HOSTNAME", "", "does not resolve"),
+        ("ROS_HOSTNAME", "192.0.2.1", "cannot be connected to: "),
+        ("ROS_IP", "0.0.0.0", "is no machine's address"),
+        ("ROS_IP", "255.255.255.255", "cannot be connected to: "),
+        ("ROS_IP", "localhost", "is no IPv4 address"),
+        ("ROS_IP", "::1", "is no IPv4 address"),
+    ],
+)
+def test_wrong_address(patient, name, value, problem):
+    del patient.env["ROS_HOSTNAME"]
+    patient.env[name] = value
+    report = patient.examine(host_name="localhost", CONNECT_TIMEOUT=0.5)
+    begin = f"expected {name}={value} to be this machine; found that it {problem}"
+    assert report.of("FAIL").keys() == {ONE_ADDRESS}
+    assert report.checks[ONE_ADDRESS].text.startswith(begin)
+    assert report.checks[ONE_ADDRESS].fixes == [f"unset {name}"]
+
+
+# The master
+
+
+@pytest.mark.parametrize(
+    ("uri", "expected", "found"),
+    [
+        ("localhost:11311", "http://HOST:PORT", "'localhost:11311'"),
+        ("http://localhost:65536", "http://HOST:PORT", "'http://localhost:65536'"),
+        ("http://localhost:11311 ", "http://HOST:PORT", "'http://localhost:11311 '"),
+        ("", "http://HOST:PORT", "''"),
+        (
+            "http://no-such-host.invalid:11311",
+            "the host of http://no-such-host.invalid:11311 to resolve",
+            "that it does not",
+        ),
+        # To this address no connection can be made, so none is tried.
+        (
+            "http://255.255.255.255:11311/",
+            "a ROS master at http://255.255.255.255:11311/, on another machine",
+            "that none answers",
+        ),
+    ],
+)
+def test_wrong_master_uri(patient, uri, expected, found):
+    patient.env["ROS_MASTER_URI"] = uri
     patient.examine().assert_only_failure(
-        "installation", f"{ONE_ROS}{other} in {name}, which has another mrp", TAKE_OUT
+        "ROS_MASTER_URI",
+        f"expected {expected}; found {found}",
+        "unset ROS_MASTER_URI",
+        skipped={"master's port": "skipped: needs ROS_MASTER_URI"},
     )
 
 
-def test_other_workspace_without_mrp(patient):
-    other = patient.folder / "other_ws"
-    patient.write(other / "src/other_package/package.xml", "")
-    patient.write(other / "devel/share/other_package/cmake/other_packageConfig.cmake", "")
-    patient.env["ROS_PACKAGE_PATH"] += f":{other}/src:"
-    patient.env["CMAKE_PREFIX_PATH"] += f":{other}/devel:"
-    patient.env["PYTHONPATH"] = "/no/such/folder"  # Python does not mind, nor does ROS
-    assert patient.examine().code == 0
+def test_master_uri_not_set(patient):
+    del patient.env["ROS_MASTER_URI"]
+    report = patient.examine(DEFAULT_MASTER_URI=patient.uri)
+    assert report.checks["ROS_MASTER_URI"].text == f"not set, which means {patient.uri}"
+    assert report.checks["master's port"].text == f"{patient.port} is free"
+    assert report.code == 0
 
 
-# scripts
+def xml_rpc():
+    """Return an XML-RPC server that is no master: its getPid answers with a text."""
+    server = xmlrpc.server.SimpleXMLRPCServer(("localhost", 0), logRequests=False)
+    server.register_function(lambda caller: "text", "getPid")
+    return serving(server)
+
+
+@pytest.mark.parametrize("program", [silent, talker, xml_rpc])
+def test_port_of_another_program(patient, program):
+    with program() as port:
+        patient.env["ROS_MASTER_URI"] = f"http://localhost:{port}"
+        patient.examine(MASTER_TIMEOUT=0.5).assert_only_failure(
+            "master's port",
+            f"expected port {port} to be free, or a ROS master to answer at http://localhost:{port}"
+            "; found 'Address already in use' "
+            f"(ss -ltnp 'sport = :{port}' shows the program that has it)",
+            f"ROS_MASTER_URI=http://localhost:{port + 1} make run",
+        )
+
+
+def test_master_running(patient):
+    def answers():
+        try:
+            return xmlrpc.client.ServerProxy(patient.uri).getPid("/test")
+        except OSError:
+            return None
+
+    with Process("rosmaster", "--core", "-p", str(patient.port), env=patient.env) as master:
+        master.wait_for(answers, "the master answers")
+        report = patient.examine()
+    text = f"a ROS master answers at {patient.uri} (process {master.pid})"
+    assert report.checks["master's port"].text == text
+    assert report.code == 0
+
+
+# The workspace
 
 
 @pytest.mark.parametrize(
@@ -313,7 +421,93 @@ def test_script_not_executable(patient, name):
     assert patient.examine().code == 0
 
 
-# the script as a whole
+@pytest.mark.parametrize("name", ["setup.bash", "lib/mrp/publisher_cpp_node"])
+def test_not_built(patient, name):
+    path = patient.workspace / "devel" / name
+    path.unlink()
+    patient.examine().assert_only_failure(
+        "build",
+        f"expected setup.bash and two C++ nodes; found no {path}",
+        "make build",
+        skipped={"shell": "skipped: needs build"},
+    )
+
+
+def check_spaces(patient, found):
+    patient.examine().assert_only_failure(
+        "build spaces",
+        "expected build and devel to come from catkin_make, on top of workspaces that exist; found "
+        + found,
+        "make clean build",
+    )
+
+
+def test_workspace_that_is_gone_is_remembered(patient):
+    gone = patient.folder / "gone_ws/devel"
+    line = f"            CMAKE_PREFIX_PATH = r'{patient.folder};{gone}'.split(';')\n"
+    patient.write("devel/_setup_util.py", line)
+    check_spaces(patient, f"that devel remembers {gone}, which does not exist")
+    gone.mkdir(parents=True)
+    assert patient.examine().code == 0
+
+
+@pytest.mark.parametrize("space", ["build", "devel"])
+def test_catkin_build_and_catkin_make_mixed(patient, space):
+    patient.write(f"{space}/.built_by", "catkin build")
+    check_spaces(patient, f"that 'catkin build' built {space}")
+    patient.write(f"{space}/.built_by", "catkin_make")
+    assert patient.examine().code == 0
+
+
+@pytest.mark.parametrize("place", ["", "ROS_LOG_DIR", "ROS_HOME"])
+def test_log_files_fill_the_disk(patient, place):
+    folder = patient.folder / ".ros/log"
+    if place:
+        patient.env[place] = str(patient.folder / "elsewhere")
+        folder = patient.folder / ("elsewhere" if place == "ROS_LOG_DIR" else "elsewhere/log")
+    (folder / "run").mkdir(parents=True)
+    with open(folder / "run" / "node.log", "w") as file:
+        file.truncate(3 * 2**29)  # it takes no space
+    patient.examine().assert_only_failure(
+        "log files",
+        f"expected less than 1 GB of logs; found 1.5 GB in {folder if place else '~/.ros/log'}",
+        "rosclean purge",
+    )
+
+
+def test_other_workspace_sourced_after_this_one(patient):
+    other = patient.folder / "other_ws/src"
+    for src in (other, patient.workspace / "src"):
+        patient.write(src / "robot/package.xml", "")
+    patient.env["ROS_PACKAGE_PATH"] += f":{other}"
+    assert patient.examine().code == 0
+    patient.env["ROS_PACKAGE_PATH"] = f"{other}:{patient.workspace}/src"
+    patient.examine().assert_only_failure(
+        "shell",
+        "expected this workspace to be sourced after those with packages of the same names; "
+        f"found before it {other}",
+        f"source {patient.workspace}/devel/setup.bash",
+    )
+
+
+def test_not_sourced(patient):
+    source = f"source {patient.workspace}/devel/setup.bash"
+    del patient.env["CMAKE_PREFIX_PATH"]
+    devel, src = patient.workspace / "devel", patient.workspace / "src"
+    patient.examine().assert_only_failure(
+        "shell",
+        f"expected {devel} in CMAKE_PREFIX_PATH and {src} in ROS_PACKAGE_PATH; "
+        "found only the second",
+        source,
+    )
+    del patient.env["ROS_PACKAGE_PATH"]
+    report = patient.examine()
+    text = "not sourced: make does not need it, but rosrun and roslaunch do"
+    assert report.checks["shell"] == Check("--", text, [source])
+    assert report.code == 0
+
+
+# The script as a whole
 
 
 def test_colours_on_a_terminal(patient):
@@ -339,25 +533,17 @@ def test_colours_on_a_terminal(patient):
 
 def test_text_that_the_terminal_cannot_show(patient):
     patient.env.update(ROS_HOSTNAME=b"\xff", PYTHONIOENCODING="ascii:strict")
-    assert r"ROS_HOSTNAME=\udcff" in patient.examine().checks["ROS_HOSTNAME and ROS_IP"].text
+    assert r"ROS_HOSTNAME=\udcff" in patient.examine().checks[ONE_ADDRESS].text
 
 
 @pytest.mark.quick
-def test_standard_library_only(patient):
+def test_arguments_and_the_standard_library_only(patient):
     # -S: without the folders in which Debian has ROS.
     run = subprocess.run([PYTHON, "-S", patient.script], env=patient.env, capture_output=True)
     assert (run.returncode, run.stderr) == (0, b"")
-
-
-@pytest.mark.quick
-def test_help(patient):
     run = subprocess.run([PYTHON, patient.script, "--help"], capture_output=True, text=True)
     assert run.returncode == 0
     checks = run.stdout.split("The checks:\n")[1].splitlines()
     assert [line.split(":")[0].strip() for line in checks] == list(WELL)
-
-
-@pytest.mark.quick
-def test_unknown_argument(patient):
     run = subprocess.run([PYTHON, patient.script, "--fix"], capture_output=True, text=True)
     assert run.returncode == 2 and "unrecognized arguments: --fix" in run.stderr
