@@ -8,6 +8,7 @@ import yaml
 from front_door import make
 from mrp_testing.ports import free_port
 from mrp_testing.process import Process, processes_with
+from mrp_testing.waiting import wait_until
 from mrp_testing.workspace import WORKSPACE
 
 FOLDER = WORKSPACE / "src" / "mrp_labs"
@@ -74,6 +75,9 @@ def test_unknown_name_says_which_labs_exist(name, found):
 def test_lab_shows_its_claim(name, tmp_path):
     """It marks each line of labs.yaml, prints none that must not come, sums up, and ends."""
     with Process(LAB, name, extra_env=own(tmp_path)) as lab:
+        while lab.code is None:  # a lab may take long, but each line must come in time
+            count = len(lab.lines)
+            wait_until(lambda: len(lab.lines) > count or lab.code is not None, lambda: str(lab))
         assert lab.wait() == 0, str(lab)
     claim = (FOLDER / "launch" / f"{name}.launch").read_text().splitlines()[0]
     assert f"<!-- {lab.lines[0].removeprefix(name + ': ')} -->" == claim
