@@ -35,10 +35,9 @@ def imports():
     for folder, imported in found.items():
         for path in (CHECKER / folder).rglob("*.py"):
             for node in ast.walk(ast.parse(path.read_text())):
-                module = getattr(node, "module", None) or ""
-                names = [f"{module}.{name.name}" for name in getattr(node, "names", [])]
-                if isinstance(node, (ast.Import, ast.ImportFrom)):
-                    imported |= {name.lstrip(".").split(".")[1] for name in names if "." in name[1:]}
+                if isinstance(node, ast.ImportFrom):
+                    names = (f"{node.module}.{name.name}" for name in node.names)
+                    imported |= {name.split(".")[1] for name in names}
         imported &= folders - {folder}
     return found
 
