@@ -18,7 +18,7 @@ The head of a patch says what it breaks, and who must find that:
     Task: # A title             what the student reads first,
     Hint: Look at the end.      what the student may ask for,
     Learned: A sentence.        and what they know when they have passed it
-    Shows: error: ...           a text that it makes a tool print, and more: see tools/why_entries.py
+    Shows: error: ...           a text that it makes a tool print, and more: see why_entries.py
 
 The value of a field goes on in the lines below it that are indented. There may be several lines In:
 each names a place that is right. The head ends where the diff begins.
@@ -93,7 +93,7 @@ class Defect:
     task: str = ""
     hint: str = ""
     learned: str = ""
-    why: Mapping[str, Sequence[str]] = dataclasses.field(default_factory=dict)  # of tools/why_entries.py
+    why: Mapping[str, Sequence[str]] = dataclasses.field(default_factory=dict)  # of why_entries.py
 
     @property
     def name(self) -> str:
