@@ -115,6 +115,9 @@ def main():
     with contextlib.ExitStack() as stack:
         folder = pathlib.Path(stack.enter_context(tempfile.TemporaryDirectory(dir="/var/tmp")))
         folder.chmod(0o755)
+        # The repository may be another user's.
+        (folder / "gitconfig").write_text("[safe]\ndirectory = *\n")
+        os.environ["GIT_CONFIG_GLOBAL"] = str(folder / "gitconfig")
         clone = ["git", "clone", "--quiet", WORKSPACE.parent, folder / "clone"]
         subprocess.run(clone, check=True)
         for place in arguments.places:
@@ -124,6 +127,10 @@ def main():
             except UnavailableError as error:
                 print(f"## PLACE: {place} was NOT made on this machine: {error}", flush=True)
                 codes.add(UNAVAILABLE)
+                continue
+            except subprocess.CalledProcessError as error:
+                print(f"## PLACE: {place} failed: {error}", flush=True)
+                codes.add(1)
                 continue
             what = ", ".join(f"{name}: {value}" for name, value in row.items())
             print(f"## PLACE: {time.monotonic() - begin:.0f} s, {what}", flush=True)
@@ -183,8 +190,6 @@ def seen(place, folder, marked):
         raise UnavailableError("see above")
     if process.returncode and row["failed"] == "0":
         row["failed"] = "?"
-    if kind != "container":
-        subprocess.run(["rm", "-rf", "--one-file-system", folder / "root"], check=True)
     return row
 
 
@@ -209,6 +214,7 @@ def root(system, kind, architecture, folder):
         bootstrap(SUITES[system], architecture, bare)
         shutil.copytree(bare / "var/cache/apt/archives", archives)
     made = folder / "root"
+    subprocess.run(["rm", "-rf", "--one-file-system", made], check=True)  # the place before
     subprocess.run(["cp", "--archive", bare, made], check=True)
     name = "learner" if kind == "user" else "root"
     home = pathlib.Path("root" if name == "root" else f"home/{name}")
