@@ -7,6 +7,7 @@ needs no master to start: it waits for one.
 """
 
 import argparse
+import errno
 import os
 import pathlib
 import signal
@@ -23,15 +24,25 @@ from mrp_view.server import View
 from mrp_view.watcher import Watcher
 
 
+def port_number(text):
+    """Return a port's number. Raises argparse.ArgumentTypeError if it is none."""
+    if not text.isdecimal() or int(text) > 65535:
+        raise argparse.ArgumentTypeError(f"expected a number from 0 to 65535; found '{text}'")
+    return int(text)
+
+
 # Options, not parameters: there may be no master yet to ask for parameters.
 def options(arguments):
     parser = argparse.ArgumentParser(
         prog="view_node.py", description=__doc__.split("\n")[0], allow_abbrev=False
     )
     parser.add_argument(
-        "--address", default="127.0.0.1", help="address to listen on; 0.0.0.0: on all"
+        "--address",
+        type=lambda text: text.strip("[]"),  # as a URL writes IPv6
+        default="127.0.0.1",
+        help="address to listen on; 0.0.0.0: on all",
     )
-    parser.add_argument("--port", type=int, default=8765, help="0: any free port")
+    parser.add_argument("--port", type=port_number, default=8765, help="0: any free port")
     parser.add_argument(
         "--name", action="append", default=[], help="additional host name that may request the page"
     )
@@ -144,10 +155,11 @@ def main():
     try:
         node = ViewNode(chosen)
     except OSError as error:
-        sys.exit(
-            f"error: cannot listen on {chosen.address} port {chosen.port}: {error.strerror}. "
-            "Another viewer may be running; --port chooses another port"
-        )
+        advice = "--address takes an address of this machine, such as 127.0.0.1"
+        if error.errno == errno.EADDRINUSE:
+            advice = "Another viewer may be running; --port chooses another port"
+        where = f"{chosen.address} port {chosen.port}"
+        sys.exit(f"error: cannot listen on {where}: {error.strerror}. {advice}")
     sys.exit(node.run())
 
 

@@ -88,7 +88,7 @@ class TestProgram(unittest.TestCase):
         publisher.unregister()
 
     def test_printed_address_can_be_opened(self):
-        for address, printed in (("::1", "[::1]"), ("::", "[::1]"), ("0.0.0.0", "127.0.0.1")):
+        for address, printed in (("[::1]", "[::1]"), ("::", "[::1]"), ("0.0.0.0", "127.0.0.1")):
             with Viewer("--address", address) as viewer, Client(viewer.address) as page:
                 self.assertRegex(viewer.address, rf"^http://{re.escape(printed)}:\d+/$")
                 page.wait_for(lambda: page.ticks, "a message")
@@ -127,6 +127,11 @@ class TestProgram(unittest.TestCase):
             with Process("rosrun", "mrp_view", "view_node.py", "--port", port) as second:
                 self.assertEqual(second.wait(), 1)
             self.assertIn(f"error: cannot listen on 127.0.0.1 port {port}", second.lines[-1])
+
+    def test_port_that_is_none(self):
+        with Process("rosrun", "mrp_view", "view_node.py", "--port", "99999") as viewer:
+            self.assertEqual(viewer.wait(), 2)
+        self.assertIn("expected a number from 0 to 65535; found '99999'", viewer.lines[-1])
 
     def test_second_viewer_takes_the_name(self):
         with Viewer() as first, Client(first.address) as page:

@@ -156,6 +156,8 @@ def run(options):
                 needed = "without" if options.class_ else "with"
                 name = name.replace("_", "-")
                 raise CannotCheck(f"--{name} goes {needed} --class.")
+        if options.gradescope and options.any:
+            raise CannotCheck("--gradescope needs the points of a contract: leave out --any.")
         run_one = write_contract if options.write_contract else run_packages
         result = run_class(options) if options.class_ else run_one(options)
     except (PackageError, SpecError, CannotCheck, ClusterError, OSError) as error:
