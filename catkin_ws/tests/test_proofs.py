@@ -5,7 +5,6 @@ The pages here are small ones, in a small workspace of their own with the real e
 """
 
 import html
-import json
 import re
 import shutil
 import subprocess
@@ -13,10 +12,8 @@ import subprocess
 import check_proofs
 import pytest
 import run_page
-from check_proofs import cases
+from check_proofs import cases, ledger
 from docutils.core import publish_doctree
-from mrp_testing.workspace import WORKSPACE
-from sentences import of
 
 pytestmark = pytest.mark.quick
 
@@ -24,6 +21,7 @@ PAGES = "catkin_ws/src/mrp/doc"
 PAGE = f"{PAGES}/pages/one.rst"
 LEDGER = f"{PAGES}/proofs/one.txt"
 README = f"{PAGES}/proofs/README.txt"
+PASSED = f"{PAGES}/proofs/passed.csv"
 PYTHON = "catkin_ws/src/mrp/test/test_one.py"
 
 FILES = {
@@ -79,7 +77,8 @@ class TestOne:
     "catkin_ws/src/mrp_check/defects/one.patch": (
         "Breaks: it\nFails: one.test test_both\nSays: it\n\n--- a/src/one.cpp\n+++ b/src/one.cpp\n"
     ),
-    "docker/test/test_run.py": "def test_it():\n    pass\n",
+    "docker/test/test_run.py": '"""Of the file."""\n\ndef test_it():\n    pass\n',
+    PASSED: "2020-01-02 docker/test_run/test_it\n2020-01-02 mrp/one/test_both\n",
 }
 
 
@@ -91,11 +90,7 @@ def root(tmp_path):
         (tmp_path / name).write_text(text)
     (tmp_path / PYTHON).chmod(0o755)  # a program, which rostest runs
     ignore = shutil.ignore_patterns("__pycache__")
-    for folder in ("mrp/doc/extension", "mrp_check/src/mrp_check/contract"):
-        source = WORKSPACE / "src" / folder
-        shutil.copytree(source, tmp_path / "catkin_ws" / "src" / folder, ignore=ignore)
-    # With it the copy wins over the package of a sourced workspace.
-    (tmp_path / "catkin_ws/src/mrp_check/src/mrp_check/__init__.py").touch()
+    shutil.copytree(run_page.DOC / "extension", tmp_path / PAGES / "extension", ignore=ignore)
     return tmp_path
 
 
@@ -115,7 +110,7 @@ def build(root):
 def test_marks_boxes_and_table_of_what_is_proved(root):
     results = root / "catkin_ws/build/test_results/mrp"
     results.mkdir(parents=True)
-    cases = '<testcase name="test_both"/><testcase name="test_publisher_py"><failure/></testcase>'
+    cases = '<testcase name="test_both"><failure/></testcase>'
     (results / "rosunit-one.xml").write_text(f"<testsuite>{cases}</testsuite>")
     assert build(root) == (0, "")
     page = (root / "site/pages/one.html").read_text()
@@ -124,14 +119,19 @@ def test_marks_boxes_and_table_of_what_is_proved(root):
     texts = ["A queue of 1.5 drops the oldest value. Is it so?", 'It "never" blocks.']
     labels = [html.unescape(label) for label in re.findall('aria-label="(Proved: .*?)">', page)]
     assert labels == [f"Proved: {text}" for text in (*texts, "It blocks: at once.")]
-    assert re.search(r'claims nothing. <a class="proof" href="tests.html#tests-of-one"', page)
-    script = (root / "site/_proofs/one.js").read_text()
-    shown = json.loads(re.fullmatch(r'mrpProofs\["one"\] = (.*);\n', script)[1])
-    assert shown["marks"][1] == [['It "never" blocks.', ["mrp/one/test_publisher_py"]]]
-    both = shown["tests"]["mrp/one/test_both"]
-    for text in ("passed", "Sends two values.", "test_one.py, line 2", "rostest mrp"):
-        assert text in both
-    assert "failed" in shown["tests"]["mrp/one/test_publisher_py"]
+    assert re.search(r'claims nothing. <button class="proof" popovertarget="proof-0"', page)
+    _, *boxes = re.split(r'<div popover id="proof-', page)
+    for text in (
+        "<blockquote>A queue of 1.5 drops the oldest value.</blockquote>",
+        # This machine's result comes before the recorded one.
+        "<strong>mrp/one/test_both</strong> failed on 20",
+        "Sends\ntwo values.",
+        "test_one.py, line 2",
+        "<strong>docker/test_run/test_it</strong> passed on 2020-01-02<br>Of the file.",
+    ):
+        assert text in boxes[0]
+    assert "<strong>mrp/one/publisherCpp</strong> <br>Blocks." in boxes[2]
+    assert "it" in boxes[2] and "one.patch, line 1" in boxes[2]
     table = (root / "site/pages/tests.html").read_text()
     assert '<a href="one.html#one">It blocks: at once.</a>' in table
     assert "<td>mrp/one/publisherCpp<br>broken/one</td>" in table
@@ -190,21 +190,33 @@ def test_a_ledger_without_a_page_fails_the_build(root):
 
 
 @pytest.mark.parametrize(
-    ("text", "expected"),
+    ("text", "row", "expected"),
     [
-        ("One. Two? *Three*!", ["One.", "Two?", "Three!"]),
-        ("One line\nand **one** more.", ["One line and one more."]),
-        ("Paul N. Beuchat, as in 3.5. But", ["Paul N. Beuchat, as in 3.5.", "But"]),
-        ("A ``b. C`` is a name. No. 5 is.", ["A b. C is a name.", "No.", "5 is."]),
-        ('He says "no." Then.', ['He says "no."', "Then."]),
-        ("- One\n- Two", ["One", "Two"]),
-        ("term\n   What it is.", ["term", "What it is."]),
-        ("::\n\n   Code. It is.\n\n.. A comment.", []),
-        ("Head\n====\n\nText\n\n===  ====\nOne  Two.\n===  ====", ["Head", "Text", "One", "Two."]),
+        ("One. Two? *Three*!", "Two?", ["Two?"]),
+        ("One line\nand **one** more.", "One line ... more.", ["One line and one more."]),
+        ("It drops one. It sends two.", "It ... two.", ["It sends two."]),
+        ("It drops one. It sends two.", "It drops ...", ["It drops one."]),
+        ("It drops. It drops.", "It drops.", ["It drops.", "It drops."]),
+        ("It drops the oldest.", "It drops", []),
+        ("It drops the oldest.", "drops the oldest.", []),
+        ('He says "no." Then.', 'He says "no."', ['He says "no."']),
+        ("A ``b. C`` is a name.", "A b. C is a name.", ["A b. C is a name."]),
+        ("- One\n- Two", "Two", ["Two"]),
+        ("::\n\n   Code. It is.\n\n.. It is.", "It is.", []),
+        ("===  ====\nOne  Two.\n===  ====", "Two.", ["Two."]),
     ],
 )
-def test_sentences(text, expected):
-    assert [sentence.text for sentence in of(publish_doctree(text))] == expected
+def test_which_sentences_a_row_names(text, row, expected):
+    blocks = ledger.blocks(publish_doctree(text))
+    row = ledger.Row(row, 1, ("a",))
+    assert [found for block in blocks for found in row.in_text(block.text)] == expected
+
+
+def test_readme_is_read_without_its_markup(tmp_path):
+    path = tmp_path / "README.md"
+    path.write_text("# A *head*\n\n- One\n- `Two` [of](x.md)\n\n| a | b |\n")
+    texts = [block.text for block in ledger.blocks_of_markdown(path)]
+    assert texts == ["A head", "One", "Two of", "", "a", "b", ""]
 
 
 @pytest.mark.parametrize(
@@ -219,28 +231,36 @@ def test_sentences(text, expected):
 def test_language_of_a_test_case(tmp_path, case, language):
     path = tmp_path / "test_it.py"
     path.write_text(f"def {case}():\n    pass\n")
-    assert [found.language for _, found in cases.python_cases(path)] == [language]
+    assert [found.language for found in cases.in_file(path).values()] == [language]
 
 
-def test_last_results_of_rostest_and_pytest(tmp_path):
-    (tmp_path / "mrp").mkdir()
-    (tmp_path / "mrp" / "rosunit-stop.xml").write_text(
-        '<testsuite><testcase name="test_a"/>'
-        '<testcase name="test_b"><error/></testcase></testsuite>'
-    )
-    broken = 'classname="tests.test_broken" name="test_broken_variant_fails'
-    (tmp_path / "pytest_slow.xml").write_text(
-        f'<testsuites><testsuite><testcase {broken}[e05]"/><testcase {broken}[e06]"><failure/>'
-        '</testcase><testcase classname="test_a" name="test_b[1]"/>'
-        '<testcase classname="test_a" name="test_b[2]"><skipped/></testcase>'
-        "</testsuite></testsuites>"
-    )
-    (tmp_path / "bookworm").mkdir()
-    (tmp_path / "bookworm" / "containers.xml").write_text(
-        '<testsuite><testcase classname="docker.test.test_run" name="test_c@group"/></testsuite>'
-    )
-    (tmp_path / "pytest_begun.xml").touch()  # as while the test runs that writes it
-    assert cases.last_results(tmp_path) == {
+@pytest.fixture
+def results(tmp_path, monkeypatch):
+    """A folder for files of results."""
+    monkeypatch.setattr(cases, "RESULTS", tmp_path)
+    cases.ended.cache_clear()
+    yield tmp_path
+    cases.ended.cache_clear()
+
+
+def test_results_of_rostest_and_pytest(results):
+    files = {
+        "mrp/rosunit-stop.xml": """
+            <testcase name="test_a"/>
+            <testcase name="test_b"><error/></testcase>""",
+        "pytest_slow.xml": """
+            <testcase classname="test_broken" name="test_broken_variant_fails[e05]"/>
+            <testcase classname="test_broken" name="test_broken_variant_fails[e06]"><failure/>
+            </testcase>
+            <testcase classname="a.test_a" name="test_b[1]"/>
+            <testcase classname="a.test_a" name="test_b[2]"><skipped/></testcase>""",
+        "bookworm/containers.xml": '<testcase classname="a.test_run" name="test_c@group"/>',
+    }
+    for file, text in files.items():
+        (results / file).parent.mkdir(exist_ok=True)
+        (results / file).write_text(f"<testsuite>{text}</testsuite>")
+    (results / "pytest_begun.xml").touch()  # as while the test runs that writes it
+    expected = {
         "mrp/stop/test_a": "passed",
         "mrp/stop/test_b": "failed",
         "broken/e05": "passed",
@@ -248,21 +268,40 @@ def test_last_results_of_rostest_and_pytest(tmp_path):
         "workspace/test_a/test_b": "skipped",
         "docker/test_run/test_c": "passed",
     }
+    assert {name: cases.result(name)[0] for name in expected} == expected
+    assert cases.result("workspace/test_a/test_c") is None
 
 
-def test_a_test_that_has_not_passed_is_named_with_its_line(tmp_path):
+def test_a_test_that_has_not_passed_is_named_with_its_line(results, monkeypatch):
     """What runs in containers or in `make test-check` is left out."""
     good, failed, skipped, sets = [f"workspace/test_it/test_{name}" for name in "abcd"]
-    path = tmp_path / "one.txt"
+    path = results / "one.txt"
     lines = [good, " A.", failed, skipped, " B.", sets, "docker/test_it/test_a", " C."]
     path.write_text("\n".join(lines))
-    file = tmp_path / "test_it.py"
+    file = results / "test_it.py"
     file.write_text("pytestmark = pytest.mark.slow\n")
     names = [good, failed, skipped, "docker/test_it/test_a"]
     tests = dict.fromkeys(names, cases.Case(file, 1, "", "", ""))
     tests[sets] = cases.Case(file, 1, "", "", "@pytest.mark.sets")
-    found = list(check_proofs.faults(tmp_path, tests, {good: "passed", skipped: "skipped"}))
-    assert [fault.partition(" python3")[0] for fault in found] == [
-        f"{path}:5: not run: {failed}:",
-        f"{path}:5: skipped: {skipped}:",
+    monkeypatch.setattr(cases, "find", tests.get)
+    xml = '<testcase classname="test_it" name="test_{}">{}</testcase>'
+    cases_run = xml.format("a", "") + xml.format("c", "<skipped/>")
+    (results / "pytest_slow.xml").write_text(f"<testsuite>{cases_run}</testsuite>")
+    assert list(check_proofs.faults(results)) == [
+        f"{path}:5: not run: {failed}, in {file}",
+        f"{path}:5: skipped: {skipped}, in {file}",
     ]
+
+
+def test_what_passed_is_recorded_and_what_did_not_run_stays(results, monkeypatch):
+    monkeypatch.setattr(cases, "PASSED", results / "passed.csv")
+    names = [f"workspace/test_it/test_{name}" for name in "abc"]
+    (results / "one.txt").write_text("\n".join([*names, " A."]))
+    cases.PASSED.write_text("".join(f"2020-01-02 {name}\n" for name in [*names, "gone/b/c"]))
+    xml = '<testcase classname="test_it" name="test_{}">{}</testcase>'
+    cases_run = xml.format("a", "") + xml.format("c", "<failure/>")
+    (results / "pytest_slow.xml").write_text(f"<testsuite>{cases_run}</testsuite>")
+    check_proofs.record(results)
+    first, second = cases.PASSED.read_text().splitlines()
+    assert re.fullmatch(f"20[2-9][1-9]-.* {names[0]}", first)
+    assert second == f"2020-01-02 {names[1]}"

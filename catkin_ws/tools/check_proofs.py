@@ -2,10 +2,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Prints each test of the pages' ledgers that has not passed in the last `make test-all`.
 
-Usage: check_proofs.py
+Usage: check_proofs.py [--record]
 
 It leaves out what only a machine with containers can run, and the tests of `make test-check`.
-Exit code: 1 if it prints one.
+Exit code: 1 if it prints one. With --record it writes down for the pages which tests have passed,
+and when; of the others, what was recorded before stays.
 """
 
 import pathlib
@@ -26,18 +27,32 @@ def is_of_test_all(name, case):
     return not name.startswith("docker/") and "sets" not in (marks or of_file)
 
 
-def faults(folder, tests, results):
+def faults(folder):
     """Yield the file, the line and the fault of each test that has not passed."""
     for path in sorted(folder.glob("*.txt")):
         for row in ledger.read(path):
             for name in row.tests:
-                ended = results.get(name, "not run")
-                if name in tests and is_of_test_all(name, tests[name]) and ended != "passed":
-                    command = cases.command_of(name, tests[name])
-                    yield f"{path}:{row.line}: {ended}: {name}: {command}"
+                case, (ended, _) = cases.find(name), cases.result(name) or ("not run", "")
+                if case and is_of_test_all(name, case) and ended != "passed":
+                    yield f"{path}:{row.line}: {ended}: {name}, in {case.path}"
+
+
+def record(folder):
+    """Write down the day on which each test of the ledgers passed last."""
+    before, lines = cases.recorded(), []
+    for name in {
+        name for path in folder.glob("*.txt") for row in ledger.read(path) for name in row.tests
+    }:
+        ended, day = cases.result(name) or ("passed", before.get(name))
+        if ended == "passed" and day:
+            lines.append(f"{day} {name}\n")
+    cases.PASSED.write_text("".join(sorted(lines, key=lambda line: line.split()[1])))
 
 
 if __name__ == "__main__":
-    found = list(faults(ledger.FOLDER, cases.all_tests(), cases.last_results()))
+    if sys.argv[1:] == ["--record"]:
+        record(ledger.FOLDER)
+        sys.exit()
+    found = list(faults(ledger.FOLDER))
     print("\n".join(found), end="\n" if found else "")
     sys.exit(1 if found else 0)

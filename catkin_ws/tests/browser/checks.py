@@ -65,17 +65,26 @@ def pictures(browser):
 
 
 def proofs(browser):
-    """Every mark of a proof is 24 px large each way, as WCAG asks, and says what it proves."""
-    return browser.run(
-        """
-        const small = (box) => box.width < 24 || box.height < 24;
-        const says = (one) => /^Proved: ./.test(one.getAttribute("aria-label"));
-        return [...document.querySelectorAll("a.proof")]
-          .filter((one) => one.checkVisibility())
-          .filter((one) => small(one.getBoundingClientRect()) || !says(one))
-          .map((one) => one.outerHTML.slice(0, 200) + ": is too small, or has no label");
-        """
-    )
+    """Every mark of a proof can be shown, is 24 px large each way, as WCAG asks, and says what is
+    proved."""
+    with _all_shown(browser):
+        return browser.run(
+            """
+            const before = document.body.className;
+            document.body.classList.add("marks");
+            const wrong = (mark) => {
+              const { width, height } = mark.getBoundingClientRect();
+              const label = mark.getAttribute("aria-label");
+              return width < 24 || height < 24 || !/^Proved: ./.test(label);
+            };
+            const faults = [...document.querySelectorAll(".proof")]
+              .filter((mark) => !mark.closest("details:not([open])") && wrong(mark))
+              .map((mark) => mark.outerHTML.slice(0, 200))
+              .map((html) => html + ": is hidden, too small, or has no label");
+            document.body.className = before;
+            return faults;
+            """
+        )
 
 
 def contrast(browser):

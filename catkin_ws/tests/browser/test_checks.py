@@ -11,8 +11,8 @@ FINE = (
 )
 TEXT = '<p style="color: {}; background: {}">Some text</p>'
 PROOF = (
-    '<a class="proof" href="#a" aria-label="{}" '
-    'style="display: block; width: {}px; height: 24px">&#10003;</a>'
+    '<button class="proof" aria-label="{}" '
+    'style="display: {}; padding: 0; width: {}px; height: 24px">&#10003;</button>'
 )
 SCROLLS = '<pre style="overflow: auto" {}>' + "long" * 50 + "</pre>"
 
@@ -45,8 +45,9 @@ FAULTS = {
         "pictures axe",
     ),
     "an empty label": ('<svg role="img" aria-label=""></svg>', "pictures axe"),
-    "a mark that is too small": (PROOF.format("Proved: It is.", 8), "proofs"),
-    "a mark without a label": (PROOF.format("", 24), "proofs"),
+    "a mark that is too small": (PROOF.format("Proved: It is.", "block", 8), "proofs"),
+    "a mark that stays hidden": (PROOF.format("Proved: It is.", "none", 24), "proofs"),
+    "a mark without a label": (PROOF.format("Proved:", "block", 24), "proofs"),
     "grey on white": (TEXT.format("#777", "#fff"), "contrast"),
     "white on a light blue": (TEXT.format("#fff", "#2980b9"), "contrast"),
     "half transparent black on white": (TEXT.format("rgba(0, 0, 0, 0.5)", "#fff"), "contrast"),
@@ -69,7 +70,7 @@ FAULTS = {
 HARMLESS = {
     "nothing else": "",
     "code that scrolls in itself": SCROLLS.format('tabindex="0"'),
-    "a mark of a proof": PROOF.format("Proved: It is.", 24),
+    "a mark of a proof": PROOF.format("Proved: It is.", "block", 24),
     "black on white": TEXT.format("#000", "#fff"),
     "the least contrast": TEXT.format("#767676", "#fff"),
     "faint text that is hidden": '<p style="color: #eee; display: none">Text</p>',

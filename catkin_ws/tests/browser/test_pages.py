@@ -49,7 +49,7 @@ def test_every_picture_has_a_text_alternative(browser, view):
     checks.assert_none(checks.pictures(browser))
 
 
-def test_every_proof_can_be_pressed_and_says_what_it_proves(browser, view):
+def test_every_mark_can_be_pressed_and_says_what_is_proved(browser, view):
     checks.assert_none(checks.proofs(browser))
 
 

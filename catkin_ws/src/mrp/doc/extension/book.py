@@ -2,8 +2,8 @@
 """Makes a book of the pages, for Sphinx's builders `epub` and `latex`: see `make docs-book`.
 
 In a book nothing can be chosen or opened. So each tab stands below its label, and what is folded
-below its summary. Each picture is a file, in the colours of paper. The marks of proof and the list
-of the tests, with their sources, are for the site alone.
+below its summary. Each picture is a file, in the colours of paper. The marks of proof are for
+the site alone, and so is the list of the tests.
 """
 
 import hashlib

@@ -1,49 +1,43 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The test cases that a ledger may name, and how they ended in the last run.
+"""The tests that a ledger may name, and how they ended.
 
     PACKAGE/NAME/CASE     a test case of PACKAGE's test_NAME.py or .cpp, which rostest runs
     workspace/FILE/CASE   a test case of FILE.py, which pytest runs: in catkin_ws/tests, or in the
                           folder test of a package
     docker/FILE/CASE      a test case of docker/test/FILE.py
-    broken/NAME           a defect of mrp_check/defects/ that a rostest of the tutorial must find
+    broken/NAME           the defect NAME.patch, which a rostest of the tutorial must find
 
-A test case names its language, as in test_publisher_py and publisherCpp. If it names none, a test
-in C++ is of C++, a defect is of the language that it breaks, and any other test is of both.
+A test in C++ proves nothing about Python. Nor does one in Python with _cpp in its name, such as
+test_publisher_cpp, or a defect of a C++ file. The same holds the other way round.
 """
 
 import ast
+import datetime
 import functools
-import itertools
-import os
 import pathlib
 import re
-import sys
 import textwrap
 import xml.etree.ElementTree as ElementTree
 from typing import NamedTuple
 
-from sentences import plain
-
 WORKSPACE = pathlib.Path(__file__).resolve().parents[4]
 ROOT = WORKSPACE.parent
-sys.path.insert(0, str(WORKSPACE / "src" / "mrp_check" / "src"))
-
-from mrp_check.contract import defects  # noqa: E402
-
 RESULTS = WORKSPACE / "build" / "test_results"
-PACKAGES = ("mrp", "mrp_labs", "mrp_view")
-BROKEN = "workspace/test_broken/test_broken_variant_fails"  # its parameters are the defects
-CPP_CASE = re.compile(r"((?:^//.*\n)*)(^TEST(?:_F)?\(\w+, (\w+)\)\n(?:.*\n)*?^}\n)", re.MULTILINE)
-_LANGUAGE_IN_NAME = re.compile(r"(?:_(cpp|py)|(?<=[a-z])(Cpp|Py))(?=_|[A-Z]|$)")
-_LANGUAGES = {"cpp": "C++", "h": "C++", "py": "Python"}
+PASSED = pathlib.Path(__file__).resolve().parents[1] / "proofs" / "passed.csv"
+_FILES = {
+    "broken": ["catkin_ws/src/mrp_check/defects/{}.patch"],
+    "docker": ["docker/test/{}.py"],
+    "workspace": ["catkin_ws/tests/{}.py", "catkin_ws/src/*/test/{}.py"],
+}
+_CPP_CASE = re.compile(r"((?:^//.*\n)*)(^TEST(?:_F)?\(\w+, (\w+)\)\n(?:.*\n)*?^}\n)", re.MULTILINE)
+_LANGUAGES = {"cpp": "C++", "py": "Python"}
 
 
 class Case(NamedTuple):
     """A test case.
 
-    line: where it begins in its file
     language: "C++", "Python", or "" for both
-    says: its docstring, the comment above it, or what the defect breaks; or ""
+    says: its docstring or comment, or that of its file; of a defect, what it breaks
     source: its code
     """
 
@@ -53,127 +47,91 @@ class Case(NamedTuple):
     says: str
     source: str
 
-    @property
-    def file(self):
-        """The path below the repository's folder, as a text."""
-        return os.path.relpath(self.path, ROOT)
+
+def find(name):
+    """Return the Case of a name, or None."""
+    found = (in_file(path).get(name.split("/")[-1]) for path in files(name))
+    return next(filter(None, found), None)
+
+
+def files(name):
+    """Return the files in which a test may be, by the first two parts of its name."""
+    kind, stem = [*name.split("/"), ""][:2]
+    patterns = _FILES.get(kind, [f"catkin_ws/src/{kind}/test/test_{{}}.*"])
+    return [path for pattern in patterns for path in sorted(ROOT.glob(pattern.format(stem)))]
 
 
 @functools.lru_cache
-def all_tests():
-    """Return name -> Case, of all that a ledger may name."""
-    tests = {}
-    for path, prefix in sorted(_files().items()):
-        cases = cpp_cases(path) if path.suffix == ".cpp" else python_cases(path)
-        tests.update({f"{prefix}/{name}": case for name, case in cases})
-    tests.update({f"broken/{one.name}": _of_defect(one) for one in defects.read_all() if one.fails})
-    return tests
-
-
-def _files():
-    """Return path -> the first two parts of its cases' names, of all files with tests."""
-    files = {}
-    for package in PACKAGES:
-        for path in (WORKSPACE / "src" / package / "test").glob("test_*.*"):
-            # What rostest runs is a program; pytest's files are not.
-            if path.suffix == ".cpp" or os.access(path, os.X_OK):
-                files[path] = f"{package}/{path.stem[len('test_') :]}"
-    folders = [WORKSPACE / "tests", *WORKSPACE.glob("src/*/test")]
-    kinds = {**dict.fromkeys(folders, "workspace"), ROOT / "docker" / "test": "docker"}
-    for folder, kind in kinds.items():
-        for path in folder.glob("test_*.py"):
-            files.setdefault(path, f"{kind}/{path.stem}")
-    return files
-
-
-def python_cases(path):
-    """Yield (name, Case) of the test cases of a file in Python."""
+def in_file(path):
+    """Return the Cases of a file, by the last part of their names."""
     text = path.read_text()
-    for node in ast.walk(ast.parse(text)):
+    if path.suffix == ".patch":
+        languages = set(re.findall(r"^\+\+\+ b/\S+\.(cpp|py)$", text, re.MULTILINE))
+        language = _LANGUAGES[languages.pop()] if len(languages) == 1 else ""
+        return {path.stem: Case(path, 1, language, re.match("Breaks: (.*)", text)[1], text)}
+    return dict((_cpp_cases if path.suffix == ".cpp" else _python_cases)(path, text))
+
+
+def _python_cases(path, text):
+    file = ast.parse(text)
+    for node in ast.walk(file):
         if isinstance(node, ast.FunctionDef) and node.name.startswith("test"):
             first = min([node.lineno, *(one.lineno for one in node.decorator_list)])
             source = textwrap.dedent("\n".join(text.splitlines()[first - 1 : node.end_lineno]))
-            says = plain(ast.get_docstring(node) or "")
-            yield node.name, Case(path, node.lineno, _language_in(node.name), says, source)
+            language = re.search("_(cpp|py)(?=_|$)", node.name)
+            language = _LANGUAGES[language[1]] if language else ""
+            says = ast.get_docstring(node) or ast.get_docstring(file) or ""
+            yield node.name, Case(path, node.lineno, language, says, source)
 
 
-def cpp_cases(path):
-    """Yield (name, Case) of the test cases of a file in C++."""
-    text = path.read_text()
-    for match in CPP_CASE.finditer(text):
-        comment, source, name = match.groups()
+def _cpp_cases(path, text):
+    head = re.search(r"((?:^// (?!SPDX).*\n)*)", text, re.MULTILINE)[1]
+    for match in _CPP_CASE.finditer(text):
+        says = (match[1] or head).replace("// ", "")
         line = text.count("\n", 0, match.start(2)) + 1
-        says = plain(comment.replace("//", ""))
-        yield name, Case(path, line, _language_in(name) or "C++", says, source.rstrip())
+        yield match[3], Case(path, line, "C++", says, match[2])
 
 
-def _of_defect(defect):
-    text = defect.path.read_text()
-    endings = re.findall(r"^\+\+\+ b/\S+\.(\w+)$", text, re.MULTILINE)
-    languages = {_LANGUAGES.get(ending, "") for ending in endings}
-    language = languages.pop() if len(languages) == 1 else ""
-    says = f"{defect.breaks}: the test {defect.fails[1]} finds it."
-    return Case(defect.path, 1, language, says, text.rstrip())
+def result(name):
+    """Return how a test ended when it last ran here, and on which day; None if it didn't run.
 
-
-def _language_in(name):
-    match = _LANGUAGE_IN_NAME.search(name)
-    return _LANGUAGES[match.group().strip("_").lower()] if match else ""
-
-
-def command_of(proof, test):
-    """Return the command that runs a proof, in the folder of the repository."""
-    kind, name = proof.split("/")[:2]
+    A test with parameters has passed if it has with all of them.
+    """
+    kind, file, case = [*name.split("/"), ""][:3]
+    pattern, of_file = f"{kind}/rosunit-{file}*.xml", None
+    if kind in _FILES:
+        pattern, of_file = ("**/containers.xml" if kind == "docker" else "*.xml"), file
     if kind == "broken":
-        return f"python3 -m pytest catkin_ws/tests/test_broken.py -k {name}"
-    if kind in ("workspace", "docker"):
-        return f"python3 -m pytest {test.file}"
-    if test.path.with_name(f"{name}.test").exists():
-        return f"rostest {kind} {name}.test"
-    return f"rostest {kind} python.test name:={name}"
+        of_file, case = "test_broken", f"test_broken_variant_fails[{file}]"
+    ends = [
+        (end, day)
+        for place, case_name, end, day in ended(pattern)
+        # Behind a test's name come its parameters, and xdist's group.
+        if (of_file is None or of_file in place)
+        and re.match(rf"{re.escape(case)}([\[@]|$)", case_name)
+    ]
+    worst = ("failed", "skipped", "passed")
+    return min(ends, key=lambda one: worst.index(one[0]), default=None)
 
 
-def last_results(folder=RESULTS):
-    """Return name -> "passed", "failed" or "skipped", from the files of results in a folder."""
-    worst = {}
-    for name, result in itertools.chain(_of_rostests(folder), _of_pytest(folder)):
-        if name.startswith(BROKEN + "["):
-            name = "broken/" + name[len(BROKEN) + 1 : -1]
-        # A test with parameters has passed if it has with all of them.
-        name = name.split("[")[0]
-        worst[name] = max(worst.get(name, 0), result)
-    return {name: ("passed", "skipped", "failed")[result] for name, result in worst.items()}
+def recorded():
+    """Return name -> the day on which a test had passed when these pages were last recorded."""
+    return dict(line.split()[::-1] for line in PASSED.read_text().splitlines())
 
 
-def _of_rostests(folder):
-    for test in (WORKSPACE / "src").glob("*/test/test_*.*"):
-        package, name = test.parts[-3], test.stem[len("test_") :]
-        for path in folder.glob(f"{package}/rosunit-{name}*.xml"):
-            for case in _cases(path):
-                yield f"{package}/{name}/{case.get('name')}", _result(case)
-
-
-def _of_pytest(folder):
-    for path in folder.rglob("*.xml"):
-        if path.name.startswith(("pytest_", "sets", "containers")):
-            kind = "docker" if path.name == "containers.xml" else "workspace"
-            for case in _cases(path):
-                file = re.search(r"\btest_\w+", case.get("classname", ""))
-                if file:
-                    # Behind the name, xdist writes the group of those that one worker runs.
-                    name = re.sub(r"@\w+$", "", case.get("name"))
-                    yield f"{kind}/{file.group()}/{name}", _result(case)
-
-
-def _cases(path):
-    """Return the test cases of a file of results; none while a test is still writing it."""
-    try:
-        return list(ElementTree.parse(path).iter("testcase"))
-    except ElementTree.ParseError:
-        return []
-
-
-def _result(case):
-    """Return 0 if a test case has passed, 1 if it was skipped, 2 if it failed."""
-    failed = any(case.find(fault) is not None for fault in ("failure", "error"))
-    return 2 if failed else int(case.find("skipped") is not None)
+@functools.lru_cache
+def ended(pattern):
+    """Return of each case in files of results: its class, its name, how it ended, and the day."""
+    found = []
+    for path in RESULTS.glob(pattern):
+        day = str(datetime.date.fromtimestamp(path.stat().st_mtime))
+        try:
+            cases = ElementTree.parse(path).iter("testcase")
+        except ElementTree.ParseError:  # a test is still writing it
+            continue
+        for case in cases:
+            tags = {one.tag for one in case}
+            end = "skipped" if "skipped" in tags else "passed"
+            end = "failed" if tags & {"failure", "error"} else end
+            found.append((case.get("classname", "").split("."), case.get("name"), end, day))
+    return found

@@ -5,8 +5,8 @@ Each is named as its task is, with what is to be done, the page that explains it
 that it is made of.
 """
 
-from cases import defects
 from listing import Generated
+from mrp_check.contract import defects
 
 
 class Exercises(Generated):

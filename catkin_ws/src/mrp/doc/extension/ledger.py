@@ -5,8 +5,8 @@
         When it is full, it drops the oldest message.
         A size of 0 means ... it drops nothing.
 
-A sentence stands in one line, indented, as the page shows it; "..." stands for any words. Several
-tests in a row prove each of the sentences below them. Of what a test is named: see cases.py.
+Each sentence is one line, indented, as the reader sees it; "..." stands for any words of it.
+Several tests in a row prove each of the sentences below them. cases.py says how a test is named.
 """
 
 import difflib
@@ -14,9 +14,16 @@ import pathlib
 import re
 from typing import NamedTuple
 
-from sentences import plain
+import cases
+from docutils import nodes
 
 FOLDER = pathlib.Path(__file__).resolve().parents[1] / "proofs"
+# What Sphinx makes of quotes, dashes and dots.
+_PLAIN = str.maketrans(dict(zip("“”‘’–—…", ['"', '"', "'", "'", "--", "---", "..."])))
+# Where a sentence begins, the words for which "..." stands, and where a sentence ends.
+_BEGIN = r"(?:^|(?<=[.!?:] )|(?<=[.!?][\"')] ))"
+_ANY = r"(?:(?!(?<=[.!?]) [A-Z]).)*"
+_END = r"(?= |$)"
 
 
 class Row(NamedTuple):
@@ -26,60 +33,100 @@ class Row(NamedTuple):
     line: int
     tests: tuple
 
-    def matches(self, sentence):
-        """Say whether this is a sentence of a page."""
-        return re.fullmatch(".*".join(map(re.escape, self.text.split("..."))), sentence)
+    def in_text(self, text):
+        """Return the sentences of a text that this is."""
+        words = _ANY.join(re.escape(part) for part in self.text.split("..."))
+        end = _END if self.text[-1] in ".!?:\"')" else "$"
+        return [match[0] for match in re.finditer(_BEGIN + words + end, text)]
+
+
+class Block(NamedTuple):
+    """A paragraph or the like: its text, and the language of the tab around it, or ""."""
+
+    node: nodes.TextElement
+    text: str
+    language: str
 
 
 def read(path):
     """Return the Rows of a ledger; none if there is no such file."""
     rows, tests, is_new = [], (), True
     for number, line in enumerate(path.read_text().splitlines() if path.exists() else [], 1):
-        if not line.strip() or line.startswith("#"):
-            continue
-        if line[0].isspace():
-            rows.append(Row(plain(line), number, tests))
+        if line.startswith(" "):
+            rows.append(Row(line.strip(), number, tests))
             is_new = True
-        else:
-            tests = (line.strip(),) if is_new else (*tests, line.strip())
+        elif line and not line.startswith("#"):
+            tests = (line,) if is_new else (*tests, line)
             is_new = False
     return rows
 
 
-def faults(rows, sentences, tests):
-    """Yield (line, what is wrong) of a ledger.
+def blocks(document):
+    """Return the Blocks of a page. Code, and what a terminal prints, is none."""
+    not_inline = (nodes.Inline, nodes.FixedTextElement)
+    found = document.findall(
+        lambda node: isinstance(node, nodes.TextElement) and not isinstance(node, not_inline)
+    )
+    return [Block(node, plain(node.astext()), _language(node)) for node in found]
 
-    sentences: those of its page
-    tests: all there are, name -> Case
-    """
-    texts = [sentence.text for sentence in sentences]
-    first = {name: row.line for row in reversed(rows) for name in row.tests}
-    for name, line in first.items():
-        if name not in tests:
-            yield line, f"there is no test {name}{_hint(name, tests)}"
+
+def blocks_of_markdown(path):
+    """Return the Blocks of a file in Markdown."""
+    text = re.sub(r"\[(.*?)\]\(.*?\)|[`*]|^#+ ", r"\1", path.read_text(), flags=re.MULTILINE)
+    return [Block(None, plain(part), "") for part in re.split(r"\n\n(?:- )?|\n- |\|", text)]
+
+
+def plain(text):
+    """Return a text with plain quotes and dashes, and each run of white space as one space."""
+    return " ".join(text.translate(_PLAIN).split())
+
+
+def _language(node):
+    while node is not None:
+        if node.get("type") == "tab" and node[0].astext() in ("C++", "Python"):
+            return node[0].astext()
+        node = node.parent
+    return ""
+
+
+def claims(block, rows):
+    """Return {sentence: its tests} of what the rows say of a block; none of the other language."""
+    found = {}
     for row in rows:
+        for sentence in row.in_text(block.text):
+            tests = found.setdefault(sentence, [])
+            tests += [test for test in row.tests if test not in tests and _is_for(test, block)]
+    return found
+
+
+def _is_for(test, block):
+    case = cases.find(test)
+    return not case or {case.language, block.language} != {"C++", "Python"}
+
+
+def faults(rows, page):
+    """Yield (line, what is wrong) of a ledger. page: the Blocks of its page"""
+    missing = {}
+    for row in rows:
+        missing.update({test: row.line for test in row.tests if not cases.find(test)})
         if not row.tests:
             yield row.line, f"expected the name of a test above this sentence: {row.text}"
-        if not any(map(row.matches, texts)):
-            yield row.line, f"the page has no such sentence: {row.text}{_hint(row.text, texts)}"
-    for sentence in sentences:
-        mine = [row for row in rows if row.matches(sentence.text)]
-        if mine and not tests_of(sentence, mine, tests):
-            yield (
-                mine[0].line,
-                f"the sentence stands in the tab {sentence.language}, and its tests are of the "
-                f"other language: {sentence.text}",
-            )
-
-
-def tests_of(sentence, rows, tests):
-    """Return the names of the tests that prove a sentence, but those of another tab's language."""
-    names = [name for row in rows if row.matches(sentence.text) for name in row.tests]
-    return [
-        name
-        for name in dict.fromkeys(names)
-        if name not in tests or {tests[name].language, sentence.language} != {"C++", "Python"}
-    ]
+        mine = [block for block in page if row.in_text(block.text)]
+        if not mine:
+            sentences = [one for block in page for one in re.split(r"(?<=[.!?]) ", block.text)]
+            yield row.line, f"the page has no such sentence: {row.text}{_hint(row.text, sentences)}"
+        for block in mine:
+            for sentence in row.in_text(block.text):
+                if row.tests and not claims(block, rows)[sentence]:
+                    yield (
+                        row.line,
+                        f"the sentence stands in the tab {block.language}, and its tests are of "
+                        f"the other language: {sentence}",
+                    )
+    for test, line in missing.items():
+        names = [name for path in cases.files(test) for name in cases.in_file(path)]
+        there = [f"{test.rpartition('/')[0]}/{name}" for name in names]
+        yield line, f"there is no test {test}{_hint(test, there)}"
 
 
 def _hint(text, others):

@@ -5,6 +5,7 @@
 """
 
 import re
+import sys
 
 import cases
 from docutils import nodes
@@ -12,6 +13,9 @@ from docutils.statemachine import StringList
 from sphinx.util.docutils import SphinxDirective
 
 RUN = "workspace/test_lab/test_lab_shows_its_claim"
+LABS = cases.WORKSPACE / "src" / "mrp_labs"
+# For the directives that list what the checker has.
+sys.path.insert(0, str(cases.WORKSPACE / "src" / "mrp_check" / "src"))
 
 
 class Generated(SphinxDirective):
@@ -31,7 +35,9 @@ class Labs(Generated):
     def run(self):
         found = super().run()
         tests = {
-            name: case for name, case in cases.all_tests().items() if name.startswith("mrp_labs/")
+            f"mrp_labs/{path.stem[len('test_') :]}/{name}": case
+            for path in sorted(LABS.glob("test/test_*.*"))
+            for name, case in cases.in_file(path).items()
         }
         sections = [node for node in found if isinstance(node, nodes.section)]
         for section, launch in zip(sections, self.launch_files()):
@@ -42,7 +48,7 @@ class Labs(Generated):
         return found
 
     def launch_files(self):
-        return sorted((cases.WORKSPACE / "src" / "mrp_labs" / "launch").glob("*.launch"))
+        return sorted((LABS / "launch").glob("*.launch"))
 
     def text(self):
         parts = []

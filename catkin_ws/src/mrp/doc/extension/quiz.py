@@ -22,7 +22,6 @@ import pathlib
 import zipfile
 
 import cases
-import per_page
 from docutils import nodes
 from docutils.parsers.rst import directives
 from sphinx.util.docutils import SphinxDirective
@@ -62,11 +61,11 @@ class Question(SphinxDirective):
             raise self.error("expected one of :test: and :output:")
         if output:
             recorded(self, "outputs.json", output)
-        elif proof not in cases.all_tests():
+        elif not cases.find(proof):
             raise self.error(f"expected the name of a test; found {proof}")
 
     def _keep(self, name, right, prompt, choices):
-        kept = self.env.mrp_questions.setdefault(self.env.docname, [])
+        kept = self.env.metadata[self.env.docname].setdefault("questions", [])
         answers = [(one[0].astext(), one[1].astext()) for one in choices]
         text = " ".join(one.astext() for one in prompt)
         kept.append({"name": name, "right": right, "text": text, "answers": answers})
@@ -133,7 +132,8 @@ def _fill(app, doctree, docname):
 def _in_order(env):
     """Return (page, its questions) in the order of reading."""
     order = env.toctree_includes.get(env.config.root_doc, [])
-    return [(page, env.mrp_questions[page]) for page in order if page in env.mrp_questions]
+    asked = [(page, env.metadata[page].get("questions")) for page in order]
+    return [(page, questions) for page, questions in asked if questions]
 
 
 def qti(pages):
@@ -199,7 +199,6 @@ def _write(app, exception):
 def setup(app):
     app.add_directive("question", Question)
     app.add_directive("score", Score)
-    per_page.keep(app, "mrp_questions")
     app.connect("doctree-resolved", _fill)
     app.connect("build-finished", _write)
     return {"parallel_read_safe": False, "env_version": 1}

@@ -8,24 +8,21 @@ them.
 import json
 import pathlib
 
-import per_page
-
 
 def add_step(env, **step):
     """Add a step of the page that is being read."""
     step["page"] = env.docname
-    env.mrp_steps.setdefault(env.docname, []).append(step)
+    env.metadata[env.docname].setdefault("steps", []).append(step)
 
 
 def _write(app, exception):
     if exception is None and app.builder.format == "html":
         env = app.env
         order = [env.config.root_doc, *env.toctree_includes.get(env.config.root_doc, [])]
-        steps = [step for docname in order for step in env.mrp_steps.get(docname, [])]
+        steps = [step for docname in order for step in env.metadata[docname].get("steps", [])]
         (pathlib.Path(app.outdir) / "steps.json").write_text(json.dumps(steps, indent=1))
 
 
 def connect(app):
     """Have the steps collected while the pages are read, and written when all is built."""
-    per_page.keep(app, "mrp_steps")
     app.connect("build-finished", _write)

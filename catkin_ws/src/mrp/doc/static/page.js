@@ -188,68 +188,24 @@ window.addEventListener("load", () => {
   }
 });
 
-// The marks of what tests prove (extension/proofs.py): the switch at the end of a page shows them, and
-// a mark opens a box with its tests. They come in a script, as a page opened as a file may read no other.
+// The marks of what tests prove (extension/proofs.py): the switch at the end of a page shows them.
 const MARKS = "mrp-marks";
-window.mrpProofs = {};
-
-function connectMarks() {
-  const show = (shown) => document.body.classList.toggle("marks", shown);
-  let kept = false;
+function marksAreShown(shown) {
   try {
-    kept = localStorage.getItem(MARKS) === "shown";
+    if (shown !== undefined) localStorage.setItem(MARKS, shown);
+    return localStorage.getItem(MARKS) === "true";
   } catch {
-    // Then they stay hidden.
-  }
-  show(kept);
-  for (const box of document.querySelectorAll(".proofs input")) {
-    box.checked = kept;
-    box.addEventListener("change", () => {
-      show(box.checked);
-      try {
-        localStorage.setItem(MARKS, box.checked ? "shown" : "hidden");
-      } catch {
-        // It holds for this page.
-      }
-    });
-  }
-  for (const mark of document.querySelectorAll("a.proof")) {
-    mark.addEventListener("click", (event) => {
-      event.preventDefault();
-      const { page, mark: number } = mark.dataset;
-      if (window.mrpProofs[page]) {
-        openProof(window.mrpProofs[page], number);
-        return;
-      }
-      const script = document.createElement("script");
-      script.src = `${document.documentElement.dataset.content_root}_proofs/${page}.js`;
-      script.addEventListener("load", () => openProof(window.mrpProofs[page], number));
-      document.head.append(script);
-    });
+    return Boolean(shown);
   }
 }
 
-function openProof({ marks, tests }, number) {
-  const dialog = document.createElement("dialog");
-  dialog.className = "proof-box";
-  dialog.setAttribute("aria-label", "What proves this");
-  for (const [sentence, names] of marks[number]) {
-    const quote = document.createElement("blockquote");
-    quote.textContent = sentence;
-    dialog.append(quote);
-    for (const name of names) {
-      const test = document.createElement("div");
-      test.innerHTML = tests[name];
-      dialog.append(test);
-    }
-  }
-  const close = document.createElement("button");
-  close.textContent = "Close";
-  close.addEventListener("click", () => dialog.close());
-  dialog.append(close);
-  dialog.addEventListener("close", () => dialog.remove());
-  document.body.append(dialog);
-  dialog.showModal();
+function connectMarks() {
+  const show = (shown) => document.body.classList.toggle("marks", shown);
+  show(marksAreShown());
+  const toggle = document.querySelector(".proofs input");
+  if (!toggle) return;
+  toggle.checked = marksAreShown();
+  toggle.addEventListener("change", () => show(marksAreShown(toggle.checked)));
 }
 
 document.addEventListener("DOMContentLoaded", () => {
