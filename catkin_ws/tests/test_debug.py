@@ -27,7 +27,7 @@ def port(monkeypatch):
 
 def debug(node, port, *dialogue):
     """Type each line of the dialogue at the debugger's prompt; return what it said, then quit."""
-    said = []
+    printed = []
     env = environment(ROS_MASTER_URI=uri_of(port), TERM="dumb")
     arguments = ["-C", str(ROOT), "--no-print-directory", "debug", f"NODE={node}"]
     child = pexpect.spawn("make", arguments, env=env, encoding="utf-8", timeout=DEADLINE)
@@ -36,14 +36,14 @@ def debug(node, port, *dialogue):
         for line in dialogue:
             child.sendline(line)
             child.expect(r"\((gdb|Pdb)\) ")
-            said.append(child.before)
+            printed.append(child.before)
         child.sendline("quit")
         child.expect(pexpect.EOF)
     finally:
         child.close(force=True)
     assert f"{contract.GROUP}/{node}" not in Graph().nodes
     assert [command for command in processes_with(uri_of(port)).values() if node in command] == []
-    return said
+    return printed
 
 
 def test_gdb_stops_in_the_callback(port):
@@ -61,12 +61,17 @@ def test_pdb_stops_in_the_callback(port):
     _, stopped, first, _, second = debug("publisher_py_node", port, *commands)
     assert f"publisher_py_node.py({number})timer_callback()" in stopped
     assert "namespace of node = /mrp/publisher_py_node" in stopped
-    assert [re.findall(r"^\d+", said, re.MULTILINE) for said in (first, second)] == [["1"], ["3"]]
+    assert [re.findall(r"^\d+", printed, re.MULTILINE) for printed in (first, second)] == [
+        ["1"],
+        ["3"],
+    ]
 
 
 def test_without_a_master_or_a_node_it_says_what_to_do():
-    said = make("debug", "NODE=publisher_py_node").stdout
-    assert re.search("^error: no master answers at .*: start the nodes .*: make run$", said, re.M)
-    said = make("debug", "NODE=no_node").stdout
+    printed = make("debug", "NODE=publisher_py_node").stdout
+    assert re.search(
+        "^error: no master answers at .*: start the nodes .*: make run$", printed, re.M
+    )
+    printed = make("debug", "NODE=no_node").stdout
     names = ", ".join(sorted(node.name for node in contract.NODES))
-    assert f"error: expected NODE=NAME, one of: {names}\n" in said
+    assert f"error: expected NODE=NAME, one of: {names}\n" in printed

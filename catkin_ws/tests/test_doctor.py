@@ -91,10 +91,10 @@ def test_system_without_ros(patient, fields, advice):
 
 @pytest.mark.quick
 def test_what_other_programs_say_reaches_the_user(patient):
-    said = "dpkg-query: error: failed to open package info file: Permission denied"
-    query = patient.write("dpkg-query", f"#!/bin/sh\necho '{said}' >&2\nexit 2\n", mode=0o755)
+    printed = "dpkg-query: error: failed to open package info file: Permission denied"
+    query = patient.write("dpkg-query", f"#!/bin/sh\necho '{printed}' >&2\nexit 2\n", mode=0o755)
     text = patient.examine(dpkg_query=query).checks["packages"].text
-    assert text.endswith(f"({said})")
+    assert text.endswith(f"({printed})")
     path = patient.workspace / "apt" / "tools.txt"
     path.unlink()
     patient.examine().assert_only_failure(

@@ -204,7 +204,9 @@ def test_e17_indentation_here_is_of_one_width():
         assert begins == {0, 4, 8} or begins == {0, 4}, path.name
     for path in sources.glob("*.cpp"):
         lines = path.read_text().splitlines()
-        assert {len(one) - len(one.lstrip(" ")) for one in lines if one} <= {0, 2, 4, 6}, path.name
+        assert {len(line) - len(line.lstrip(" ")) for line in lines if line} <= {0, 2, 4, 6}, (
+            path.name
+        )
         assert "\t" not in path.read_text()
 
 
@@ -286,7 +288,7 @@ def test_p18_excerpts_here_are_marked_as_what_they_are():
     seen = set()
     for page in PAGE.parent.glob("*.rst"):
         for _, file, options in directive.findall(page.read_text()):
-            ending = next((one for one in languages if file.endswith(one)), None)
+            ending = next((language for language in languages if file.endswith(language)), None)
             if ending:
                 seen.add(ending)
                 assert f":language: {languages[ending]}\n" in options, f"{file} in {page.name}"

@@ -119,16 +119,16 @@ def test_what_docker_says_reaches_the_user(says, fix, tmp_path):
     docker = tmp_path / "docker"
     docker.write_text(f"#!/bin/sh\necho '{says}' >&2\necho more >&2\nexit 1\n")
     docker.chmod(0o755)
-    said = make("need-docker", PATH=f"{tmp_path}:/usr/bin:/bin").stdout.splitlines()
-    assert said[0] == f"error: 'docker ps' says: {says}"
-    assert ("fix: start Docker's engine" in said) == fix
+    printed = make("need-docker", PATH=f"{tmp_path}:/usr/bin:/bin").stdout.splitlines()
+    assert printed[0] == f"error: 'docker ps' says: {says}"
+    assert ("fix: start Docker's engine" in printed) == fix
 
 
 @pytest.mark.quick
 def test_docker_check_is_in_bounds():
     """It only says what it would do: where there is Docker, `make docker-harm` tests the bounds."""
-    said = make("docker-check", "--dry-run", f"PKG={ROOT}/catkin_ws/src/mrp").stdout
-    command = re.search(r"^docker run (?:.*\\\n)*.*/check /package$", said, re.MULTILINE).group()
+    printed = make("docker-check", "--dry-run", f"PKG={ROOT}/catkin_ws/src/mrp").stdout
+    command = re.search(r"^docker run (?:.*\\\n)*.*/check /package$", printed, re.MULTILINE).group()
     for bound in ("--network none", "--memory ", "--pids-limit ", "src/mrp:/package:ro"):
         assert bound in command
     assert "--user" not in command
@@ -136,17 +136,17 @@ def test_docker_check_is_in_bounds():
 
 @pytest.mark.quick
 def test_check_installs_what_is_missing_and_checks():
-    said = make("check", "--dry-run", "PKG=a_package").stdout
+    printed = make("check", "--dry-run", "PKG=a_package").stdout
     installs = r"install_packages\.sh [^\n]*catkin_ws/apt/check\.txt\n"
     checks = r'mrp_check/scripts/check "a_package"'
-    assert re.search(rf"{installs}(.*\n)*.*{checks}", said), said
+    assert re.search(rf"{installs}(.*\n)*.*{checks}", printed), printed
 
 
 @pytest.mark.quick
 def test_view_builds_the_tutorial_and_no_pages():
-    said = make("view", "--dry-run", "--always-make").stdout
-    assert "-DCATKIN_WHITELIST_PACKAGES" in said
-    assert "sphinx" not in said and "apt/build.txt" not in said
+    printed = make("view", "--dry-run", "--always-make").stdout
+    assert "-DCATKIN_WHITELIST_PACKAGES" in printed
+    assert "sphinx" not in printed and "apt/build.txt" not in printed
 
 
 @pytest.mark.quick

@@ -176,17 +176,17 @@ def test_what_is_wrong_in_a_ledger_fails_the_build(root, name):
     text = (root / file).read_text()
     assert old in text
     (root / file).write_text(text.replace(old, new))
-    code, said = build(root)
+    code, printed = build(root)
     assert code != 0
     for text in expected:
-        assert text in said
+        assert text in printed
 
 
 @pytest.mark.slow  # needs Sphinx
 def test_a_ledger_without_a_page_fails_the_build(root):
     (root / LEDGER).rename(root / PAGES / "proofs" / "two.txt")
-    code, said = build(root)
-    assert code != 0 and "two.txt:1: WARNING: there is no page two" in said
+    code, printed = build(root)
+    assert code != 0 and "two.txt:1: WARNING: there is no page two" in printed
 
 
 @pytest.mark.parametrize(

@@ -23,8 +23,8 @@ def package(site):
 def test_manifest_lists_every_item_and_nothing_else(package):
     manifest = package.pop("imsmanifest.xml")
     resources = [one.attrib for one in manifest.iter(f"{PACKAGE}resource")]
-    assert {one["href"] for one in resources} == set(package)
-    assert {one["type"] for one in resources} == {"imsqti_item_xmlv2p1"}
+    assert {resource["href"] for resource in resources} == set(package)
+    assert {resource["type"] for resource in resources} == {"imsqti_item_xmlv2p1"}
 
 
 def test_each_step_has_two_to_four_questions(package):

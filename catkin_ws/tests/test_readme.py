@@ -48,7 +48,7 @@ def test_commands_are_targets_of_make():
 def test_ci_and_the_workflow_call_targets_of_the_list():
     workflow = yaml.safe_load((ROOT / ".github" / "workflows" / "ci.yml").read_text())
     matrices = [job["strategy"]["matrix"] for job in workflow["jobs"].values()]
-    lines = [line for one in matrices for line in one.get("targets", [])]
+    lines = [line for matrix_ in matrices for line in matrix_.get("targets", [])]
     lines += [one.get("targets", "") for matrix in matrices for one in matrix.get("include", [])]
     by_workflow = {word for line in lines for word in line.split()}
     ci = (ROOT / ".ci" / "run").read_text()
@@ -89,8 +89,8 @@ def test_run_listens_on_this_machine_alone_unless_told():
     ):
         env = {"PATH": os.environ["PATH"], **given}
         command = ["bash", "-c", f"{setting} echo $ROS_HOSTNAME"]
-        said = subprocess.run(command, env=env, check=True, stdout=subprocess.PIPE, text=True)
-        assert said.stdout.strip() == expected, given
+        printed = subprocess.run(command, env=env, check=True, stdout=subprocess.PIPE, text=True)
+        assert printed.stdout.strip() == expected, given
 
 
 def test_console_values_are_those_of_the_contract():

@@ -13,7 +13,7 @@ pytestmark = pytest.mark.quick
 
 
 def test_make_why_knows_what_a_release_has_not_any_more():
-    fixes = {one.name: one.fix for one in why.entries()}
+    fixes = {entry.name: entry.fix for entry in why.entries()}
     for gone in releases.GONE.values():
         assert gone.instead in fixes[gone.why]
 
@@ -22,7 +22,7 @@ def test_the_installer_knows_the_same_releases():
     """It runs where there is no Python yet."""
     text = (WORKSPACE / "tools" / "install_packages.sh").read_text()
     names = re.search(r"^ +([\w |]+)\) printf .*make deps", text, re.MULTILINE)[1].split(" | ")
-    assert names == [*(one.name for one in releases.RELEASES.values()), "jammy"]
+    assert names == [*(release.name for release in releases.RELEASES.values()), "jammy"]
     assert f"Debian {releases.supported()}" in text
 
 

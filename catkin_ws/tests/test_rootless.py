@@ -33,9 +33,9 @@ def rootless(folder, *lists, **programs):
 
 
 def test_make_calls_it_with_the_lists_and_does_not_install():
-    said = make("run", "ROOTLESS=1", "--dry-run").stdout
-    assert said.endswith("tools/rootless.sh catkin_ws/apt/run.txt catkin_ws/apt/tools.txt\n")
-    assert "install_packages" not in said
+    printed = make("run", "ROOTLESS=1", "--dry-run").stdout
+    assert printed.endswith("tools/rootless.sh catkin_ws/apt/run.txt catkin_ws/apt/tools.txt\n")
+    assert "install_packages" not in printed
 
 
 @pytest.mark.parametrize("engine", ["docker", "podman"])

@@ -165,8 +165,10 @@ def parameters():
     """Return the entries for parametrize. One worker of pytest runs those that share headers."""
     shared = pytest.mark.xdist_group("why_roscpp")
     return [
-        pytest.param(one, id=one.name, marks=[shared] if "roscpp" in one.needs.split() else [])
-        for one in HERE
+        pytest.param(
+            entry, id=entry.name, marks=[shared] if "roscpp" in entry.needs.split() else []
+        )
+        for entry in HERE
     ]
 
 
@@ -326,12 +328,12 @@ def test_what_the_checker_and_the_doctor_name_is_there():
     tables = (module.get("_WHY") or module["_WORDS"] for module in modules)
     named |= {row[-1] for table in (*tables, doctor.CHECKS) for row in table}
     assert {"script-crlf", "bad-callback", "undefined-main", "not-declared", "logs-large"} <= named
-    assert named - {one.name for one in ENTRIES} == {""}
+    assert named - {entry.name for entry in ENTRIES} == {""}
 
 
 def test_names_are_unique_and_pages_are_there():
-    all_names = [one.name for one in ENTRIES]
+    all_names = [entry.name for entry in ENTRIES]
     assert sorted(all_names) == sorted(set(all_names))
     pages = WORKSPACE / "src" / "mrp" / "doc" / "pages"
-    named = {one.page.partition("#")[0] for one in ENTRIES if one.page}
+    named = {entry.page.partition("#")[0] for entry in ENTRIES if entry.page}
     assert [page for page in named if not (pages / f"{page}.rst").exists()] == []

@@ -27,9 +27,9 @@ def run(*command):
 
 def clangd(file):
     """Return file -> the errors that clangd reports; it finds compile_commands.json by itself."""
-    said = run("clangd", f"--check={file}")
-    assert "Loaded compilation database" in said and "Building AST" in said, said
-    return {file: re.findall(r"^E\[.*?\] (\[.*)$", said, re.MULTILINE)}
+    printed = run("clangd", f"--check={file}")
+    assert "Loaded compilation database" in printed and "Building AST" in printed, printed
+    return {file: re.findall(r"^E\[.*?\] (\[.*)$", printed, re.MULTILINE)}
 
 
 def pyright(*files):
@@ -37,8 +37,8 @@ def pyright(*files):
     report = json.loads(run(*PYRIGHT, "--outputjson", *files))
     assert report["summary"]["filesAnalyzed"] == len(files), report
     errors = {file: [] for file in files}
-    for one in report["generalDiagnostics"]:
-        errors[pathlib.Path(one["file"])].append(one["message"])
+    for diagnostic in report["generalDiagnostics"]:
+        errors[pathlib.Path(diagnostic["file"])].append(diagnostic["message"])
     return errors
 
 

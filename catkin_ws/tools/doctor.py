@@ -332,8 +332,8 @@ def installed(machine, packages):
     except OSError as error:
         return set(), str(error)
     found = re.findall(r"^(\S+) installed$", run.stdout.decode(errors="replace"), re.MULTILINE)
-    said = run.stderr.decode(errors="replace").splitlines()
-    wrong = [line for line in said if "no packages found matching" not in line]
+    printed = run.stderr.decode(errors="replace").splitlines()
+    wrong = [line for line in printed if "no packages found matching" not in line]
     return set(found), "".join(wrong[:1])
 
 
@@ -341,8 +341,8 @@ def advice_for(machine):
     """Return what works on this system, and the command for it, as the installer says it."""
     command = ["bash", os.path.join(machine.workspace, "tools", "install_packages.sh"), "--advice"]
     env = {"PATH": "/usr/bin:/bin", "MRP_OS_RELEASE": machine.os_release}
-    said = subprocess.run(command, env=env, capture_output=True, text=True).stdout.splitlines()
-    return said or ("", "make docker-run")
+    printed = subprocess.run(command, env=env, capture_output=True, text=True).stdout.splitlines()
+    return printed or ("", "make docker-run")
 
 
 def folders(env, name):

@@ -82,7 +82,7 @@ def renewed(recorded, shown, to_do, page=None):
         for name, lines in shown.outputs.items()
         if name in names
     }
-    new_graphs = {name: one for name, one in shown.graphs.items() if name in names}
+    new_graphs = {name: graph for name, graph in shown.graphs.items() if name in names}
     return ({**outputs, **new}, {**graphs, **new_graphs}) if page else (new, new_graphs)
 
 

@@ -27,8 +27,10 @@ def by_page(values):
     Those of a page run in one worker, which need not open it again for each of them.
     """
     return [
-        pytest.param(one, marks=pytest.mark.xdist_group(one if isinstance(one, str) else one[-1]))
-        for one in values
+        pytest.param(
+            value, marks=pytest.mark.xdist_group(value if isinstance(value, str) else value[-1])
+        )
+        for value in values
     ]
 
 

@@ -34,7 +34,9 @@ class Firefox:
     name = "firefox"
 
     def __init__(self, profile):
-        lines = (f'user_pref("{key}", {json.dumps(one)});\n' for key, one in _SETTINGS.items())
+        lines = (
+            f'user_pref("{key}", {json.dumps(setting)});\n' for key, setting in _SETTINGS.items()
+        )
         (profile / "user.js").write_text("".join(lines))
         command = ["firefox-esr", "--headless", "--no-remote", "--remote-debugging-port", "0"]
         self._process = Process(*command, "--profile", str(profile), "about:blank")

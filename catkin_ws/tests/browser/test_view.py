@@ -85,7 +85,7 @@ def row(browser, table, *names):
         """,
         table,
     )
-    return next((one for one in rows if one[: len(names)] == list(names)), [])
+    return next((row for row in rows if row[: len(names)] == list(names)), [])
 
 
 def items(browser):
@@ -114,7 +114,8 @@ def press_button(browser, name):
 def test_page_is_open_before_during_and_after_the_launch(each_page):
     with PubSub() as launched:
         each_page.wait_until(
-            lambda: sum("alive" in one for one in items(each_page)) == 5, "four nodes and the test"
+            lambda: sum("alive" in item for item in items(each_page)) == 5,
+            "four nodes and the test",
         )
         for language in ("cpp", "py"):
             each_page.wait_until(
@@ -176,8 +177,10 @@ def test_names_that_are_markup_are_text(each_page):
     name, topic = "/<b>node</b>", "/<i>topic</i>"
     api = rosgraph.Master(name)
     api.registerPublisher(topic, "<u>type</u>", "http://localhost:1/")
-    each_page.wait_until(lambda: any(name in one for one in items(each_page)), "the node")
-    each_page.wait_until(lambda: any("<u>type</u>" in one for one in items(each_page)), "the type")
+    each_page.wait_until(lambda: any(name in item for item in items(each_page)), "the node")
+    each_page.wait_until(
+        lambda: any("<u>type</u>" in item for item in items(each_page)), "the type"
+    )
     wait_for_text(each_page, "#findings", f"{name} died")
     assert each_page.find("main :is(b, i, u)") == []
     api.unregisterPublisher(topic, "http://localhost:1/")
@@ -259,24 +262,24 @@ def viewer_address(browser, handle):
 def test_topics_can_be_chosen(each_page):
     publisher = rospy.Publisher("chosen", UInt32, queue_size=1)
     each_page.wait_until(
-        lambda: any("Topic /chosen" in one for one in items(each_page)), "the topic"
+        lambda: any("Topic /chosen" in item for item in items(each_page)), "the topic"
     )
     box = "document.querySelector('#topics input[value=\"/chosen\"]').click()"
     each_page.run(box)
     each_page.wait_until(
-        lambda: not any("Topic /chosen" in one for one in items(each_page)), "it is hidden"
+        lambda: not any("Topic /chosen" in item for item in items(each_page)), "it is hidden"
     )
     each_page.run(box)
     each_page.wait_until(
-        lambda: any("Topic /chosen" in one for one in items(each_page)), "it is back"
+        lambda: any("Topic /chosen" in item for item in items(each_page)), "it is back"
     )
     press_button(each_page, "show-viewer")
     each_page.wait_until(
-        lambda: any("Node /mrp_view" in one for one in items(each_page)), "the viewer"
+        lambda: any("Node /mrp_view" in item for item in items(each_page)), "the viewer"
     )
     press_button(each_page, "show-log")
     each_page.wait_until(
-        lambda: any("Topic /rosout" in one for one in items(each_page)), "the log's topic"
+        lambda: any("Topic /rosout" in item for item in items(each_page)), "the log's topic"
     )
     publisher.unregister()
 
@@ -286,7 +289,7 @@ def test_export(page, tmp_path):
     page.wait_until(lambda: publisher.get_num_connections() == 1, "the viewer")
     publisher.publish('=1+1,"x"')
     page.wait_until(lambda: row(page, "#senders", "/test_page", "/exported"), "the message")
-    page.wait_until(lambda: any("/exported" in one for one in items(page)), "the topic")
+    page.wait_until(lambda: any("/exported" in item for item in items(page)), "the topic")
     page.command("Page.setDownloadBehavior", behavior="allow", downloadPath=str(tmp_path))
 
     def saved(button, name):
@@ -318,7 +321,7 @@ def test_viewer_is_restarted(browser, core):
     with Viewer(*options, port=port):
         wait_for_text(browser, "#status", "Master http")
         publisher = rospy.Publisher("after", UInt32, queue_size=1)
-        browser.wait_until(lambda: any("Topic /after" in one for one in items(browser)), "live")
+        browser.wait_until(lambda: any("Topic /after" in item for item in items(browser)), "live")
         publisher.unregister()
     browser.open("about:blank")
 
@@ -347,7 +350,9 @@ def shown(viewer):
         with Lab("type_mismatch.launch") as lab:
             for name in ("other_subscriber_cpp", "other_subscriber_py"):
                 lab.wait_for(
-                    lambda: any("do not match" in one and name in one for one in list(lab.lines)),
+                    lambda: any(
+                        "do not match" in line and name in line for line in list(lab.lines)
+                    ),
                     f"{name} is refused",
                 )
             launched.wait_for(lambda: pid_of("/mrp/subscriber_cpp_node"), "a node")
@@ -361,7 +366,7 @@ def look(request, browser, shown):
     browser.prefer(mode)
     browser.open(shown.address, size)
     browser.wait_until(
-        lambda: any("Dead" in one or "dead" in one for one in items(browser)), "dead"
+        lambda: any("Dead" in item or "dead" in item for item in items(browser)), "dead"
     )
     browser.wait_until(lambda: "✗" in text(browser, "#graph"), "a red edge")
     browser.wait_until(lambda: browser.find("#plot .line"), "a plot")

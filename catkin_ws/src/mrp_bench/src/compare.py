@@ -35,16 +35,16 @@ def asked(arguments):
 
 
 def usage():
-    names = "\n".join(f"  {name:16} {one.text}" for name, one in COMPARISONS.items())
+    names = "\n".join(f"  {name:16} {comparison.text}" for name, comparison in COMPARISONS.items())
     return f"{__doc__}\nThe names are:\n{names}\nThe ways are: {', '.join(WAYS)}"
 
 
 def main():
     try:
-        piece, ways = asked(sys.argv[1:])
+        stream, ways = asked(sys.argv[1:])
     except ValueError:
         sys.exit(usage())
-    plan = rounds.steps(dict.fromkeys([*LIMITS, *ways]), piece)
+    plan = rounds.steps(dict.fromkeys([*LIMITS, *ways]), stream)
     with tempfile.TemporaryDirectory() as folder:
         results = rounds.Results(folder)
         try:

@@ -104,11 +104,11 @@ def test_report_is_in_all_files(measurements, tmp_path):
     results = rounds.Results(tmp_path)
     results.begin([], 3, resume=False)
     results.keep_noise(0.01)
-    for one in measurements:
-        step = rounds.steps([one["way"]], (8, one["rate"], 100))[0]
+    for measurement in measurements:
+        step = rounds.steps([measurement["way"]], (8, measurement["rate"], 100))[0]
         names = ("sent", "received", "sender_cpu", "receiver_cpu", "sender_switches")
-        found = Measurement(**{name: one[name] for name in names})
-        results.keep(one["round"], step, found)
+        found = Measurement(**{name: measurement[name] for name in names})
+        results.keep(measurement["round"], step, found)
     report.write(results, print)
     content = json.loads((tmp_path / "results.json").read_text())
     assert content["verdict"] is None

@@ -28,9 +28,9 @@ pytestmark = pytest.mark.quick
 def test_every_way_is_measured_beside_its_limit(plan):
     assert {step.way for step in plan} <= set(WAYS)
     for step in plan:
-        beside = {one.way for one in plan if one.piece[:2] == step.piece[:2]}
+        beside = {planned.way for planned in plan if planned.stream[:2] == step.stream[:2]}
         assert {"raw_cpp", "raw_py"} <= beside, step
-    assert len({(step.way, *step.piece[:2]) for step in plan}) == len(plan), (
+    assert len({(step.way, *step.stream[:2]) for step in plan}) == len(plan), (
         "something is there twice"
     )
 
@@ -56,13 +56,13 @@ def test_every_way_delivers_every_message_in_order(master, tmp_path):
     rounds.run(plan, 1, results, print)
     found = results.measurements()
     assert len(found) == len(plan)
-    for one in found:
-        assert len(one["received"]) == WAYS[one["way"]].receivers
-        for pairs in one["received"]:
-            assert pairs[::2] == one["sent"], one["way"]
+    for measurement in found:
+        assert len(measurement["received"]) == WAYS[measurement["way"]].receivers
+        for pairs in measurement["received"]:
+            assert pairs[::2] == measurement["sent"], measurement["way"]
             assert all(arrival > stamp for stamp, arrival in zip(pairs[::2], pairs[1::2]))
-        assert one["sender_cpu"] > 0
-        assert WAYS[one["way"]].receiver is None or one["receiver_cpu"] > 0
+        assert measurement["sender_cpu"] > 0
+        assert WAYS[measurement["way"]].receiver is None or measurement["receiver_cpu"] > 0
 
 
 @pytest.mark.slow
@@ -112,9 +112,9 @@ def test_program_that_ends_is_an_error(tmp_path, monkeypatch):
     results.begin([], 1, resume=False)
 
     class Broken(rounds.Running):
-        def measure(self, piece):
+        def measure(self, stream):
             self.sender.signal(signal.SIGKILL)
-            return super().measure(piece)
+            return super().measure(stream)
 
     monkeypatch.setattr(rounds, "Running", Broken)
     with pytest.raises(ProgramError, match="expected of 'bench_raw send=.*' the answer 'sent'"):
@@ -182,7 +182,7 @@ def test_robots_start_and_stop(master, tmp_path):
     assert found["up"] < found["stop"] < found["end"]
     assert 0 < found["cpp_megabytes"] < found["py_megabytes"]
     assert found["cores"] > 0
-    assert len(found["pair"]["sent"]) == launches.PIECE.count
+    assert len(found["pair"]["sent"]) == launches.STREAM.count
     assert found["pair"]["received"][::2] == found["pair"]["sent"]
 
     launches.run([2], 1, results, pytest.fail)

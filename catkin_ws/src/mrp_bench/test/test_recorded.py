@@ -57,7 +57,7 @@ def test_four_subscribers(rows):
 
 
 def test_memory_of_a_node(results):
-    (fifty,) = (one for one in results["robots"]["figures"] if one["robots"] == 50)
+    (fifty,) = (figure for figure in results["robots"]["figures"] if figure["robots"] == 50)
     assert fifty["py"] > 20 * fifty["cpp"]
 
 

@@ -169,7 +169,7 @@ def main():
     rospy.init_node("lab_publisher_py_node")
 
     try:
-        publishers = [LabPublisher(one) for one in Parameters().of_each_topic()]
+        publishers = [LabPublisher(parameters) for parameters in Parameters().of_each_topic()]
         for publisher in publishers:
             publisher.start()
     except ValueError as error:

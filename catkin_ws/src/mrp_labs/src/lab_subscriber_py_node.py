@@ -80,7 +80,7 @@ def main():
     rospy.init_node("lab_subscriber_py_node")
 
     try:
-        subscribers = [LabSubscriber(one) for one in Parameters().of_each_topic()]
+        subscribers = [LabSubscriber(parameters) for parameters in Parameters().of_each_topic()]
         for subscriber in subscribers:
             subscriber.start()
     except (ValueError, rospy.ROSException) as error:

@@ -131,7 +131,7 @@ class TestBags(unittest.TestCase):
 
     def test_wait_for_subscribers(self):
         bag = self.path("trip_0.bag")
-        recorded = [one.message.data for one in rosbag.Bag(bag).read_messages(COUNT)]
+        recorded = [message.message.data for message in rosbag.Bag(bag).read_messages(COUNT)]
         with play("--wait-for-subscribers", bag) as player:
             wait_until_said(player, "Waiting for subscribers.")
             with subscriber(COUNT) as counts:

@@ -27,8 +27,8 @@ class TestCoarseClock(unittest.TestCase):
             def rounds(node):
                 """Return how often the node has published at each time of the clock."""
                 logged = filter(None, map(log_line.parse, list(lab.lines)))
-                mine = (one for one in logged if one.text.startswith(f"{node} published "))
-                return collections.Counter(one.simulated for one in mine if one.simulated)
+                mine = (line for line in logged if line.text.startswith(f"{node} published "))
+                return collections.Counter(line.simulated for line in mine if line.simulated)
 
             clock.begin(lab, len(NODES), STEP, lambda: all(map(rounds, NODES)))
             while min(len(rounds(node)) for node in NODES) < TURNS:

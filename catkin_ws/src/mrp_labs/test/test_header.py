@@ -36,8 +36,8 @@ class TestHeader(unittest.TestCase):
             msg.header.seq = 77
             publisher.publish(msg)
         wait_until(lambda: len(headers) == 3, lambda: f"three, not {headers}")
-        self.assertEqual([one.seq for one in headers], [1, 2, 3])
-        self.assertEqual([one.stamp for one in headers], [rospy.Time(0)] * 3)
+        self.assertEqual([header.seq for header in headers], [1, 2, 3])
+        self.assertEqual([header.stamp for header in headers], [rospy.Time(0)] * 3)
 
     def test_header_cpp(self):
         headers = headers_on(self, "/great_topic")
@@ -49,9 +49,9 @@ class TestHeader(unittest.TestCase):
         )
         with Process(*node, extra_env=LIVE):
             wait_until(lambda: len(headers) >= 3, lambda: f"three, not {headers}")
-        numbers = [one.seq for one in headers]
+        numbers = [header.seq for header in headers]
         self.assertEqual(numbers, list(range(numbers[0], numbers[0] + len(numbers))))
-        self.assertNotIn(rospy.Time(0), [one.stamp for one in headers])
+        self.assertNotIn(rospy.Time(0), [header.stamp for header in headers])
 
 
 if __name__ == "__main__":

@@ -310,15 +310,15 @@ class TestIdioms(unittest.TestCase):
                 def heard():
                     return log_line.texts(listener.lines)
 
-                def said():
+                def printed():
                     return [text for text in log.values if text.startswith("said")]
 
                 listener.wait_for(lambda: len(heard()) >= 3, "three messages")
                 first = int(heard()[0].split()[-1][:-1])
                 self.assertEqual(heard()[:3], [f'heard "hello {first + i}"' for i in range(3)])
                 # Ctrl-C while rospy logs may never end it: press it in the sleep that comes then.
-                count = len(said())
-                wait_until(lambda: len(said()) > count, lambda: f"one more line: {said()}")
+                count = len(printed())
+                wait_until(lambda: len(printed()) > count, lambda: f"one more line: {printed()}")
 
     def test_loop_with_callbacks(self):
         for language in LANGUAGES:

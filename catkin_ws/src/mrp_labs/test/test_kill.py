@@ -112,8 +112,10 @@ class TestKill(unittest.TestCase):
                 kill(lab, pid["/kill/subscriber_py"])
                 kill(lab, pid[victim])
                 self.assertEqual(lab.wait(), 0, str(lab))
-                for one in pid.values():
-                    wait_until(lambda: not os.path.exists(f"/proc/{one}"), f"{one} of {lab} ends")
+                for number in pid.values():
+                    wait_until(
+                        lambda: not os.path.exists(f"/proc/{number}"), f"{number} of {lab} ends"
+                    )
 
     def test_master(self):
         port = free_port()

@@ -114,9 +114,9 @@ class TestLook(unittest.TestCase):
         self.assertEqual(
             [line for line in without_address(info) if "rostopic" not in line],
             ["Type: std_msgs/UInt32", "Publishers:"]
-            + [f"* {one}" for one in PUBLISHERS]
+            + [f"* {publisher}" for publisher in PUBLISHERS]
             + ["Subscribers:"]
-            + [f"* {one}" for one in SUBSCRIBERS],
+            + [f"* {subscriber}" for subscriber in SUBSCRIBERS],
         )
         # Both counts, each without a gap.
         values = [int(line[len("data: ") :]) for line in echo if line.startswith("data: ")]

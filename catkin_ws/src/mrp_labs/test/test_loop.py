@@ -90,9 +90,9 @@ def times(lab, node):
     """Return when a node published the messages 1, 2, 3, ... by the clock of the nodes."""
     logged = filter(None, map(log_line.parse, list(lab.lines)))
     found = [one for one in logged if one.text.startswith(f"{node} published ")]
-    values = [int(one.text.split()[-1]) for one in found]
+    values = [int(line.text.split()[-1]) for line in found]
     assert values == list(range(1, len(values) + 1)), f"{node}: {values}"
-    return [one.simulated or 0 for one in found]
+    return [line.simulated or 0 for line in found]
 
 
 def batches(texts):

@@ -38,9 +38,9 @@ class TestRemap(unittest.TestCase):
         with Lab("remap.launch", *arguments) as lab:
             lab.wait_for(lambda: len(topics(lab)) == len(EXPECTED), lambda: f"only {topics(lab)}")
             self.assertEqual(topics(lab), EXPECTED)
-            said = "\n".join(lab.lines).lower()
+            printed = "\n".join(lab.lines).lower()
             for word in ("warn", "error"):
-                self.assertNotIn(word, said)
+                self.assertNotIn(word, printed)
 
     def test_remap_py(self):
         self.check()

@@ -50,7 +50,7 @@ def ended(text, *arguments):
 def levels(lines):
     """Return the level of each line of LOG."""
     logged = filter(None, map(log_line.parse, lines))
-    return [one.text[len("line of ") :] for one in logged]
+    return [line.text[len("line of ") :] for line in logged]
 
 
 class TestRospy(unittest.TestCase):

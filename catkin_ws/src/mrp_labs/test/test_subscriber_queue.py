@@ -77,8 +77,8 @@ class TestSubscriberQueue(unittest.TestCase):
 
     def check_zero(self, lab):
         node = "/subscriber_queue_zero/subscriber_py"
-        said = f"{node}: queue size may not be set to zero"
-        lab.wait_for(lambda: lines_with(lab, said), f"{node} says what is wrong")
+        printed = f"{node}: queue size may not be set to zero"
+        lab.wait_for(lambda: lines_with(lab, printed), f"{node} says what is wrong")
         died = "[subscriber_queue_zero/subscriber_py-"
         lab.wait_for(
             lambda: [line for line in lines_with(lab, died) if "exit code 1," in line],

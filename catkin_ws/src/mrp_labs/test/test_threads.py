@@ -18,7 +18,7 @@ ENOUGH = 4  # messages of each publisher
 def threads(lab, subscriber, *publishers):
     """Return the threads in which a subscriber was called back for these publishers."""
     received = lab.received("/threads/subscriber_" + subscriber)
-    return {int(one.thread) for one in received if one.publisher in publishers}
+    return {int(message.thread) for message in received if message.publisher in publishers}
 
 
 def overlaps(lab, subscriber):
@@ -46,7 +46,7 @@ class TestThreads(unittest.TestCase):
 
         # rospy: a thread for each connection, and none of them the main one.
         of_each = [threads(lab, "py", publisher) for publisher in PUBLISHERS]
-        self.assertEqual([len(one) for one in of_each], [1, 1], of_each)
+        self.assertEqual([len(numbers) for numbers in of_each], [1, 1], of_each)
         self.assertEqual(len({main["py"]}.union(*of_each)), 3, of_each)
         # spin: the main one for all.
         self.assertEqual(threads(lab, "spin", *PUBLISHERS), {main["spin"]})

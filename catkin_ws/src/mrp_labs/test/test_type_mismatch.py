@@ -38,9 +38,9 @@ class TestTypeMismatch(unittest.TestCase):
                 self.assertLessEqual(len(py_refusals(lab, other)), 2, str(lab))
 
             # Nobody but the publishers says so.
-            said = {line for line in list(lab.lines) if re.match(r"\[ ?(WARN|ERROR)\]", line)}
+            printed = {line for line in list(lab.lines) if re.match(r"\[ ?(WARN|ERROR)\]", line)}
             refused = (cpp_refusals(lab, other) + py_refusals(lab, other) for other in OTHERS)
-            self.assertLessEqual(said, set().union(*refused))
+            self.assertLessEqual(printed, set().union(*refused))
 
             # A publisher of the other type, on the same topic: those who expect it hear it, so they
             # were there all the time, and nobody else does.
@@ -49,7 +49,7 @@ class TestTypeMismatch(unittest.TestCase):
             publisher.publish(-7)
             for other in OTHERS:
                 lab.wait_until_received(other, -7)
-                received = [(one.value, one.publisher) for one in lab.received(other)]
+                received = [(message.value, message.publisher) for message in lab.received(other)]
                 self.assertEqual(received, [("-7", rospy.get_name())], other)
             lab.wait_for(
                 lambda: len(cpp_refusals(lab, OTHERS[0])) > before,

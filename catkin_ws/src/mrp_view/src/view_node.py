@@ -130,14 +130,14 @@ class ViewNode:
             self.listener.end()
         if watcher.master == "here" and not self.graph_only:
             try:
-                self.listener.register_again(watcher.seen, watcher.proxy)
-                self.listener.follow(watcher.seen)
+                self.listener.register_again(watcher.observation, watcher.proxy)
+                self.listener.follow(watcher.observation)
             except ERRORS:
                 pass  # gone again: the next look sees it
         master = {"state": watcher.master, "uri": watcher.master_uri, "why": watcher.why}
         with watcher.lock:
-            self.listener.observe(watcher.seen)
-            seen_graph, seen_counts = build(watcher.seen), counts(watcher.seen)
+            self.listener.observe(watcher.observation)
+            seen_graph, seen_counts = build(watcher.observation), counts(watcher.observation)
         self.loop.add_callback(self.view.show, master, seen_graph, seen_counts)
 
 

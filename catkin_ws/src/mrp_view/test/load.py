@@ -85,7 +85,7 @@ def watch(pid, pages, seconds):
             f"{second + 10:4} s: {share:5.1%} of a core, {megabytes(pid):6.1f} MB, "
             f"{row.get('rate')} messages a second, {row.get('count')} in all, "
             f"{pages[0].samples['/fast'] if pages else 0} looked into; "
-            f"{sum(one.ticks for one in pages)} messages to browsers",
+            f"{sum(page.ticks for page in pages)} messages to browsers",
             flush=True,
         )
 

@@ -97,7 +97,7 @@ class TestFaults(unittest.TestCase):
         with Viewer() as viewer, Client(viewer.address) as page:
             with Lab("namespaces_private.launch"):
                 page.wait_for(
-                    lambda: sum("4 islands" in one["text"] for one in page.findings) == 2,
+                    lambda: sum("4 islands" in finding["text"] for finding in page.findings) == 2,
                     "four islands in each group",
                 )
                 wanted = {

@@ -82,9 +82,9 @@ def observed(connected=True, **fields_):
 
 
 def test_link_of_two_that_are_connected():
-    seen = observed()
-    assert graph.link(seen, "/t", "/pub", "/sub") == ("ok", "")
-    assert graph.counts(seen) == [
+    observation = observed()
+    assert graph.link(observation, "/t", "/pub", "/sub") == ("ok", "")
+    assert graph.counts(observation) == [
         {
             **{"topic": "/t", "from": "/pub", "to": "/sub"},
             **{"sent": 5, "received": 3, "dropped": 2, "missing": None},
@@ -93,45 +93,47 @@ def test_link_of_two_that_are_connected():
 
 
 def test_missing_is_what_was_sent_a_look_ago_and_is_not_received():
-    seen = observed()
-    seen.reports["/sub"].inbound = [End("/t", "http://pub:1/", 3, None)]
-    assert graph.counts(seen)[0]["missing"] == 0
-    seen.reports["/pub"].sent_before = {("/t", "/sub"): 5}
-    assert graph.counts(seen)[0]["missing"] == 2
+    observation = observed()
+    observation.reports["/sub"].inbound = [End("/t", "http://pub:1/", 3, None)]
+    assert graph.counts(observation)[0]["missing"] == 0
+    observation.reports["/pub"].sent_before = {("/t", "/sub"): 5}
+    assert graph.counts(observation)[0]["missing"] == 2
 
 
 def test_link_of_two_that_are_not_connected():
-    seen = observed(connected=False)
+    observation = observed(connected=False)
     for _ in range(graph.PATIENCE):
-        assert graph.link(seen, "/t", "/pub", "/sub") == ("waiting", "not connected yet")
-        seen.grow_older()
-    state, why = graph.link(seen, "/t", "/pub", "/sub")
+        assert graph.link(observation, "/t", "/pub", "/sub") == ("waiting", "not connected yet")
+        observation.grow_older()
+    state, why = graph.link(observation, "/t", "/pub", "/sub")
     assert state == "none" and "not visible from outside" in why
-    seen.reports["/sub"].state = DEAD
-    assert graph.link(seen, "/t", "/pub", "/sub") == ("dead", "")
+    observation.reports["/sub"].state = DEAD
+    assert graph.link(observation, "/t", "/pub", "/sub") == ("dead", "")
 
 
 def test_link_whose_refusal_was_heard():
     refused = Refusal("/t", "/pub", "/sub", "std_msgs/Int32", "std_msgs/UInt32")
-    seen = observed(connected=False, refusals={refused[:3]: refused})
-    state, why = graph.link(seen, "/t", "/pub", "/sub")
+    observation = observed(connected=False, refusals={refused[:3]: refused})
+    state, why = graph.link(observation, "/t", "/pub", "/sub")
     assert state == "mismatch"
     assert "/pub publishes" not in why and "expects std_msgs/Int32" in why
-    edges = {(one["from"], one["to"]): one["state"] for one in graph.build(seen)["edges"]}
+    edges = {
+        (edge["from"], edge["to"]): edge["state"] for edge in graph.build(observation)["edges"]
+    }
     assert edges == {("/pub", "/t"): "mismatch", ("/t", "/sub"): "mismatch"}
 
 
 def test_type_of_a_subscriber_is_that_of_the_publisher_it_hears():
-    seen = observed(
+    observation = observed(
         sender_types={("/t", "/pub"): "std_msgs/Int32", ("/t", "/two"): "std_msgs/Bool"}
     )
-    seen.publishers["/t"].append("/two")
-    seen.reports["/two"] = NodeReport("http://two:1/", ALIVE)
-    assert graph.link(seen, "/t", "/two", "/sub") == (
+    observation.publishers["/t"].append("/two")
+    observation.reports["/two"] = NodeReport("http://two:1/", ALIVE)
+    assert graph.link(observation, "/t", "/two", "/sub") == (
         "mismatch",
         "/two publishes std_msgs/Bool, and /sub expects std_msgs/Int32",
     )
-    (topic,) = graph.build(seen)["topics"]
+    (topic,) = graph.build(observation)["topics"]
     assert topic["types"] == ["std_msgs/Bool", "std_msgs/Int32"]
 
 
@@ -139,17 +141,17 @@ OPTIONS = feed.options_of({}, "/mrp_view")
 
 
 def test_log_and_viewer_are_hidden_unless_they_are_asked_for():
-    seen = observed(services=["/rosout"])
-    seen.publishers["/rosout"] = ["/pub", "/sub"]
-    seen.subscribers["/rosout"] = ["/rosout", "/mrp_view"]
-    seen.subscribers["/t"].append("/mrp_view")
-    whole = graph.build(seen)
+    observation = observed(services=["/rosout"])
+    observation.publishers["/rosout"] = ["/pub", "/sub"]
+    observation.subscribers["/rosout"] = ["/rosout", "/mrp_view"]
+    observation.subscribers["/t"].append("/mrp_view")
+    whole = graph.build(observation)
     shown = feed.visible(whole, OPTIONS)
-    assert [one["name"] for one in shown["nodes"]] == ["/pub", "/sub"]
-    assert [one["name"] for one in shown["topics"]] == ["/t"]
+    assert [node["name"] for node in shown["nodes"]] == ["/pub", "/sub"]
+    assert [topic["name"] for topic in shown["topics"]] == ["/t"]
     everything = feed.visible(whole, feed.options_of({"rosout": True, "viewer": True}, "/mrp_view"))
     assert len(everything["nodes"]) == 4
-    assert [one["name"] for one in everything["topics"]] == ["/rosout", "/t"]
+    assert [topic["name"] for topic in everything["topics"]] == ["/rosout", "/t"]
     nothing = feed.visible(whole, feed.options_of({"hidden": ["/t"]}, "/mrp_view"))
     assert nothing["topics"] == [] and nothing["links"] == []
 
@@ -182,8 +184,8 @@ def test_what_json_cannot_say_is_never_sent():
 
 
 def structure(names):
-    seen = Observation(publishers={"/t": list(names)}, subscribers={"/a/n/t": ["/a/n"]})
-    return Structure(graph.build(seen), "LR")
+    observation = Observation(publishers={"/t": list(names)}, subscribers={"/a/n/t": ["/a/n"]})
+    return Structure(graph.build(observation), "LR")
 
 
 def test_layout_has_a_place_for_all():
@@ -205,10 +207,11 @@ def test_dot_reads_no_name():
     assert not re.search("evil|<b>", structure(["/evil/n", "/<b>/n"]).dot())
 
 
-def found(seen, rows=(), counts=None):
-    counts = graph.counts(seen) if counts is None else counts
+def found(observation, rows=(), counts=None):
+    counts = graph.counts(observation) if counts is None else counts
     return {
-        one["kind"]: one for one in findings.findings(graph.build(seen), counts, rows, "/mrp_view")
+        finding["kind"]: finding
+        for finding in findings.findings(graph.build(observation), counts, rows, "/mrp_view")
     }
 
 

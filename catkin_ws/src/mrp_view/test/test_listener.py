@@ -16,7 +16,7 @@ def test_others_come_first(monkeypatch):
         topics.append(topic)
         return types.SimpleNamespace(get_num_connections=lambda: 1)
 
-    def seen(*subscribers):
+    def observation(*subscribers):
         return types.SimpleNamespace(
             viewer="/view", publishers={"/t": ["/p"]}, subscribers={"/t": [*subscribers]}
         )
@@ -24,16 +24,16 @@ def test_others_come_first(monkeypatch):
     monkeypatch.setattr(listener.rospy, "Subscriber", subscriber)
     monkeypatch.setattr(listener.time, "monotonic", lambda: now)
     one = listener.Listener(settle=3.0)
-    one.follow(seen())
+    one.follow(observation())
     now += 2.0
-    one.follow(seen("/joins"))
+    one.follow(observation("/joins"))
     now += 2.0
-    one.follow(seen("/joins"))
+    one.follow(observation("/joins"))
     now += 2.0
-    one.follow(seen())  # it has left
+    one.follow(observation())  # it has left
     now += 2.9
-    one.follow(seen())
+    one.follow(observation())
     assert topics == [listener.LOG_TOPIC]
     now += 0.1
-    one.follow(seen())
+    one.follow(observation())
     assert topics == [listener.LOG_TOPIC, "/t"]

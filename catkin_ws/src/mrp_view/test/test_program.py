@@ -65,7 +65,7 @@ class TestProgram(unittest.TestCase):
             self.assertIn("frame_id: <b>", page.rows[key]["value"])
             rospy.logwarn("<script>alert(2)</script>")
             page.wait_for(
-                lambda: any(one["text"] == "<script>alert(2)</script>" for one in page.lines),
+                lambda: any(line["text"] == "<script>alert(2)</script>" for line in page.lines),
                 "the log line",
             )
         string.unregister()

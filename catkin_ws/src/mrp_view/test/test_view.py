@@ -39,7 +39,7 @@ class TestView(unittest.TestCase):
                 )
                 (topic,) = page.graph["graph"]["topics"]
                 self.assertEqual(topic["types"], ["std_msgs/UInt32"])
-                self.assertEqual([one[0] for one in page.graph["layout"]["groups"]], ["/mrp"])
+                self.assertEqual([group[0] for group in page.graph["layout"]["groups"]], ["/mrp"])
                 self.assertEqual(launched.stop(), 0)
             page.wait_for(lambda: page.edges() == {}, "an empty graph after the launch")
             self.assertEqual(viewer.stop(), 0, str(viewer))

@@ -5,13 +5,13 @@ import typing
 
 
 class Comparison(typing.NamedTuple):
-    """text: what is compared. piece: size in bytes, messages per second, how many; see plans.py.
+    """text: what is compared. stream: size in bytes, messages per second, how many; see plans.py.
 
     ways: see ways.py
     """
 
     text: str
-    piece: typing.Tuple[int, int, int]
+    stream: typing.Tuple[int, int, int]
     ways: typing.Tuple[str, ...]
 
 

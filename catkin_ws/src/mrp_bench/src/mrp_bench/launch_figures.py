@@ -29,8 +29,8 @@ def _latency(one, percentile):
 def medians(launches):
     """Return the number of robots -> a figure's name -> its median over the rounds."""
     grouped = collections.defaultdict(list)
-    for one in launches:
-        grouped[one["robots"]].append(one)
+    for launch in launches:
+        grouped[launch["robots"]].append(launch)
     return {
         robots: {
             name: statistics.median(value(one) for one in ones) for name, value in _FIGURES.items()
@@ -70,8 +70,8 @@ def summarise(launches, cores, megabytes):
     """
     figures = medians(launches)
     lost = collections.Counter()
-    for one in launches:
-        lost[one["robots"]] += _delivery(one).lost
+    for launch in launches:
+        lost[launch["robots"]] += _delivery(launch).lost
     return {
         "figures": [
             {"robots": robots, **of, "lost": lost[robots]} for robots, of in figures.items()

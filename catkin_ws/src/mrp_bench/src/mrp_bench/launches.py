@@ -6,12 +6,12 @@ import pathlib
 
 from mrp_bench.launched import Launched
 from mrp_bench.processes import cpu, megabytes
-from mrp_bench.programs import Running, Slice
+from mrp_bench.programs import Running, Stream
 from mrp_bench.ways import WAYS
 
 # Beside the robots, whose own messages have no stamp: a node that sends for two seconds, and one
 # that receives. So long the robots' processor time is taken, too.
-PAIR, PIECE = WAYS["cpp_cpp"], Slice(size=8, rate=100, count=200)
+PAIR, STREAM = WAYS["cpp_cpp"], Stream(size=8, rate=100, count=200)
 
 
 def _launch_file(robots):
@@ -27,7 +27,7 @@ def _launch_file(robots):
 def measure(robots, results):
     """Start that many robots with roslaunch, and stop them with SIGINT; return what happened.
 
-    Times are in seconds since the start of roslaunch. pair: what became of PIECE.
+    Times are in seconds since the start of roslaunch. pair: what became of STREAM.
     Raises ProgramError if a node does not come up, or roslaunch does not end.
     """
     file = results.folder / "launches" / f"{robots}_robots.launch"
@@ -42,7 +42,7 @@ def measure(robots, results):
             pair.start()
             pair.connect()
             before, moment = cpu(pids), launched.now()
-            measurement = pair.measure(PIECE)
+            measurement = pair.measure(STREAM)
             cores = (cpu(pids) - before) / (launched.now() - moment)
         stop, _, end = launched.stop({})
     found = launched.console.events

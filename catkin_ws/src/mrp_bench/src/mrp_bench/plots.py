@@ -71,11 +71,11 @@ def scale(content):
         svg.Series(
             f"{ROBOTS[name]}: ^{of['exponents'][name][0]:.2f}",
             *style,
-            [(one["robots"], one[name]) for one in of["figures"]],
+            [(figure["robots"], figure[name]) for figure in of["figures"]],
         )
         for name, style in styles.items()
     ]
-    ticks = {one["robots"]: str(one["robots"]) for one in of["figures"]}
+    ticks = {figure["robots"]: str(figure["robots"]) for figure in of["figures"]}
     title = "Costs by the number of robots of four nodes each (^ exponent)"
     parts = svg.panel(title, series, 50, 30, 450, 300, ticks) + svg.legend(series, 50, 375, 240)
     return svg.Plot(520, 440, parts, svg.in_words(title, series, ticks))
@@ -120,13 +120,15 @@ def start_and_stop(content):
 
 
 def _start_in_words(start):
-    said = [f"Start and stop of the four nodes. Ctrl-C comes {start['stop']:.2f} s after the call."]
+    printed = [
+        f"Start and stop of the four nodes. Ctrl-C comes {start['stop']:.2f} s after the call."
+    ]
     for name, (*spans, end) in start["bars"].items():
         steps = [f"{what} at {when:.2f} s" for what, when in zip(_BARS, spans)]
         if name in start["first_message"]:
             steps.insert(2, f"has its first message at {start['first_message'][name]:.2f} s")
-        said.append(f"{name} {', '.join(steps)}, and has ended at {end:.2f} s.")
-    return " ".join(said)
+        printed.append(f"{name} {', '.join(steps)}, and has ended at {end:.2f} s.")
+    return " ".join(printed)
 
 
 PLOTS = {draw.__name__: draw for draw in (latency_by_size, start_and_stop, scale)}

@@ -24,7 +24,7 @@ DEADLINE = 120
 
 # What is sent: messages of that many bytes, so many per second (0: as fast as it goes), and how
 # many.
-Slice = collections.namedtuple("Slice", "size rate count")
+Stream = collections.namedtuple("Stream", "size rate count")
 
 # sent: the stamps, in ns. received: of each receiver, stamps and times of arrival in turns.
 # sender_cpu: seconds of processor time. receiver_cpu: that of all receivers, or None if they are
@@ -171,12 +171,12 @@ class Running:
         self.sender.answer("ready")
         self.signal(signal.SIGSTOP)
 
-    def measure(self, piece):
-        """Let the sender send a Slice, and return what became of it, as a Measurement."""
+    def measure(self, stream):
+        """Let the sender send a Stream, and return what became of it, as a Measurement."""
         self.signal(signal.SIGCONT)
         sender_cpu, receiver_cpu = self.sender.cpu(), _cpu(self.receivers)
         switches = self.sender.switches()
-        self.sender.tell(f"run {piece.size} {piece.rate} {piece.count}")
+        self.sender.tell(f"run {stream.size} {stream.rate} {stream.count}")
         sent = self.sender.answer("sent").tolist()
         self.sender.tell("end")
         received = [

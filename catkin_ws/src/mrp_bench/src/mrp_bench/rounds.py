@@ -12,11 +12,11 @@ import pathlib
 import time
 
 from mrp_bench import noise
-from mrp_bench.programs import Running, Slice
+from mrp_bench.programs import Running, Stream
 from mrp_bench.ways import WAYS, size_text
 
-# What a plan consists of: a way's name, and a Slice.
-Step = collections.namedtuple("Step", "way piece")
+# What a plan consists of: a way's name, and a Stream.
+Step = collections.namedtuple("Step", "way stream")
 
 # Rounds after which all programs are started anew: no two processes are equally fast.
 _ROUNDS_PER_START = 3
@@ -45,8 +45,8 @@ class Results:
         path.write_text(text)
 
     def path(self, number, step):
-        piece = step.piece
-        name = f"{step.way}_{piece.size}_{piece.rate}.json.gz"
+        stream = step.stream
+        name = f"{step.way}_{stream.size}_{stream.rate}.json.gz"
         return self.folder / "samples" / f"round_{number}" / name
 
     def has(self, number, step):
@@ -55,7 +55,7 @@ class Results:
     def keep(self, number, step, measurement):
         content = {
             "way": step.way,
-            **step.piece._asdict(),
+            **step.stream._asdict(),
             "round": number,
             **measurement._asdict(),
         }
@@ -106,33 +106,33 @@ def run(plan, rounds, results, say):
         say(f"starting the programs of {len(ways)} ways")
         with contextlib.ExitStack() as stack:
             running = {name: Running(WAYS[name], results.folder / "programs.log") for name in ways}
-            for one in running.values():
-                stack.enter_context(one)
-            for one in running.values():
+            for programs in running.values():
+                stack.enter_context(programs)
+            for programs in running.values():
                 # At the end all are asked before the first is waited for.
-                stack.callback(one.ask_to_end)
-                one.start()
-            for one in running.values():
-                one.connect()
+                stack.callback(programs.ask_to_end)
+                programs.start()
+            for programs in running.values():
+                programs.connect()
             for number in numbers:
                 results.keep_noise(noise.measure())
                 for step in (step for of, step in pending if of == number):
-                    results.keep(number, step, running[step.way].measure(step.piece))
+                    results.keep(number, step, running[step.way].measure(step.stream))
                     done += 1
                     seconds = time.monotonic() - begin
                     left = seconds / done * (len(pending) - done)
                     say(
                         f"[{done}/{len(pending)}] round {number + 1} of {rounds}: {step.way}, "
-                        f"{describe(step.piece)}; {left:.0f} s left"
+                        f"{describe(step.stream)}; {left:.0f} s left"
                     )
             results.keep_noise(noise.measure())
 
 
-def describe(piece):
-    """Return a Slice in words."""
-    rate = f"at {piece.rate} Hz" if piece.rate else "as fast as it goes"
-    return f"{size_text(piece.size)} {rate}"
+def describe(stream):
+    """Return a Stream in words."""
+    rate = f"at {stream.rate} Hz" if stream.rate else "as fast as it goes"
+    return f"{size_text(stream.size)} {rate}"
 
 
-def steps(ways, *pieces):
-    return [Step(way, Slice(*piece)) for piece in pieces for way in ways]
+def steps(ways, *streams):
+    return [Step(way, Stream(*stream)) for stream in streams for way in ways]

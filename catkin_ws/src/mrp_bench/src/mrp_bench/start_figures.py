@@ -63,8 +63,8 @@ def _exits(starts):
     """Return (node, code, how often) of each exit code that was not 0."""
     counts = collections.Counter(
         (name.rsplit("/", 1)[-1], code)
-        for one in starts
-        for name, code in one["exits"].items()
+        for start in starts
+        for name, code in start["exits"].items()
         if code
     )
     return [(name, code, count) for (name, code), count in counts.items()]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What follows from the samples: a row for each way and Slice, beside the limits."""
+"""What follows from the samples: a row for each way and Stream, beside the limits."""
 
 import collections
 
@@ -14,7 +14,7 @@ _WARM_UP = 0.1
 
 # latency: in us, of the names in stats.PERCENTILES. throughput: messages per second.
 # latency_ratio, throughput_ratio: limit's name -> stats.Estimate, without those that were not
-#   measured for this Slice, and without itself
+#   measured for this Stream, and without itself
 # sender_cpu, receiver_cpu: seconds per million messages (None: see programs.Measurement)
 # sender_switches: how often a thread of the sender waited, per message
 # sent, lost, disordered: how many messages, of all receivers, in all rounds
@@ -32,11 +32,13 @@ class _Round:
         sent = measurement["sent"]
         deliveries = [stats.delivery(sent, pairs) for pairs in measurement["received"]]
         warm_up = int(len(sent) * _WARM_UP)
-        latencies = numpy.concatenate([one.latencies[warm_up:] for one in deliveries]) / 1e3
+        latencies = (
+            numpy.concatenate([delivery.latencies[warm_up:] for delivery in deliveries]) / 1e3
+        )
         self.latencies = latencies if latencies.size else numpy.array([numpy.nan])
         self.sent = len(sent) * len(deliveries)
-        self.lost = sum(one.lost for one in deliveries)
-        self.disordered = sum(one.disordered for one in deliveries)
+        self.lost = sum(delivery.lost for delivery in deliveries)
+        self.disordered = sum(delivery.disordered for delivery in deliveries)
         arrived = [pairs[-1] for pairs in measurement["received"] if pairs]
         seconds = (max(arrived) - sent[0]) / 1e9 if arrived else numpy.inf
         self.throughput = (self.sent - self.lost) / len(deliveries) / seconds
@@ -47,11 +49,11 @@ class _Round:
 
 
 def summarise(measurements):
-    """Return the rows, sorted by Slice, and in the order of ways.WAYS."""
+    """Return the rows, sorted by Stream, and in the order of ways.WAYS."""
     grouped = collections.defaultdict(lambda: collections.defaultdict(list))
     for measurement in sorted(measurements, key=lambda one: one["round"]):
-        piece = (measurement["size"], measurement["rate"])
-        grouped[piece][measurement["way"]].append(_Round(measurement))
+        stream = (measurement["size"], measurement["rate"])
+        grouped[stream][measurement["way"]].append(_Round(measurement))
     rows = []
     for (size, rate), ways in sorted(grouped.items()):
         limits = {name: ways[name] for name in LIMITS if name in ways}
@@ -61,9 +63,9 @@ def summarise(measurements):
 
 
 def _row(name, size, rate, rounds, limits):
-    latencies = [one.latencies for one in rounds]
-    throughputs = [[one.throughput] for one in rounds]
-    receiver_cpus = [one.receiver_cpu for one in rounds]
+    latencies = [round_.latencies for round_ in rounds]
+    throughputs = [[round_.throughput] for round_ in rounds]
+    receiver_cpus = [round_.receiver_cpu for round_ in rounds]
     return Row(
         way=name,
         size=size,
@@ -72,20 +74,20 @@ def _row(name, size, rate, rounds, limits):
         latency=stats.percentiles(numpy.concatenate(latencies)),
         # As fast as it goes, messages wait in queues: that says nothing of the way itself.
         latency_ratio={
-            limit: stats.ratio(latencies, [one.latencies for one in of_limit])
+            limit: stats.ratio(latencies, [round_.latencies for round_ in of_limit])
             for limit, of_limit in limits.items()
             if limit != name and rate
         },
         throughput=stats.median_of_rounds(throughputs),
         throughput_ratio={
-            limit: stats.ratio(throughputs, [[one.throughput] for one in of_limit])
+            limit: stats.ratio(throughputs, [[round_.throughput] for round_ in of_limit])
             for limit, of_limit in limits.items()
             if limit != name
         },
-        sender_cpu=float(numpy.median([one.sender_cpu for one in rounds])),
-        sender_switches=float(numpy.median([one.sender_switches for one in rounds])),
+        sender_cpu=float(numpy.median([round_.sender_cpu for round_ in rounds])),
+        sender_switches=float(numpy.median([round_.sender_switches for round_ in rounds])),
         receiver_cpu=None if None in receiver_cpus else float(numpy.median(receiver_cpus)),
-        sent=sum(one.sent for one in rounds),
-        lost=sum(one.lost for one in rounds),
-        disordered=sum(one.disordered for one in rounds),
+        sent=sum(round_.sent for round_ in rounds),
+        lost=sum(round_.lost for round_ in rounds),
+        disordered=sum(round_.disordered for round_ in rounds),
     )

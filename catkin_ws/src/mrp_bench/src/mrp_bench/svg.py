@@ -88,11 +88,11 @@ def bar(x1, x2, y, height, color):
 def legend(entries, x, y, width):
     """Return the parts of a legend in two columns. entries: Series. width: of a column, in px."""
     parts = []
-    for number, one in enumerate(entries):
+    for number, entry in enumerate(entries):
         left, middle = x + width * (number % 2), y + ROW * (number // 2)
-        parts += [_stroke(one, [(left, middle), (left + 28, middle)])]
-        parts += [mark(one.mark, left + 14, middle, one.color)]
-        parts += [text(left + 36, middle + 4, one.label)]
+        parts += [_stroke(entry, [(left, middle), (left + 28, middle)])]
+        parts += [mark(entry.mark, left + 14, middle, entry.color)]
+        parts += [text(left + 36, middle + 4, entry.label)]
     return parts
 
 
@@ -129,9 +129,11 @@ class Scale:
 def in_words(title, series, ticks):
     """Say where each line of a panel begins and ends."""
     lines = []
-    for one in series:
-        ends = [f"{float(f'{y:.3g}'):g} at {ticks[x]}" for x, y in (one.points[0], one.points[-1])]
-        lines.append(f"{one.label}: {' to '.join(ends)}")
+    for curve in series:
+        ends = [
+            f"{float(f'{y:.3g}'):g} at {ticks[x]}" for x, y in (curve.points[0], curve.points[-1])
+        ]
+        lines.append(f"{curve.label}: {' to '.join(ends)}")
     return f"{title}. {'; '.join(lines)}."
 
 
@@ -140,7 +142,7 @@ def panel(title, series, x, y, width, height, ticks):
 
     x, y, width, height: where its axes are, in px. ticks: number on the x axis -> its text
     """
-    points = [point for one in series for point in one.points]
+    points = [point for curve in series for point in curve.points]
     across = Scale([number for number, _ in points], x, x + width)
     up = Scale([value for _, value in points], y + height, y)
     parts = [text(x, y - 8, title, more='font-weight="bold"')]
@@ -151,7 +153,10 @@ def panel(title, series, x, y, width, height, ticks):
         parts += [line(x, up(value), x + width, up(value), more='opacity="0.15"')]
         parts += [text(x - 6, up(value) + 4, f"{value:g}", "end", 12)]
     parts += [line(x, y + height, x + width, y + height), line(x, y, x, y + height)]
-    for one in series:
-        drawn = [(across(number), up(value)) for number, value in one.points]
-        parts += [_stroke(one, drawn), *(mark(one.mark, *point, one.color) for point in drawn)]
+    for curve in series:
+        drawn = [(across(number), up(value)) for number, value in curve.points]
+        parts += [
+            _stroke(curve, drawn),
+            *(mark(curve.mark, *point, curve.color) for point in drawn),
+        ]
     return parts

@@ -207,7 +207,8 @@ def robots(content):
     if not of["figures"]:
         return []
     rows = [
-        [str(one["robots"]), *_costs(one, ROBOTS, noisy), str(one["lost"])] for one in of["figures"]
+        [str(figure["robots"]), *_costs(figure, ROBOTS, noisy), str(figure["lost"])]
+        for figure in of["figures"]
     ]
     after = []
     if of["most"] and not noisy:
@@ -242,7 +243,7 @@ def _exponents(found, names, noisy):
 
 def _interval(estimate):
     """Return a value and its bounds; of a single measurement there are no bounds."""
-    value, *bounds = (f"{one:.2f}" for one in estimate)
+    value, *bounds = (f"{number:.2f}" for number in estimate)
     return f"{value} [{', '.join(bounds)}]" if bounds else value
 
 

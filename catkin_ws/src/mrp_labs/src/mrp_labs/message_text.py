@@ -16,7 +16,7 @@ _CLASSES = (
 )
 
 # Name, such as "std_msgs/UInt32", -> class.
-MESSAGE_TYPES = {one._type: one for one in _CLASSES}
+MESSAGE_TYPES = {class_._type: class_ for class_ in _CLASSES}
 
 
 def from_text(text, message):

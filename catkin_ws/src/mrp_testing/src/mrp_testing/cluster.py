@@ -30,8 +30,10 @@ def cluster(folder, workers=2, options=(), dask=DASK, **worker_env):
         started = [
             stack.enter_context(worker(address, folder, **worker_env)) for _ in range(workers)
         ]
-        for one in started:
-            one.wait_for(lambda: any("Registered to" in x for x in one.lines), "it is there")
+        for process in started:
+            process.wait_for(
+                lambda: any("Registered to" in x for x in process.lines), "it is there"
+            )
         yield scheduler, address, started
 
 

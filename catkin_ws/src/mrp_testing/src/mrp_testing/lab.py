@@ -92,7 +92,7 @@ class Lab(Process):
         node's address. When a node of that name starts again, the master sends a shutdown to the
         old address. By then another node may have it, such as one of the next lab.
         """
-        names = {one.text.split(" ")[0] for one in self._log_lines() if one.text.startswith("/")}
+        names = {line.text.split(" ")[0] for line in self._log_lines() if line.text.startswith("/")}
         for name in names - Graph().nodes:
             master = rosgraph.Master(name)
             try:
@@ -102,7 +102,7 @@ class Lab(Process):
 
     def logged(self, node, levels=("INFO",)):
         """Return the texts that a node has logged, each without the node's name in front."""
-        texts = [one.text for one in self._log_lines() if one.level in levels]
+        texts = [line.text for line in self._log_lines() if line.level in levels]
         return [text[len(node) + 1 :] for text in texts if text.startswith(node + " ")]
 
     def _log_lines(self):
@@ -111,8 +111,8 @@ class Lab(Process):
     def received(self, node):
         """Return what a subscriber node has received: a list of Received."""
         result = []
-        for one in self._log_lines():
-            match = _RECEIVED.fullmatch(one.text)
+        for line in self._log_lines():
+            match = _RECEIVED.fullmatch(line.text)
             if match and match["node"] == node:
                 result.append(Received(match["value"], match["publisher"], match["thread"]))
         return result

@@ -16,7 +16,7 @@ LogLine = collections.namedtuple("LogLine", "level wall simulated text")
 
 def texts(lines):
     """Return the text of each line that a node has logged as INFO, of all these lines."""
-    return [one.text for one in filter(None, map(parse, list(lines))) if one.level == "INFO"]
+    return [line.text for line in filter(None, map(parse, list(lines))) if line.level == "INFO"]
 
 
 def parse(line):

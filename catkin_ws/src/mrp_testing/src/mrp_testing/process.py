@@ -128,8 +128,8 @@ def processes_with(text):
     found = {}
     for folder in pathlib.Path("/proc").glob("[0-9]*"):
         command = _read_if_there(folder / "cmdline")
-        said = command + _read_if_there(folder / "environ")
-        if text.encode() in said and int(folder.name) != os.getpid():
+        printed = command + _read_if_there(folder / "environ")
+        if text.encode() in printed and int(folder.name) != os.getpid():
             found[int(folder.name)] = command.replace(b"\0", b" ").decode(errors="replace")
     return found
 

@@ -131,19 +131,19 @@ class Client:
             self.links.pop(tuple(key), None)
         if message["findings"] is not None:
             self.findings = message["findings"]
-            self.kinds |= {one["kind"] for one in self.findings}
+            self.kinds |= {finding["kind"] for finding in self.findings}
         self.lines = (self.lines + message["log"])[-1000:]
         self.ticks += 1
 
     def states(self):
         """Return node -> state of the nodes in the graph."""
         nodes = self.graph["graph"]["nodes"] if self.graph else []
-        return {one["name"]: one["state"] for one in nodes}
+        return {node["name"]: node["state"] for node in nodes}
 
     def edges(self):
         """Return (from, to) -> state of the edges in the graph."""
         edges = self.graph["graph"]["edges"] if self.graph else []
-        return {(one["from"], one["to"]): one["state"] for one in edges}
+        return {(edge["from"], edge["to"]): edge["state"] for edge in edges}
 
     def link_states(self):
         """Return (topic, publisher, subscriber) -> (state, why)."""
@@ -156,7 +156,8 @@ class Client:
     def wait_for_finding(self, kind):
         """Wait until there is a finding of a kind: it comes after the graph that it is about."""
         self.wait_for(
-            lambda: kind in {one["kind"] for one in self.findings}, f"a finding of the kind {kind}"
+            lambda: kind in {finding["kind"] for finding in self.findings},
+            f"a finding of the kind {kind}",
         )
 
     def explain(self):

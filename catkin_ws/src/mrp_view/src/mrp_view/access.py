@@ -68,7 +68,7 @@ def allowed_origin(origin, host, names=()):
     scheme, at = match.groups()
     if at == host.lower():
         return True
-    names = {one.lower() for one in names}
+    names = {name.lower() for name in names}
     if not names:
         return False
     by, to = host_name(at), host_name(host)
@@ -98,5 +98,5 @@ def policy_of(html):
 
 
 def _hashes(texts):
-    digests = {base64.b64encode(hashlib.sha256(one.encode()).digest()).decode() for one in texts}
-    return "".join(f" 'sha256-{one}'" for one in sorted(digests))
+    digests = {base64.b64encode(hashlib.sha256(text.encode()).digest()).decode() for text in texts}
+    return "".join(f" 'sha256-{digest}'" for digest in sorted(digests))

@@ -29,9 +29,9 @@ class Structure:
     """
 
     def __init__(self, graph, rankdir):
-        self.nodes = [one["name"] for one in graph["nodes"]]
-        self.topics = [(one["name"], len(one["label"])) for one in graph["topics"]]
-        self.edges = [(one["from"], one["to"], one["publishes"]) for one in graph["edges"]]
+        self.nodes = [node["name"] for node in graph["nodes"]]
+        self.topics = [(topic["name"], len(topic["label"])) for topic in graph["topics"]]
+        self.edges = [(edge["from"], edge["to"], edge["publishes"]) for edge in graph["edges"]]
         self.rankdir = rankdir
         self.key = (tuple(self.nodes), tuple(self.topics), tuple(self.edges), rankdir)
 
@@ -108,19 +108,19 @@ class Structure:
         drawn = json.loads(done.stdout)
         _, _, width, height = map(float, drawn["bb"].split(","))
         boxes, groups = {}, []
-        for one in drawn.get("objects", []):
-            if one["name"].startswith("cluster"):
-                x1, y1, x2, y2 = map(float, one["bb"].split(","))
-                name = self._groups[int(one["name"][len("cluster") :])]
+        for item in drawn.get("objects", []):
+            if item["name"].startswith("cluster"):
+                x1, y1, x2, y2 = map(float, item["bb"].split(","))
+                name = self._groups[int(item["name"][len("cluster") :])]
                 groups.append([name, *_rounded(x1, height - y2, x2 - x1, y2 - y1)])
             else:
-                x, y = map(float, one["pos"].split(","))
-                size = float(one["width"]) * 72, float(one["height"]) * 72
-                boxes[one["name"]] = _rounded(x, height - y, *size)
-        names = {one["_gvid"]: one["name"] for one in drawn.get("objects", [])}
+                x, y = map(float, item["pos"].split(","))
+                size = float(item["width"]) * 72, float(item["height"]) * 72
+                boxes[item["name"]] = _rounded(x, height - y, *size)
+        names = {item["_gvid"]: item["name"] for item in drawn.get("objects", [])}
         paths = {
-            (names[one["tail"]], names[one["head"]]): _path(one["pos"], height)
-            for one in drawn.get("edges", [])
+            (names[item["tail"]], names[item["head"]]): _path(item["pos"], height)
+            for item in drawn.get("edges", [])
         }
         return {
             "width": round(width, 1),
@@ -133,7 +133,7 @@ class Structure:
 
 
 def _rounded(*numbers):
-    return [round(one, 1) for one in numbers]
+    return [round(number, 1) for number in numbers]
 
 
 def _path(position, height):
@@ -147,5 +147,5 @@ def _path(position, height):
         elif numbers[0] != "s":
             points.append((x, y))
     path = "M{:.1f} {:.1f}C".format(*points[0])
-    path += " ".join("{:.1f} {:.1f}".format(*one) for one in points[1:])
+    path += " ".join("{:.1f} {:.1f}".format(*point) for point in points[1:])
     return path + ("L{:.1f} {:.1f}".format(*end) if end else "")

@@ -45,9 +45,9 @@ def visible(graph, options):
         ],
         "edges": edges,
         "links": [
-            one
-            for one in graph["links"]
-            if one["topic"] not in hidden_topics and not hidden_nodes & {one["from"], one["to"]}
+            link
+            for link in graph["links"]
+            if link["topic"] not in hidden_topics and not hidden_nodes & {link["from"], link["to"]}
         ],
     }
 
@@ -80,7 +80,7 @@ def options_of(message, viewer):
     return {
         "rosout": message.get("rosout") is True,
         "viewer": "" if message.get("viewer") is True else viewer,
-        "hidden": frozenset(one for one in hidden[:1000] if isinstance(one, str)),
+        "hidden": frozenset(name for name in hidden[:1000] if isinstance(name, str)),
         "rankdir": "TB" if message.get("rankdir") == "TB" else "LR",
         "paused": message.get("paused") is True,
     }

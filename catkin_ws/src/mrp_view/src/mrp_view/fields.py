@@ -94,7 +94,7 @@ def _text(value, room):
     if isinstance(value, bytes):
         return f"{len(value)} bytes: " + value[:_MOST].hex(" ")
     if isinstance(value, (list, tuple)):
-        parts = [_text(one, room // _MOST) for one in value[:_MOST]]
+        parts = [_text(item, room // _MOST) for item in value[:_MOST]]
         more = [f"… {len(value)} in all"] if len(value) > _MOST else []
         return "[" + ", ".join(parts + more) + "]"
     if isinstance(value, float):

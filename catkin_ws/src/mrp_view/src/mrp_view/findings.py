@@ -25,9 +25,9 @@ def findings(graph, counts, rows, viewer):
     graph: as graph.build returns it; counts: as graph.counts does; rows: as Listener.look does
     """
     # Of the log, and of the viewer itself, there is nothing to learn.
-    counts = [one for one in counts if one["topic"] not in _LOG and one["to"] != viewer]
-    rows = [one for one in rows if one["topic"] not in _LOG]
-    edges = [one for one in graph["edges"] if viewer not in (one["from"], one["to"])]
+    counts = [count for count in counts if count["topic"] not in _LOG and count["to"] != viewer]
+    rows = [row for row in rows if row["topic"] not in _LOG]
+    edges = [edge for edge in graph["edges"] if viewer not in (edge["from"], edge["to"])]
     reported = (
         *_of_nodes(graph["nodes"]),
         *_of_links(graph["links"]),
@@ -45,7 +45,7 @@ def findings(graph, counts, rows, viewer):
 
 
 def _of_nodes(nodes):
-    dead = [one["name"] for one in nodes if one["state"] == "dead"]
+    dead = [node["name"] for node in nodes if node["state"] == "dead"]
     if len(dead) > 1:
         yield "dead", f"{_names(dead)} died without telling the master"
     elif dead:
@@ -58,24 +58,24 @@ def _of_links(links):
 
 
 def _of_counts(counts):
-    for one in counts:
-        where = f"from {one['from']} to {one['to']} on {one['topic']}"
-        if one["dropped"]:
+    for count in counts:
+        where = f"from {count['from']} to {count['to']} on {count['topic']}"
+        if count["dropped"]:
             yield (
                 "dropped",
-                f"{one['to']} dropped {one['dropped']} of {one['received']} messages, because its "
-                f"queue was full ({where})",
+                f"{count['to']} dropped {count['dropped']} of {count['received']} messages, "
+                f"because its queue was full ({where})",
             )
-        elif one["missing"]:
+        elif count["missing"]:
             yield (
                 "missing",
-                f"{one['missing']} of {one['sent']} messages {where} haven't reached the callback: "
-                "they were dropped, or are still on their way",
+                f"{count['missing']} of {count['sent']} messages {where} haven't reached the "
+                "callback: they were dropped, or are still on their way",
             )
 
 
 def _of_topics(topics):
-    latched = [one["name"] for one in topics if one["latched"] and one["name"] not in _LOG]
+    latched = [topic["name"] for topic in topics if topic["latched"] and topic["name"] not in _LOG]
     if latched:
         yield "latched", f"{_names(latched)} is latched: a late subscriber gets the last message"
 

@@ -136,42 +136,42 @@ class Observation:
         }
 
 
-def subscriber_type(seen, topic, subscriber):
+def subscriber_type(observation, topic, subscriber):
     """Return the type that a subscriber expects, as far as it can be known; or None."""
-    for publisher in seen.publishers.get(topic, []):
-        type_name = seen.sender_types.get((topic, publisher))
-        if type_name and seen.connected(topic, publisher, subscriber):
+    for publisher in observation.publishers.get(topic, []):
+        type_name = observation.sender_types.get((topic, publisher))
+        if type_name and observation.connected(topic, publisher, subscriber):
             return type_name
-    for refused in seen.refusals.values():
+    for refused in observation.refusals.values():
         if (refused.topic, refused.subscriber) == (topic, subscriber):
             return refused.wanted
     return None
 
 
-def link(seen, topic, publisher, subscriber):
+def link(observation, topic, publisher, subscriber):
     """Return (state, why) of what should be a connection.
 
     "ok"; "mismatch": the types differ; "none": both live, and are not connected; "waiting": not
     yet; "dead": one of the two is; "unknown": neither node says.
     """
-    if DEAD in (seen.state(publisher), seen.state(subscriber)):
+    if DEAD in (observation.state(publisher), observation.state(subscriber)):
         return "dead", ""
-    connected = seen.connected(topic, publisher, subscriber)
+    connected = observation.connected(topic, publisher, subscriber)
     if connected:
         return "ok", ""
     if connected is None:
         return "unknown", "neither node answers"
-    refused = seen.refusals.get((topic, publisher, subscriber))
+    refused = observation.refusals.get((topic, publisher, subscriber))
     if refused:
         return "mismatch", (
             f"{publisher} refuses {subscriber}: it publishes {refused.has}, "
             f"and {subscriber} expects {refused.wanted}"
         )
-    wanted = subscriber_type(seen, topic, subscriber)
-    has = seen.sender_types.get((topic, publisher))
+    wanted = subscriber_type(observation, topic, subscriber)
+    has = observation.sender_types.get((topic, publisher))
     if wanted and has and wanted != has:
         return "mismatch", f"{publisher} publishes {has}, and {subscriber} expects {wanted}"
-    if seen.age.get((topic, publisher, subscriber), 0) < PATIENCE:
+    if observation.age.get((topic, publisher, subscriber), 0) < PATIENCE:
         return "waiting", "not connected yet"
     of_type = f" ({has})" if has else ""
     return "none", (
@@ -180,27 +180,29 @@ def link(seen, topic, publisher, subscriber):
     )
 
 
-def build(seen):
+def build(observation):
     """Return the graph as the page gets it: nodes, topics, edges and links.
 
     edges: from a publisher to a topic, or from a topic to a subscriber
     links: from a publisher over a topic to a subscriber, with (state, why) as link() says
     """
     nodes = []
-    for name in sorted(seen.nodes()):
-        report = seen.reports.get(name, NodeReport())
+    for name in sorted(observation.nodes()):
+        report = observation.reports.get(name, NodeReport())
         nodes.append(
-            {"name": name, "state": seen.state(name), "why": report.why, "uri": report.uri}
+            {"name": name, "state": observation.state(name), "why": report.why, "uri": report.uri}
         )
     topics = []
-    for name in sorted({*seen.publishers, *seen.subscribers}):
-        told = {
-            seen.sender_types[name, one]
-            for one in seen.publishers.get(name, [])
-            if (name, one) in seen.sender_types
+    for name in sorted({*observation.publishers, *observation.subscribers}):
+        sent = {
+            observation.sender_types[name, one]
+            for one in observation.publishers.get(name, [])
+            if (name, one) in observation.sender_types
         }
-        types = sorted(told or {seen.types.get(name, "type unknown")})
-        latched = any((name, one) in seen.latched for one in seen.publishers.get(name, []))
+        types = sorted(sent or {observation.types.get(name, "type unknown")})
+        latched = any(
+            (name, one) in observation.latched for one in observation.publishers.get(name, [])
+        )
         label = (
             types[0]
             + (f" +{len(types) - 1}" if types[1:] else "")
@@ -208,53 +210,53 @@ def build(seen):
         )
         topics.append({"name": name, "types": types, "latched": latched, "label": label})
     links = []
-    for topic, publisher, subscriber in seen.pairs():
-        state, why = link(seen, topic, publisher, subscriber)
+    for topic, publisher, subscriber in observation.pairs():
+        state, why = link(observation, topic, publisher, subscriber)
         links.append(
             {"topic": topic, "from": publisher, "to": subscriber, "state": state, "why": why}
         )
-    return {"nodes": nodes, "topics": topics, "links": links, "edges": _edges(seen, links)}
+    return {"nodes": nodes, "topics": topics, "links": links, "edges": _edges(observation, links)}
 
 
-def _edges(seen, links):
+def _edges(observation, links):
     of_subscriber = collections.defaultdict(list)
     of_publisher = collections.defaultdict(list)
-    for one in links:
-        of_subscriber[one["topic"], one["to"]].append(one)
-        of_publisher[one["topic"], one["from"]].append(one)
+    for link in links:
+        of_subscriber[link["topic"], link["to"]].append(link)
+        of_publisher[link["topic"], link["from"]].append(link)
     edges = []
-    for topic, publishers in sorted(seen.publishers.items()):
+    for topic, publishers in sorted(observation.publishers.items()):
         for publisher in publishers:
             # Red only if all refuse it: otherwise the fault is the subscriber's.
             states = of_publisher[topic, publisher]
-            bad = [one for one in states if one["state"] in ("mismatch", "none")]
+            bad = [state for state in states if state["state"] in ("mismatch", "none")]
             worst = bad if len(bad) == len(states) else []
-            edges.append(_edge(seen, publisher, topic, publisher, True, worst))
-    for topic, subscribers in sorted(seen.subscribers.items()):
+            edges.append(_edge(observation, publisher, topic, publisher, True, worst))
+    for topic, subscribers in sorted(observation.subscribers.items()):
         for subscriber in subscribers:
             worst = [
                 one
                 for one in of_subscriber[topic, subscriber]
                 if one["state"] in ("mismatch", "none")
             ]
-            edges.append(_edge(seen, topic, subscriber, subscriber, False, worst))
+            edges.append(_edge(observation, topic, subscriber, subscriber, False, worst))
     return edges
 
 
-def _edge(seen, start, end, node, publishes, faults):
-    state = "dead" if seen.state(node) == DEAD else "ok"
+def _edge(observation, start, end, node, publishes, faults):
+    state = "dead" if observation.state(node) == DEAD else "ok"
     if faults:
-        state = "mismatch" if any(one["state"] == "mismatch" for one in faults) else "none"
+        state = "mismatch" if any(fault["state"] == "mismatch" for fault in faults) else "none"
     return {
         "from": start,
         "to": end,
         "publishes": publishes,
         "state": state,
-        "why": "\n".join(one["why"] for one in faults if one["state"] == state),
+        "why": "\n".join(fault["why"] for fault in faults if fault["state"] == state),
     }
 
 
-def counts(seen):
+def counts(observation):
     """Return what is known of the messages over each connection: a list of dicts.
 
     sent: by the publisher to this subscriber; received: by the subscriber
@@ -265,9 +267,9 @@ def counts(seen):
     Each may be None: a node does not say (see reports.py).
     """
     result = []
-    for topic, publisher, subscriber in seen.pairs():
-        sent = seen.sent_end(topic, publisher, subscriber)
-        received = seen.received_end(topic, publisher, subscriber)
+    for topic, publisher, subscriber in observation.pairs():
+        sent = observation.sent_end(topic, publisher, subscriber)
+        received = observation.received_end(topic, publisher, subscriber)
         if sent is None and received is None:
             continue
         n_sent = sent and sent.messages
@@ -275,7 +277,7 @@ def counts(seen):
         dropped = received and received.dropped
         missing = None
         if dropped is None and n_sent is not None and n_received is not None:
-            before = seen.reports[publisher].sent_before.get((topic, subscriber), 0)
+            before = observation.reports[publisher].sent_before.get((topic, subscriber), 0)
             missing = max(0, before - n_received)
         result.append(
             {

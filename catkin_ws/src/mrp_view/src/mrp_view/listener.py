@@ -72,7 +72,7 @@ class _Heard:
         self.message_class, self.why = fields.message_class(self.type, self.md5sum)
         self.value = self.why or ""
         self.number = None
-        self.looked = 0.0  # when it was looked into a large message
+        self.inspected = 0.0  # when its last large message was read
         self.unknown_since = None  # when the master no longer knew it
 
 
@@ -99,14 +99,22 @@ class Listener:
         self.lines_count = 0
         self.refusals = {}
 
-    def follow(self, seen):
+    def follow(self, observation):
         """Subscribe to what is published, and to nothing else. Takes an Observation."""
         now = time.monotonic()
-        name = seen.viewer
+        name = observation.viewer
         others = {}
-        for topic in {*seen.publishers, *seen.subscribers}:
-            publishers = tuple(one for one in seen.publishers.get(topic, ()) if one != name)
-            subscribers = tuple(one for one in seen.subscribers.get(topic, ()) if one != name)
+        for topic in {*observation.publishers, *observation.subscribers}:
+            publishers = tuple(
+                publisher
+                for publisher in observation.publishers.get(topic, ())
+                if publisher != name
+            )
+            subscribers = tuple(
+                subscriber
+                for subscriber in observation.subscribers.get(topic, ())
+                if subscriber != name
+            )
             if publishers:
                 others[topic] = (publishers, subscribers)
         # The log from the first line on: it tells who refuses whom.
@@ -126,7 +134,9 @@ class Listener:
                 self._subscribers.pop(topic).unregister()
                 self._since.pop(topic, None)
         self._forget(others, now)
-        self._known = {(topic, one) for topic, names in seen.publishers.items() for one in names}
+        self._known = {
+            (topic, one) for topic, names in observation.publishers.items() for one in names
+        }
 
     def end(self):
         """Take over that all publishers have ended."""
@@ -147,9 +157,11 @@ class Listener:
                 silent = topic not in self._subscribers
                 if silent and now - self._gone.setdefault(topic, now) > _FORGET:
                     del self._heard[topic, publisher]
-            self.refusals = {key: one for key, one in self.refusals.items() if one.topic in topics}
+            self.refusals = {
+                key: refusal for key, refusal in self.refusals.items() if refusal.topic in topics
+            }
 
-    def register_again(self, seen, master):
+    def register_again(self, observation, master):
         """Register with a master that knows the viewer no more, as it was restarted: rospy does so
         only once. The connections stay, so that no count has a gap.
 
@@ -157,8 +169,8 @@ class Listener:
         """
         uri = rospy.get_node_uri()
         for topic in list(self._subscribers):
-            wanted = topic == LOG_TOPIC or topic in seen.publishers
-            if wanted and seen.viewer not in seen.subscribers.get(topic, ()):
+            wanted = topic == LOG_TOPIC or topic in observation.publishers
+            if wanted and observation.viewer not in observation.subscribers.get(topic, ()):
                 publishers = master.call("registerSubscriber", topic, rosgraph.names.ANYTYPE, uri)
                 # As the master says it to a subscriber that it knows.
                 rpc.Proxy(uri, 5).call("publisherUpdate", topic, publishers)
@@ -199,12 +211,16 @@ class Listener:
                 )
             )
 
-    def observe(self, seen):
+    def observe(self, observation):
         """Put into an Observation what the connections say."""
         with self._lock:
-            seen.sender_types = {key: one.type for key, one in self._heard.items()}
-            seen.latched = {key for key, one in self._heard.items() if one.latched}
-            seen.refusals = dict(self.refusals)
+            observation.sender_types = {
+                key: publisher.type for key, publisher in self._heard.items()
+            }
+            observation.latched = {
+                key for key, publisher in self._heard.items() if publisher.latched
+            }
+            observation.refusals = dict(self.refusals)
 
     def look(self, now):
         """Return what has been sent, and look into the newest messages: a list of dicts.
@@ -227,11 +243,11 @@ class Listener:
             heard.unknown_since = now
         forgotten = not known and sender.last - heard.unknown_since > _STILL
         count, raw_samples = sender.take()
-        if sender.size > _LARGE and now - heard.looked < 1:
+        if sender.size > _LARGE and now - heard.inspected < 1:
             raw_samples = []
         samples = [self._sample(heard, at, raw) for at, raw in raw_samples]
         if samples:
-            heard.looked = now
+            heard.inspected = now
         return {
             "topic": topic,
             "from": publisher,

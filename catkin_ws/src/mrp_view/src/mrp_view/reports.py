@@ -60,7 +60,7 @@ def _stats(bus_stats):
 def _lists(value, length):
     """Return the lists of at least that length in a list."""
     value = value if isinstance(value, list) else []
-    return [one for one in value if isinstance(one, list) and len(one) >= length]
+    return [item for item in value if isinstance(item, list) and len(item) >= length]
 
 
 def _key(number):

@@ -210,7 +210,7 @@ class View:
                 "tutorial": self._tutorial.is_dir(),
                 "master": self._master,
                 "graph": shown,
-                "all_topics": [one["name"] for one in self._graph["topics"]],
+                "all_topics": [topic["name"] for topic in self._graph["topics"]],
                 "layout": layout,
             }
         )

@@ -31,7 +31,7 @@ class Watcher:
 
     def __init__(self, master_uri, viewer, on_look):
         self.lock = threading.Lock()
-        self.seen = Observation(viewer=viewer)
+        self.observation = Observation(viewer=viewer)
         self.master_uri = master_uri
         self.master = "never"
         self.why = ""
@@ -58,7 +58,7 @@ class Watcher:
             self._look_at_master()
             self._ask_nodes()
             with self.lock:
-                self.seen.grow_older()
+                self.observation.grow_older()
             self._on_look(self)
             self._end.wait(max(0.05, begin + LOOK - time.monotonic()))
 
@@ -79,14 +79,14 @@ class Watcher:
         with self.lock:
             self.master = "here"
             self.why = ""
-            self.seen.publishers = {topic: sorted(names) for topic, names in publishers}
-            self.seen.subscribers = {topic: sorted(names) for topic, names in subscribers}
-            self.seen.services = sorted({name for _, names in services for name in names})
-            self.seen.types = types
+            self.observation.publishers = {topic: sorted(names) for topic, names in publishers}
+            self.observation.subscribers = {topic: sorted(names) for topic, names in subscribers}
+            self.observation.services = sorted({name for _, names in services for name in names})
+            self.observation.types = types
             for node, uri in uris.items():
                 self._move(node, uri)
-            for node in set(self.seen.reports) - nodes:
-                del self.seen.reports[node]
+            for node in set(self.observation.reports) - nodes:
+                del self.observation.reports[node]
                 self._proxies.pop(node, None)
                 self._asked.pop(node, None)
 
@@ -96,17 +96,24 @@ class Watcher:
             self.why = why
             if self.master == "never":
                 return
-            states = [self.seen.state(node) for node in self.seen.nodes() - {self.seen.viewer}]
+            states = [
+                self.observation.state(node)
+                for node in self.observation.nodes() - {self.observation.viewer}
+            ]
             self.master = "gone" if ALIVE in states or SILENT in states else "ended"
             if self.master == "ended":
-                self.seen.publishers, self.seen.subscribers, self.seen.services = {}, {}, []
-                self.seen.reports.clear()
+                (
+                    self.observation.publishers,
+                    self.observation.subscribers,
+                    self.observation.services,
+                ) = {}, {}, []
+                self.observation.reports.clear()
                 self._proxies.clear()
                 self._asked.clear()
 
     def _move(self, node, uri):
         self._proxies[node] = rpc.Proxy(uri, TIMEOUT)
-        self.seen.reports[node] = NodeReport(uri=uri)
+        self.observation.reports[node] = NodeReport(uri=uri)
 
     def _ask_nodes(self):
         now = time.monotonic()
@@ -114,7 +121,7 @@ class Watcher:
         for node, proxy in list(self._proxies.items()):
             asked, counted = self._asked.get(node, (0, 0))
             if (
-                node == self.seen.viewer
+                node == self.observation.viewer
                 or node in self._being_asked
                 or now - asked < ASK - LOOK / 2
             ):
@@ -128,7 +135,7 @@ class Watcher:
         try:
             state, why, ends = self._answer(node, proxy, with_counts)
             with self.lock:
-                report = self.seen.reports.get(node)
+                report = self.observation.reports.get(node)
                 if report is not None and self._proxies.get(node) is proxy:
                     # A node that ends stops answering a moment before it leaves the master's list.
                     report.failures = report.failures + 1 if state == DEAD else 0
@@ -138,7 +145,8 @@ class Watcher:
                     if ends is not None:
                         if with_counts:
                             report.sent_before = {
-                                (one.topic, one.peer): one.messages or 0 for one in report.outbound
+                                (connection.topic, connection.peer): connection.messages or 0
+                                for connection in report.outbound
                             }
                         report.outbound, report.inbound = ends
         finally:
@@ -153,13 +161,19 @@ class Watcher:
         if not with_counts:
             # Who is connected is always new, the counts are those of before.
             with self.lock:
-                before = self.seen.reports.get(node, NodeReport())
-                known = {(one.topic, one.peer): one for one in before.outbound + before.inbound}
+                before = self.observation.reports.get(node, NodeReport())
+                known = {
+                    (connection.topic, connection.peer): connection
+                    for connection in before.outbound + before.inbound
+                }
             return (
                 ALIVE,
                 "",
                 tuple(
-                    [known.get((one.topic, one.peer), one) for one in side]
+                    [
+                        known.get((connection.topic, connection.peer), connection)
+                        for connection in side
+                    ]
                     for side in reports.ends(info, [])
                 ),
             )
