@@ -7,6 +7,7 @@ import re
 import shutil
 
 import pytest
+import test_summary
 from front_door import make, with_other_python
 from mrp_testing import compiler_cache
 from mrp_testing.workspace import ROOT, copy_repository
@@ -60,13 +61,12 @@ def test_run_builds_the_tutorial_and_a_whole_workspace_stays_whole(copy):
 
 
 def replace_tests(copy, text):
-    """Replace the workspace's tests by one file, or by none; the packages' tests are left out."""
+    """Replace the workspace's tests by one file, and run it; the packages' tests are left out."""
     tests = copy / "catkin_ws/tests"
     shutil.rmtree(tests)
     tests.mkdir()
     (tests / "rostests.txt").write_text("")
-    if text:
-        (tests / "test_one.py").write_text(f"import pytest\n\n{text}")
+    (tests / "test_one.py").write_text(f"import pytest\n\n{text}")
     return make("test", root=copy)
 
 
@@ -76,16 +76,19 @@ def test_a_failing_test_fails_make_test(copy):
     assert "0 passed, 1 failed\n" in done.stdout
 
 
-def test_no_test_at_all_fails_make_test(copy):
-    done = replace_tests(copy, None)
-    assert done.returncode == 2, done.stdout
-    assert "no test ran\n0 passed, 0 failed\n" in done.stdout
-
-
-def test_a_skipped_test_fails_make_test(copy):
-    done = replace_tests(copy, "@pytest.mark.quick\ndef test_one():\n    pytest.skip('why')\n")
-    assert done.returncode == 2, done.stdout
-    assert "0 passed, 0 failed, 1 skipped\n" in done.stdout
+@pytest.mark.quick
+@pytest.mark.parametrize(
+    ("case", "code", "says"),
+    [
+        ("<testcase name='a'/>", 0, "1 passed, 0 failed\n"),
+        ("<testcase name='a'><skipped/></testcase>", 1, "0 passed, 0 failed, 1 skipped\n"),
+        ("", 1, "no test ran\n0 passed, 0 failed\n"),
+    ],
+)
+def test_a_skipped_test_or_none_is_a_failure(case, code, says, tmp_path, capsys):
+    (tmp_path / "pytest.xml").write_text(f"<testsuite>{case}</testsuite>")
+    assert test_summary.main(tmp_path) == code
+    assert capsys.readouterr().out.endswith(says)
 
 
 def test_a_passing_test_passes_make_test(copy):

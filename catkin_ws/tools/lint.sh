@@ -43,7 +43,18 @@ check "vulture" $tools/vulture catkin_ws/src/mrp_check/{src,scripts} \
   --ignore-names '*Handler,ignore_unset_args,cpu,open_files,file_size,erratum,fails,says,finds,tells,missed,why,ttimeoutlen,supported'
 check "mypy" $tools/mypy --no-error-summary --cache-dir $lint/mypy --config-file catkin_ws/pyproject.toml \
   --package mrp_check
-check "clangd and pyright" catkin_ws/tools/check_editor.py
+# The nodes as an editor sees them: without an error, and with one if a message's field is misspelt.
+nodes=catkin_ws/src/mrp/src
+wrong=catkin_ws/build/wrong_field
+sed 's/msg\.data/msg.daat/' $nodes/publisher_cpp_node.cpp > $wrong.cpp
+sed 's/msg\.data/msg.daat/' $nodes/publisher_py_node.py > $wrong.py
+pyright=("$tools/node" "$lint/node_modules/pyright/index.js" --project catkin_ws)
+for node in "$nodes"/*.cpp; do
+  check "clangd, $(basename "$node")" clangd --log=error --check="$node"
+done
+check "clangd knows the fields" grep --quiet daat <(clangd --log=error --check=$wrong.cpp 2>&1)
+check "pyright" "${pyright[@]}" $nodes/*.py
+check "pyright knows the fields" grep --quiet 'attribute "daat"' <("${pyright[@]}" $wrong.py)
 check "SARIF" catkin_ws/tools/check_sarif.py
 check "eslint" $tools/node $lint/node_modules/.bin/eslint --max-warnings 0 \
   --config catkin_ws/tools/eslint.config.mjs "${javascript[@]}"
