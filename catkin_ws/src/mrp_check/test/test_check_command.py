@@ -4,6 +4,7 @@
 import json
 import os
 import re
+import shutil
 import subprocess
 
 import pytest
@@ -15,10 +16,10 @@ pytestmark = pytest.mark.quick
 CHECK = WORKSPACE / "src" / "mrp_check" / "scripts" / "check"
 
 
-def run(*arguments, cwd=None, **variables):
+def run(*arguments, cwd=None, program=CHECK, **variables):
     env = {**scratch.environment(), "PYTHONPATH": str(CHECK.parents[1] / "src"), **variables}
     return subprocess.run(
-        ["/usr/bin/python3", str(CHECK), *map(str, arguments)],
+        ["/usr/bin/python3", str(program), *map(str, arguments)],
         env={**env, "PYTHONDONTWRITEBYTECODE": "1"},
         cwd=cwd,
         capture_output=True,
@@ -66,6 +67,21 @@ def test_timing_shows_when_each_part_began():
     assert seconds == sorted(seconds)
 
 
+def test_mrp_check_finds_the_package_and_static_only_reads(tmp_path):
+    package = shutil.copytree(WORKSPACE / "src" / "mrp", tmp_path / "src" / "mrp")
+    node = package / "src" / "publisher_py_node.py"
+    node.write_text(node.read_text().replace("def main(", "def main"))
+    report = tmp_path / "report.json"
+    asked = (tmp_path, "--static", "--timing", "--json", report)
+    done = run(*asked, program=CHECK.with_name("mrp-check"))
+    data = json.loads(report.read_text())
+    found = [(one["id"], one["file"]) for one in data["findings"] if one["severity"] == "error"]
+    assert found == [("python-syntax", "src/publisher_py_node.py")], done.stdout
+    assert data["requirements"]["exit"] == "unchecked"
+    assert done.returncode == 1
+    assert "stage static" in done.stderr and "stage build" not in done.stderr
+
+
 def test_a_contract_replaces_no_file(tmp_path):
     contract = tmp_path / "mrp.yaml"
     contract.write_text("mine")
@@ -88,8 +104,9 @@ def test_wrong_option_is_exit_code_2():
         (("--class", "/no/such/folder"), "There is no folder /no/such/folder"),
         (("--class", "/", "--json", "x"), "--json goes without --class"),
         (("/", "--csv", "x"), "--csv goes with --class"),
+        (("--class", "/", "--spec", ""), "--class needs a contract"),
     ],
-    ids=range(3),
+    ids=range(4),
 )
 def test_what_cannot_be_done_with_a_class_is_exit_code_2(arguments, said):
     done = run(*arguments)

@@ -195,7 +195,9 @@ class Catkin:
         made = (f"{workspace.package.name}_{what}" for what in ("generate_messages", "gencfg"))
         first = [target for target in made if target in self.model.made]
         if first:
-            self._run(*make, *first)
+            result = self._run(*make, *first)
+        if workspace.static:
+            return self._step(result) if first else Step(True, "")
         result = self._run(*make)
         step = self._step(result)
         if result.ended_by is None:

@@ -66,6 +66,7 @@ OF_CLASS = {  # of the submissions, the contract, the folder of their pages, and
 }
 FLAGS = {  # what --help says of each
     "any": "check a package that has no contract: report what fails",
+    "static": "only read the files: neither compile the package nor run its nodes",
     "write_contract": "run a correct package, and write NAME.yaml: a contract for it, to be edited",
     "public": "leave the contract's hidden requirements out of the reports",
     "github": "print the findings as annotations of GitHub Actions, too",
@@ -74,20 +75,24 @@ FLAGS = {  # what --help says of each
 }
 
 
-def main(arguments=None):
-    """Check what the command line says, and exit: 0 no errors, 1 errors, 2 could not check."""
+def main(arguments=None, contract="pub_sub"):
+    """Check what the command line says, and exit: 0 no errors, 1 errors, 2 could not check.
+
+    contract: the one if the command line names none; None: check without a contract then
+    """
     # As with Ctrl-C, nothing is left behind then.
     signal.signal(signal.SIGTERM, signal.default_int_handler)
-    options = parser().parse_args(arguments)
+    options = parser(contract).parse_args(arguments)
+    options.any = options.any or not (options.spec or options.class_)
     try:
         sys.exit(run(options))
     except KeyboardInterrupt:
         sys.exit("check: stopped before its end; what it ran has ended, too.")
 
 
-def parser():
+def parser(contract="pub_sub"):
     parser = argparse.ArgumentParser(
-        prog="check",
+        prog="check" if contract else "mrp-check",
         description="Runs a package, against its contract or without, and says what is wrong.",
         epilog="exit code: 0 no errors; 1 errors; 2 it could not check",
     )
@@ -98,7 +103,7 @@ def parser():
     which = "check the package NAME where there are several"
     parser.add_argument("--package", default="", metavar="NAME", help=which)
     parser.add_argument(
-        "--spec", default="pub_sub", metavar="FILE", help="the contract (default: %(default)s)"
+        "--spec", default=contract, metavar="FILE", help="the contract (default: %(default)s)"
     )
     for option, (text, _) in {**OF_PACKAGE, **OF_CLASS}.items():
         parser.add_argument(f"--{option}", metavar="FILE", help=text)
@@ -158,6 +163,8 @@ def run(options):
                 raise CannotCheck(f"--{name} goes {needed} --class.")
         if options.gradescope and options.any:
             raise CannotCheck("--gradescope needs the points of a contract: leave out --any.")
+        if options.class_ and not options.spec:
+            raise CannotCheck("--class needs a contract: --spec FILE.")
         run_one = write_contract if options.write_contract else run_packages
         result = run_class(options) if options.class_ else run_one(options)
     except (PackageError, SpecError, CannotCheck, ClusterError, OSError) as error:
@@ -246,6 +253,7 @@ def run_packages(options):
     is_one = not path.is_dir() or options.package or (path / "package.xml").exists()
     paths = [] if is_one or not options.any else siblings.packages_in(path)
     if len(paths) < 2:
+        options.path = [*paths, options.path][0]
         return run_package(options)
     verdicts = []
     for number, one in enumerate(paths):
@@ -276,10 +284,17 @@ def run_package(options):
                 print(f"check: builds {one.name} with {package.name}.", file=sys.stderr)
             say_how_apart()
             kept = None
-            if scratch not in package.root.parents:  # what was unpacked is not there again
+            # What was unpacked is not there again, and a static check builds too little to keep.
+            if scratch not in package.root.parents and not options.static:
                 kept = stack.enter_context(kept_folder(marking.checker()))
             report = check.check(
-                package, contract, options.only, options.timeout, progress.show, kept
+                package,
+                contract,
+                options.only,
+                options.timeout,
+                progress.show,
+                kept,
+                static=options.static,
             )
             if options.timing:
                 progress.show("the end")

@@ -9,6 +9,7 @@ from typing import Any, Callable, Iterable, Iterator, Mapping
 from mrp_check.contract.finding import CERTAIN, READ, SEEN, Finding
 
 STAGES = ("files", "static", "build", "run", "stop")
+STATIC = STAGES[:2]  # nothing is built or run
 CONTRACT, ANY = "contract", "any"
 # How sure a rule of a stage is, unless it says otherwise.
 _SURE = {"files": CERTAIN, "static": READ, "build": SEEN, "run": SEEN, "stop": SEEN}

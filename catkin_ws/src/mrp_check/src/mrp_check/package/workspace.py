@@ -58,11 +58,13 @@ class Workspace:
     timeout: seconds that the whole check may take
     compiler_flags: what g++ is called with, in addition to the package's own flags
     stands_in: whether there are stubs of the packages that this machine has not
+    static: whether only its messages are built, which its sources import
     progress: called with a sentence that says what is being done
     """
 
     compiler_flags = ""
     stands_in = False
+    static = False
 
     def __init__(
         self,
