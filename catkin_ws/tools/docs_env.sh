@@ -6,19 +6,18 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-packages=(sphinx==8.2.3 furo==2025.12.19 sphinx-design==0.6.1 sphinx-copybutton==0.5.2
-  sphinx-inline-tabs==2023.4.21)
+locked=tools/locked/docs.txt
 env=${MRP_DOCS_ENV:-$PWD/build/docs_env}
 
-if [ "$(cat "$env/installed" 2> /dev/null)" != "${packages[*]}" ]; then
-  echo "Installing Sphinx and the theme of the pages from PyPI: 32 packages, about 15 MB to fetch" >&2
+if ! cmp --silent $locked "$env/installed"; then
+  echo "Installing Sphinx and the theme of the pages from PyPI: 37 packages, about 15 MB to fetch" >&2
   /usr/bin/python3 -m venv --clear "$env"
-  "$env/bin/pip" -qq --disable-pip-version-check install "${packages[@]}" >&2 || {
+  "$env/bin/pip" -qq --disable-pip-version-check install --require-hashes -r $locked >&2 || {
     echo "error: pip could not fetch them; its own message is above. The pages need a network once." >&2
     exit 1
   }
   # Debian's packages come last: the pages ask ROS for its defaults.
   echo /usr/lib/python3/dist-packages > "$(echo "$env"/lib/python3*/site-packages)/debian.pth"
-  echo "${packages[*]}" > "$env/installed"
+  cp $locked "$env/installed"
 fi
 echo "$env/bin/python"

