@@ -258,10 +258,20 @@ COMPOSE_MRP = $(COMPOSE) --project-name mrp --file docker/compose.yaml
 IMAGE_OF = COPYFILE_DISABLE=1 tar --create --exclude=.git --exclude=__pycache__ --exclude='*_cache' \
   --exclude=catkin_ws/build --exclude=catkin_ws/devel --exclude=catkin_ws/install \
   --exclude=catkin_ws/src/CMakeLists.txt . | \
-  docker build $(DOCKER_BUILD_OPTIONS) --build-arg DEBIAN=$(DEBIAN) --file docker/Dockerfile
+  docker build $(DOCKER_BUILD_OPTIONS) --build-arg DEBIAN=$(DEBIAN) --file docker/Dockerfile \
+  $(addprefix --label org.opencontainers.image.,$(LABELS))
 
-# The image in which the tests run, and with it the checker. What nobody trusts runs in a container of
-# it that has no network, hardly a right, and limits by the engine, too.
+# What an image says of itself.
+LABELS = licenses=BSD-3-Clause version=$(VERSION) revision=$(shell git rev-parse HEAD 2> /dev/null) \
+  source=$(REPOSITORY) url=$(WEBSITE)
+of_manifest = $(shell sed -n 's:.*<$(1)>\(.*\)</.*:\1:p' catkin_ws/src/mrp/package.xml)
+VERSION ?= $(call of_manifest,version)
+REPOSITORY ?= $(call of_manifest,url type="repository")
+WEBSITE ?= $(call of_manifest,url type="website")
+
+# The image in which the tests run, and the checker's. What nobody trusts runs in a container that has no
+# network, hardly a right, and limits by the engine, too.
+CHECK_IMAGE = $(IMAGE_OF) --target check --tag mrp-check:$(DEBIAN) -
 TEST_IMAGE = $(IMAGE_OF) --target test --tag mrp-test:$(DEBIAN) -
 IN_BOUNDS := docker run --rm --init --network none --hostname localhost \
   --cap-drop ALL $(addprefix --cap-add ,CHOWN DAC_OVERRIDE KILL SETGID SETUID) \
@@ -287,6 +297,10 @@ docker-build-ssh: docker-build  ## build the image for docker/several_hosts/remo
 .PHONY: docker-build-view
 docker-build-view: docker-build
 	$(IMAGE_OF) --target view --tag mrp-view:$(DEBIAN) -
+
+.PHONY: docker-build-check
+docker-build-check: need-docker  ## build the image that checks any package: docker run --rm -v $$PWD:/pkg mrp-check:trixie /pkg
+	$(CHECK_IMAGE)
 
 .PHONY: docker-build-class
 docker-build-class: need-docker  ## build the image for docker/class.yaml, which checks a class
@@ -336,10 +350,8 @@ docker-harm: need-docker
 docker-check: need-docker  ## check the package at PKG in a container without a network
 	@test -e "$(PKG)/package.xml" || { \
 	  echo "error: expected PKG=PATH, the folder of a package; '$(PKG)' has no package.xml" >&2; exit 2; }
-	$(TEST_IMAGE)
-	@$(IN_BOUNDS) --volume "$(abspath $(PKG)):/package:ro" \
-	  --env PYTHONPATH=catkin_ws/src/mrp_check/src mrp-test:$(DEBIAN) \
-	  /usr/bin/python3 catkin_ws/src/mrp_check/scripts/check /package
+	$(CHECK_IMAGE)
+	@$(IN_BOUNDS) --volume "$(abspath $(PKG)):/package:ro" mrp-check:$(DEBIAN) --spec pub_sub /package
 
 .PHONY: need-pytest
 need-pytest: need-docker
