@@ -362,7 +362,7 @@ TEST_CONTAINERS = MRP_TEST_ENGINE=yes /usr/bin/python3 -m pytest -n 4 --dist loa
   --junit-xml=$(DOCKER_RESULTS)/containers.xml
 
 .PHONY: docker-containers
-docker-containers: docker-build-ssh docker-build-class need-pytest
+docker-containers: docker-build-ssh docker-build-check docker-build-class need-pytest
 	@$(TEST_CONTAINERS) docker/test
 
 .PHONY: docker-image
