@@ -252,6 +252,9 @@ def test_results_of_rostest_and_pytest(results):
             <testcase classname="test_broken" name="test_broken_variant_fails[e05]"/>
             <testcase classname="test_broken" name="test_broken_variant_fails[e06]"><failure/>
             </testcase>
+            <testcase classname="test_lab" name="test_lab_shows_its_claim[latch]"/>
+            <testcase classname="test_lab" name="test_lab_shows_its_claim[latch_end]"><failure/>
+            </testcase>
             <testcase classname="a.test_a" name="test_b[1]"/>
             <testcase classname="a.test_a" name="test_b[2]"><skipped/></testcase>""",
         "bookworm/containers.xml": '<testcase classname="a.test_run" name="test_c@group"/>',
@@ -265,6 +268,8 @@ def test_results_of_rostest_and_pytest(results):
         "mrp/stop/test_b": "failed",
         "broken/e05": "passed",
         "broken/e06": "failed",
+        "lab/latch": "passed",
+        "lab/latch_end": "failed",
         "workspace/test_a/test_b": "skipped",
         "docker/test_run/test_c": "passed",
     }

@@ -6,6 +6,7 @@
                           folder test of a package
     docker/FILE/CASE      a test case of docker/test/FILE.py
     broken/NAME           the defect NAME.patch, which a rostest of the tutorial must find
+    lab/NAME              the lab NAME.launch, which must show what labs.yaml says
 
 A test in C++ proves nothing about Python. Nor does one in Python with _cpp in its name, such as
 test_publisher_cpp, or a defect of a C++ file. The same holds the other way round.
@@ -27,6 +28,7 @@ PASSED = pathlib.Path(__file__).resolve().parents[1] / "proofs" / "passed.csv"
 _FILES = {
     "broken": ["catkin_ws/src/mrp_check/defects/{}.patch"],
     "docker": ["docker/test/{}.py"],
+    "lab": ["catkin_ws/src/mrp_labs/launch/{}.launch"],
     "workspace": ["catkin_ws/tests/{}.py", "catkin_ws/src/*/test/{}.py"],
 }
 _CPP_CASE = re.compile(r"((?:^//.*\n)*)(^TEST(?:_F)?\(\w+, (\w+)\)\n(?:.*\n)*?^}\n)", re.MULTILINE)
@@ -37,7 +39,7 @@ class Case(NamedTuple):
     """A test case.
 
     language: "C++", "Python", or "" for both
-    says: its docstring or comment, or that of its file; of a defect, what it breaks
+    says: its docstring or comment, or that of its file; what a defect breaks, or a lab claims
     source: its code
     """
 
@@ -69,6 +71,8 @@ def in_file(path):
         languages = set(re.findall(r"^\+\+\+ b/\S+\.(cpp|py)$", text, re.MULTILINE))
         language = _LANGUAGES[languages.pop()] if len(languages) == 1 else ""
         return {path.stem: Case(path, 1, language, re.match("Breaks: (.*)", text)[1], text)}
+    if path.suffix == ".launch":
+        return {path.stem: Case(path, 1, "", re.match("<!-- (.*) -->", text)[1], text)}
     return dict((_cpp_cases if path.suffix == ".cpp" else _python_cases)(path, text))
 
 
@@ -103,6 +107,8 @@ def result(name):
         pattern, of_file = ("**/containers.xml" if kind == "docker" else "*.xml"), file
     if kind == "broken":
         of_file, case = "test_broken", f"test_broken_variant_fails[{file}]"
+    if kind == "lab":
+        of_file, case = "test_lab", f"test_lab_shows_its_claim[{file}]"
     ends = [
         (end, day)
         for place, case_name, end, day in ended(pattern)

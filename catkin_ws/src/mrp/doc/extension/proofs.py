@@ -63,7 +63,8 @@ def _box(app, number, claims):
         case = cases.find(name)
         if case is None:
             continue  # a fault of the ledger
-        language = {".py": "python", ".cpp": "cpp", ".patch": "diff"}[case.path.suffix]
+        languages = {".py": "python", ".cpp": "cpp", ".patch": "diff", ".launch": "xml"}
+        language = languages[case.path.suffix]
         parts.append(
             f"<p><strong>{name}</strong> {_ended(name)}<br>{html.escape(case.says)}</p>"
             f"<p>{case.path.relative_to(cases.ROOT)}, line {case.line}:</p>"
