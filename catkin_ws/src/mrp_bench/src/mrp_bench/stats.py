@@ -70,12 +70,6 @@ def median(values, seed=0):
     return Estimate(float(numpy.median(values)), float(low), float(high))
 
 
-def spread(rounds):
-    """Return how far the rounds' medians lie apart: the largest divided by the smallest."""
-    medians = [numpy.median(values) for values in rounds]
-    return float(max(medians) / min(medians))
-
-
 def ratio(rounds, reference_rounds, seed=0):
     """Return by how much the median of the first is that of the second, as an Estimate.
 
