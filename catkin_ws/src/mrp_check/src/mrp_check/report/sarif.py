@@ -27,6 +27,7 @@ def data(report):
     rules = [*report.requirements]
     run = {
         "tool": {"driver": {"name": "mrp_check", "rules": [_rule(id_) for id_ in rules]}},
+        "automationDetails": {"id": f"mrp_check/{report.package}/"},
         "columnKind": "unicodeCodePoints",
         "invocations": [_invocation(report)],
         "results": [_result(one, report, rules) for one in report.findings + report.suppressed],
