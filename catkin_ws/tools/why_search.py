@@ -83,7 +83,7 @@ _OTHERS = re.compile(
     r"|(?:dist|site)-packages/(?:django|flask|pandas|torch|tensorflow)/"
     r"|\b(?:systemd(?:-\w+)?\[|systemctl|journalctl|kubelet|kubectl|ansible|terraform)"
     r"|(?<![\w/.-])(?i:postgres\w*|psycopg\w*|mysql|mongodb?|redis|nginx|apache2?)(?![\w/])"
-    r"|[A-Z]:[/\\](?:Program|Users|Windows)",
+    r"|[A-Z]:[/\\](?:Program|Users|Windows)|^fatal: Could not |\berror: linker `",
     re.MULTILINE,
 )
 _ROS = re.compile(
@@ -125,11 +125,13 @@ _EVERYWHERE = re.compile(
     r"Traceback \(most recent call last\):|\.\.\. logging to .*|Checking log directory .*"
     r"|Press Ctrl-C to interrupt|Done checking log file .*|The traceback for the exception .*"
     r"|auto-starting new master|started (?:roslaunch server|core service) .*|ROS_MASTER_URI=.*"
-    r"|process\[.*\]: started with pid .*"
+    r"|process\[.*\]: started with pid .*|.*: In (?:\w+ )*(?:function|constructor) .*:"
 )
 # What begins a warning; indented lines below belong to it. That the standard of C++ is too old is a
 # cause, though g++ only warns.
-_WARNING = re.compile(r"\b(?:warning:(?!.* only available with )|\w*Warning\b|WARN(?:ING)?\b)")
+_WARNING = re.compile(
+    r"\b(?:warning:(?!.* only available with )|\w*Warning\b|WARN(?:ING)?\b|It's recommended)"
+)
 
 
 def mask(text):
@@ -210,7 +212,7 @@ class Index:
             if not answer.entry.above
             and not any(a.lines == answer.lines and a.score > 1.2 * answer.score for a in last)
         ]
-        return [*causes, *last][:count]
+        return [*causes[: count - len(last)], *last]
 
     def _answers(self, lines):
         """Return all answers, the best one first, and those to warnings last."""
@@ -262,7 +264,7 @@ def _text(text, **more):
     """Return the words of a text, with pairs of words, and the words of its names."""
     readable = _NO_MODULE.sub(r"No module named '\1'", text)
     readable = _ROS2.sub(f" {_OF_ROS2} ", readable)
-    readable = mask(_FOLDERS.sub(lambda match: " optros " if match[1] else " ", readable))
+    readable = mask(_FOLDERS.sub(lambda match: " optros " if match[1] else "", readable))
     names = {name.strip("'\"[]").lower() for name in _NAME.findall(readable)} - {""}
     names |= {name.partition(".")[0] for name in names}
     words = {_OF_ROS2} if _OF_ROS2 in readable else set()
