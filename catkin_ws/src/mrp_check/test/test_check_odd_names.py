@@ -10,8 +10,7 @@ import tarfile
 import check_rules
 import pytest
 from mrp_check import sandbox
-from mrp_check.classroom import alike, class_table, mail, moodle
-from mrp_check.classroom.fingerprints import Code
+from mrp_check.classroom import class_table, mail, moodle
 from mrp_check.cli import check as command
 from mrp_check.contract import spec
 from mrp_check.contract.finding import Finding
@@ -51,12 +50,11 @@ def test_a_report_takes_any_name_and_says_how_the_package_ran(option, tmp_path):
 @pytest.mark.quick
 @pytest.mark.parametrize("option", command.OF_CLASS)
 def test_a_class_s_table_takes_any_name(option, tmp_path):
-    path, code = tmp_path / option, Code(ODD, {ODD: ["x"]}, {1: (ODD, 1, 1)})
-    pair = alike.Pair(code, code, {1})
+    path = tmp_path / option
     one = dataclasses.replace(OF_CLASS, name=f"{ODD}_12_assignsubmission_file_")
-    command.write(path, command.OF_CLASS[option][1], [one], CONTRACT, tmp_path, [pair])
+    command.write(path, command.OF_CLASS[option][1], [one], CONTRACT, tmp_path)
     written = path.read_text(encoding="utf-8")
-    assert "gr" in written and (option == "alike" or REPORT.isolation in written)
+    assert "gr" in written and REPORT.isolation in written
 
 
 @pytest.mark.quick

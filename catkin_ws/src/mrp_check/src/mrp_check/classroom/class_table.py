@@ -134,11 +134,10 @@ def broken_in(submissions):
     return sorted([entry for entry in found if entry[1]], key=lambda entry: -len(entry[1]))
 
 
-def html_text(submissions, spec, pages, pairs=()):
+def html_text(submissions, spec, pages):
     """Return one page with a table of all submissions.
 
     pages: the folder of the submissions' own pages; the table links to them
-    pairs: of submissions that are alike
     """
 
     def page_of(one):
@@ -158,7 +157,6 @@ def html_text(submissions, spec, pages, pairs=()):
         has_moved=any(one.moved for one in submissions),
         since=since(submissions, spec),
         isolations=isolations(submissions),
-        pairs=pairs,
     )
 
 

@@ -12,7 +12,6 @@ import time
 
 from mrp_check import sandbox
 from mrp_check.classroom import (
-    alike,
     by_hand,
     class_table,
     classroom,
@@ -49,19 +48,15 @@ OF_PACKAGE = {  # of the report and the contract
         lambda report, _: html.text(report),
     ),
 }
-OF_CLASS = {  # of the submissions, the contract, the folder of their pages, and who are alike
+OF_CLASS = {  # of the submissions, the contract, and the folder of their pages
     "html": (OF_PACKAGE["html"][0], class_table.html_text),
     "csv": (
         "with --class: write the table as CSV",
-        lambda checked, contract, *_: class_table.csv_text(checked, contract),
+        lambda checked, contract, _: class_table.csv_text(checked, contract),
     ),
     "moodle": (
         "with --class: write Moodle's grading worksheet, and beside it a zip of feedback files",
-        lambda checked, contract, *_: moodle.text(checked, contract),
-    ),
-    "alike": (
-        "with --class: write as CSV which submissions are alike; --html shows them, too",
-        lambda checked, contract, _, pairs: alike.csv_text(pairs),
+        lambda checked, contract, _: moodle.text(checked, contract),
     ),
 }
 FLAGS = {  # what --help says of each
@@ -126,8 +121,6 @@ def parser(contract="pub_sub"):
 def _add_of_class(parser):
     set_ = "with --class: take late days, maxima and overrides of students' points from this CSV"
     parser.add_argument("--by-hand", metavar="FILE", help=set_)
-    given = "with --alike: a package that all students were given, of which nothing counts"
-    parser.add_argument("--template", metavar="PATH", action="append", default=[], help=given)
     since = "with --class: show what has changed since an earlier hand-in, whose DIR.checked it is"
     parser.add_argument("--before", metavar="FOLDER", help=since)
     number = (
@@ -154,7 +147,7 @@ def _seconds(text):
 def run(options):
     """Check what the options say, write the reports, and return the exit code."""
     of_package = {*OF_PACKAGE, *FLAGS, "only"} - {*OF_CLASS}
-    of_class = {*OF_CLASS, "by_hand", "template", "before", "scheduler"} - {*OF_PACKAGE}
+    of_class = {*OF_CLASS, "by_hand", "before", "scheduler"} - {*OF_PACKAGE}
     try:
         for name in sorted(of_package if options.class_ else of_class):
             if getattr(options, name):
@@ -200,9 +193,6 @@ def run_class(options):
         points = class_table.most(contract)
         set_ = by_hand.read(options.by_hand, names, points, contract.late)
     earlier = moved.before(options.before) if options.before else None
-    pairs = []
-    if options.alike:
-        pairs = alike.pairs_in(room.entries, options.package, options.template)
     try:
         with cluster.reached(options.scheduler, progress.show) as machines:
             say_how_apart(machines)
@@ -215,12 +205,12 @@ def run_class(options):
     if earlier:
         moved.since(earlier, checked)
     for name, (_, text) in OF_CLASS.items():
-        write(getattr(options, name), text, checked, contract, room.results, pairs)
+        write(getattr(options, name), text, checked, contract, room.results)
     for sentence in mail.write(room.results, checked, contract):
         print(f"check: {sentence}", file=sys.stderr)
     if options.moodle:
         write_pages(options.moodle, checked, contract)
-    print("\n".join(filter(None, [class_table.text(checked, contract), alike.text(pairs)])))
+    print(class_table.text(checked, contract))
     all_met = all(one.report["verdict"] == MET for one in checked)
     return MET if all_met else FINDINGS
 

@@ -29,6 +29,16 @@ from mrp_check.sandbox.scratch import scratch_folder
 from mrp_check.verdict import causes, suppression
 from mrp_check.verdict.severity import severity, weigh
 
+# A need of a rule -> what works it out.
+_KNOWN: dict[str, typing.Callable[[Case], object]] = {
+    "manifest": lambda case: case.manifest,
+    "model": lambda case: case.model,
+    "launch": lambda case: case.launch,
+    "facts": lambda case: case.facts,
+    "built": lambda case: case.built,
+    "nodes": lambda case: case.nodes,
+}
+
 
 def check(
     package: Package,
@@ -63,7 +73,8 @@ def check(
     uses.SIBLINGS.clear()
     uses.SIBLINGS.update(one.name for one in package.siblings)
     with contextlib.nullcontext(kept) if kept else scratch_folder() as folder:
-        case = (Case if spec else AnyCase)(package, spec, folder, timeout, progress)
+        given = package, spec, folder, timeout, progress
+        case = Case(*given) if spec else AnyCase(*given)
         case.static = static
         if isinstance(case, AnyCase) and write:
             case.enough = ENOUGH
@@ -124,7 +135,7 @@ class _Examination:
         for one in closure({need}) & {*self.lost}:
             raise self.lost[one]
         try:
-            getattr(self.case, need)
+            _KNOWN[need](self.case)
         except Exception as error:
             self.lost[need] = error
             raise
