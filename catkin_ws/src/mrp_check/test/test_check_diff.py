@@ -5,7 +5,7 @@ import subprocess
 
 import check_rules
 import pytest
-from mrp_check.report import diff
+from mrp_check.verdict import diff
 from test_check_python import replaced
 
 pytestmark = pytest.mark.quick

@@ -56,6 +56,26 @@ def test_texts_on_a_number_topic_are_found_and_no_fault_of_the_checker(tmp_path)
     }
 
 
+# What a subscriber does with a message -> what the checker says of it. The other defects that a run
+# shows are patches.
+_LOG = 'rospy.loginfo("[NODE] received %d", message.data)'
+_HEARD = {
+    "right": (_LOG, None),
+    "none": ("pass", "logs none of them"),
+    "twice": (f"{_LOG}; {_LOG}", "2 times"),
+}
+
+
+def test_each_received_value_is_logged_once(tmp_path):
+    changes = {name: (_LOG, new) for name, (new, _) in _HEARD.items()}
+    folder = make_package(tmp_path / "lab_pkg", {}, changes)
+    found = findings_of(folder, spec_of({}, changes), tmp_path / "scratch")
+    for name, (_, says) in _HEARD.items():
+        of_node = [f for f in found if f.node == f"subscriber_{name}" and f.severity != NOTE]
+        assert bool(of_node) == bool(says), of_node
+        assert not says or any(f.id == "received" and says in f.message for f in of_node)
+
+
 def test_a_fault_of_the_observer_is_no_finding(tmp_path, monkeypatch):
     folder = make_package(tmp_path / "lab_pkg", {"right": ("", "")}, {})
     monkeypatch.setattr(planning, "ENOUGH_LAUNCHED", 0.5)
