@@ -12,6 +12,7 @@ import typing
 
 from mrp_check import sandbox
 from mrp_check.build.catkin import missing_tool
+from mrp_check.case import new_contract
 from mrp_check.case.any_case import AnyCase
 from mrp_check.case.case import Case
 from mrp_check.code import python_modules, uses
@@ -21,12 +22,11 @@ from mrp_check.contract.requirements import ANY, CONTRACT, STATIC, closure
 from mrp_check.contract.spec import MORE, Spec
 from mrp_check.contract.verdict import BROKEN, FINDINGS, MET, UNCHECKED, Report
 from mrp_check.package.package import Package
-from mrp_check.report import contract, diff
 from mrp_check.rules import REQUIREMENTS, RULES
 from mrp_check.run.planning import ENOUGH
 from mrp_check.sandbox import confine
 from mrp_check.sandbox.scratch import scratch_folder
-from mrp_check.verdict import causes, suppression
+from mrp_check.verdict import causes, diff, suppression
 from mrp_check.verdict.severity import severity, weigh
 
 # A need of a rule -> what works it out.
@@ -81,7 +81,7 @@ def check(
         try:
             report = _Examination(case, rules, ids, asked, early, static).report()
             if isinstance(case, AnyCase) and write and report.verdict == MET:
-                write(contract.text(case))
+                write(new_contract.text(case))
         except BaseException:  # such as Ctrl-C
             confine.stop()
             raise
