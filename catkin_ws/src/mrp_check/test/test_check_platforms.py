@@ -216,9 +216,11 @@ def test_what_cannot_be_checked_has_a_score_of_0_and_one_sentence(make, says, tm
     assert found["output"].count("\n") == 0
 
 
-def test_points_need_a_contract():
-    with pytest.raises(check_command.CannotCheck, match="--any"):
-        gradescope.text(report(), None)
+def test_points_need_a_contract(tmp_path, capsys):
+    with pytest.raises(SystemExit):
+        check_command.main(["--any", "--gradescope", str(tmp_path / "results.json"), str(tmp_path)])
+    assert "--gradescope needs the points of a contract" in capsys.readouterr().err
+    assert not (tmp_path / "results.json").exists()
 
 
 CLASS = [
