@@ -178,7 +178,7 @@ def test_a_hidden_requirement_that_a_comment_suppresses_is_not_named(kind):
 def test_public_leaves_hidden_requirements_out(tmp_path, monkeypatch, capsys):
     contract, file = tmp_path / "contract.yaml", tmp_path / "report.json"
     contract.write_text(spec.find("pub_sub").read_text() + "hidden: [spin]\n")
-    monkeypatch.setattr(check_command.check, "check", lambda *_: report(SPIN))
+    monkeypatch.setattr(check_command.check, "check", lambda *_, **__: report(SPIN))
     options = ["--spec", str(contract), "--json", str(file), str(hand_in(tmp_path, "anna"))]
     for option, code, ids in (([], 1, {"spin"}), (["--public"], 0, set())):
         with pytest.raises(SystemExit) as end:
