@@ -80,9 +80,9 @@ _OTHERS = re.compile(
     r"|docker-ce|/lib/modules/|\bfixture '"
     r"|\b(?:npm|yarn|node_modules|webpack|java|gradle|maven|cargo|rustc|PHP|ENOENT|CUDA|pytest)\b"
     r"|\b(?:django|flask|pandas|tensorflow|jinja2|sqlalchemy|selenium|requests\.exceptions)\."
-    r"|(?:dist|site)-packages/(?:django|flask|pandas|torch|tensorflow)/"
+    r"|(?:dist|site)-packages/(?!numpy|cv2|yaml|serial|setuptools|pkg_resources|matplotlib|tf|gen)"
     r"|\b(?:systemd(?:-\w+)?\[|systemctl|journalctl|kubelet|kubectl|ansible|terraform)"
-    r"|(?<![\w/.-])(?i:postgres\w*|psycopg\w*|mysql|mongodb?|redis|nginx|apache2?)(?![\w/])"
+    r"|(?<![\w/.-])(?i:postgres\w*|psycopg\w*|mysql|mongodb?|redis|amqp|nginx|apache2?)(?![\w/])"
     r"|[A-Z]:[/\\](?:Program|Users|Windows)|^fatal: Could not |\berror: linker `",
     re.MULTILINE,
 )
@@ -108,6 +108,7 @@ _RARE, _CANDIDATES = 80, 60  # texts of entries
 _TOGETHER = 2  # lines: messages are broken into that many
 _LONG = 2000  # characters: a line is cut there
 _MANY = 500  # lines: of a longer text, only those around an error are searched
+_AT_EACH_END = 10_000  # lines with an error, at each end of a very long text
 _NO_DIGITS = dict.fromkeys(map(ord, "0123456789"))
 _PROBLEMS = ("rror", "RROR", "xception", "ail", "atal", "FATAL", "arning", "WARN", "not ", "died")
 # The last lines of roslaunch, make and catkin: the cause is above them. A negative exit code, or
@@ -278,10 +279,10 @@ def _text(text, **more):
 def _near_problems(lines):
     """Return the lines of a text; of a very long one, those with an error and those around them."""
     if len(lines) > _MANY:
+        problems = [at for at, line in enumerate(lines) if any(word in line for word in _PROBLEMS)]
         first = {}
-        for at, line in enumerate(lines):
-            if any(word in line for word in _PROBLEMS):
-                first.setdefault(line[:_LONG].translate(_NO_DIGITS), at)
+        for at in [*problems[:_AT_EACH_END], *problems[-_AT_EACH_END:]]:
+            first.setdefault(lines[at][:_LONG].translate(_NO_DIGITS), at)
         ats = [*first.values()]
         ats = sorted({*ats[: _MANY // 2], *ats[-_MANY // 2 :]})
         around = sorted({near for at in ats for near in range(max(at - 2, 0), at + 3)})
