@@ -229,6 +229,15 @@ deb: packages-deb  ## make Debian packages of the four nodes (mrp) and of the ch
 	@$(IN_ENVIRONMENT) catkin_ws/tools/make_debs.sh catkin_ws/build/debs
 	@echo "Install one with: apt install ./catkin_ws/build/debs/NAME.deb"
 
+# The addresses go into each package.xml, from where images, pages and reports take them.
+.PHONY: release
+release: packages-lint  ## tag VERSION=1.2.3 of all packages, to be published by REPOSITORY=https://github.com/OWNER/NAME
+	@catkin_ws/tools/release.py "$(VERSION)" "$(REPOSITORY)" $(WEBSITE)
+
+.PHONY: release-check
+release-check: packages-lint  ## list what a release still lacks
+	@catkin_ws/tools/release.py --check
+
 .PHONY: doctor
 doctor:  ## find what keeps the tutorial from running on this machine
 	@test -x /usr/bin/python3 || { echo "[FAIL] expected /usr/bin/python3; there is none"; \
