@@ -308,7 +308,7 @@ docker-build-view: docker-build
 	$(IMAGE_OF) --target view --tag mrp-view:$(DEBIAN) -
 
 .PHONY: docker-build-check
-docker-build-check: need-docker  ## build the image that checks any package: docker run --rm -v $$PWD:/pkg mrp-check:trixie /pkg
+docker-build-check: need-docker  ## build the image that checks any package: docker run --rm -v $PWD:/pkg mrp-check:trixie /pkg
 	$(CHECK_IMAGE)
 
 .PHONY: docker-build-class
