@@ -61,7 +61,7 @@ def test_every_link_of_the_viewer_leads_somewhere(site):
 def test_no_page_has_an_id_twice(site):
     for path in site.rglob("*.html"):
         ids = Page(path).ids
-        assert {one for one in ids if ids.count(one) > 1} == set(), path.name
+        assert {id_ for id_ in ids if ids.count(id_) > 1} == set(), path.name
 
 
 @pytest.mark.quick

@@ -39,7 +39,7 @@ def test_each_item_has_one_right_answer_and_says_why_to_each(package):
             continue
         (right,) = [one.text for one in item.iter(f"{QTI}value")]
         choices = list(item.iter(f"{QTI}simpleChoice"))
-        identifiers = [one.get("identifier") for one in choices]
+        identifiers = [choice.get("identifier") for choice in choices]
         assert right in identifiers and len(set(identifiers)) == len(choices) > 1, name
         for choice in choices:
             feedback = choice.find(f"{QTI}feedbackInline")

@@ -36,7 +36,9 @@ from mrp_testing.workspace import ROOT, WORKSPACE
 pytestmark = pytest.mark.slow
 
 ENTRIES = why_entries.entries()
-HERE = [one for one in ENTRIES if one.needs != "docker"]  # the others: docker/test/test_why.py
+HERE = [
+    entry for entry in ENTRIES if entry.needs != "docker"
+]  # the others: docker/test/test_why.py
 THREADS = [
     (head.split(" or "), text.strip())
     for head, text in re.findall(
@@ -158,7 +160,9 @@ def missing(entry, process):
     else it prints may come between those of an error."""
     printed = [why_search.mask(" ".join(list(lines))) for lines in (process.lines, process.errors)]
     expected = [line for text in entry.shows for line in why_entries.shown_on(text, RELEASE)]
-    return [line for line in expected if not any(why_search.mask(line) in one for one in printed)]
+    return [
+        line for line in expected if not any(why_search.mask(line) in output for output in printed)
+    ]
 
 
 def parameters():
@@ -211,7 +215,7 @@ def index():
 
 
 def names(index, text):
-    return [one.entry.name for one in index.nearest(text)]
+    return [found.entry.name for found in index.nearest(text)]
 
 
 @pytest.mark.parametrize("entry", ENTRIES, ids=lambda entry: entry.name)

@@ -62,7 +62,7 @@ def test_the_arrow_keys_show_the_next_tab_everywhere(page, browser):
 def test_the_choice_is_remembered_on_the_next_page(browser, addresses):
     for name in ("C++", "Python"):
         open_still(browser, addresses["served"] + "pages/publisher.html")
-        label = next(one for one in browser.find(".tab-label") if one.text == name)
+        label = next(label for label in browser.find(".tab-label") if label.text == name)
         label.click()
         browser.open(addresses["served"] + "pages/subscriber.html")
         assert_chosen_everywhere(browser, name)

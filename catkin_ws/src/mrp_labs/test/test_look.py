@@ -101,7 +101,11 @@ class TestLook(unittest.TestCase):
             self.assertIn(f"* topic: {TOPIC}\n* to: {one}\n* direction: inbound", text)
         self.check_topics(*of_topics)
         # The port at which a C++ node is called listens to all machines, that of a Python one not.
-        listening = [one.split()[1] for one in open("/proc/net/tcp") if one.split()[3] == "0A"]
+        listening = [
+            connection.split()[1]
+            for connection in open("/proc/net/tcp")
+            if connection.split()[3] == "0A"
+        ]
         for one, address in zip(PUBLISHERS, ("00000000", "0100007F")):
             port = urllib.parse.urlparse(rosgraph.Master("/test_look").lookupNode(one)).port
             self.assertIn(f"{address}:{port:04X}", listening, one)

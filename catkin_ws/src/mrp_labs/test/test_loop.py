@@ -89,7 +89,7 @@ class TestLoop(unittest.TestCase):
 def times(lab, node):
     """Return when a node published the messages 1, 2, 3, ... by the clock of the nodes."""
     logged = filter(None, map(log_line.parse, list(lab.lines)))
-    found = [one for one in logged if one.text.startswith(f"{node} published ")]
+    found = [line for line in logged if line.text.startswith(f"{node} published ")]
     values = [int(line.text.split()[-1]) for line in found]
     assert values == list(range(1, len(values) + 1)), f"{node}: {values}"
     return [line.simulated or 0 for line in found]

@@ -53,7 +53,7 @@ class TestLaunched(unittest.TestCase):
                     cls.console.wait_for(lambda: cls.has(f"/{wrong}: param"), "what is wrong")
                 cls.nodes = cls.tutorial()
                 assert cls.console.stop() == 0, str(cls.console)
-            cls.logged = "\n".join(one.read_text() for one in path.rglob("*-stdout.log"))
+            cls.logged = "\n".join(path_.read_text() for path_ in path.rglob("*-stdout.log"))
 
     @staticmethod
     def tutorial():

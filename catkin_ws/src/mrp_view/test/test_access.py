@@ -57,7 +57,7 @@ HERE = ("localhost:8765", "127.0.0.1:8765", "[::1]:8765")
 @pytest.mark.parametrize("host", [NAME, NAME.upper(), f"{NAME}:443", *HERE])
 def test_origin_where_a_port_is_forwarded(host):
     """One of the two headers may be rewritten on the way, and nothing else is let in."""
-    for origin in (f"https://{NAME}", f"http://{NAME}:8765", *("http://" + one for one in HERE)):
+    for origin in (f"https://{NAME}", f"http://{NAME}:8765", *("http://" + host for host in HERE)):
         assert access.allowed_origin(origin, host, [NAME]), origin
     other_port = (
         "http://localhost:1234"  # another page of this machine, or the forwarder's own port

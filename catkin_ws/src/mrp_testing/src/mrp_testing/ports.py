@@ -34,9 +34,9 @@ def listening(port):
 def ports_of(pid):
     """Return the ports at which a process listens, sorted."""
     files = []
-    for one in pathlib.Path(f"/proc/{pid}/fd").iterdir():
+    for descriptor in pathlib.Path(f"/proc/{pid}/fd").iterdir():
         with contextlib.suppress(FileNotFoundError):  # the process has closed it just now
-            files.append(os.readlink(one))
+            files.append(os.readlink(descriptor))
     return sorted({number for _, number, inode in _listeners() if f"socket:[{inode}]" in files})
 
 

@@ -44,7 +44,7 @@ def allowed_host(host, listens_on, names=()):
     nobody can make that lead elsewhere; and the names that the user has allowed.
     """
     name = host_name(host)
-    if is_loopback(name) or (name and name in {one.lower() for one in names}):
+    if is_loopback(name) or (name and name in {known.lower() for known in names}):
         return True
     if is_loopback(listens_on):
         return False

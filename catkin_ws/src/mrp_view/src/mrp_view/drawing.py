@@ -82,7 +82,7 @@ class Structure:
 
     def _boxes(self, tree, lines):
         lines += tree.get(None, [])
-        for group in sorted(one for one in tree if one is not None):
+        for group in sorted(name for name in tree if name is not None):
             # The label only takes up room: it has as many letters as the name.
             lines.append(
                 f'subgraph cluster{len(self._groups)} {{ label="{"n" * len(group)}" margin=10'

@@ -33,15 +33,15 @@ def visible(graph, options):
         )
         return topic not in hidden_topics and node not in hidden_nodes
 
-    edges = [one for one in graph["edges"] if shown(one)]
-    on_edges = {name for one in edges for name in (one["from"], one["to"])}
+    edges = [edge for edge in graph["edges"] if shown(edge)]
+    on_edges = {name for edge in edges for name in (edge["from"], edge["to"])}
     return {
-        "nodes": [one for one in graph["nodes"] if one["name"] not in hidden_nodes],
+        "nodes": [node for node in graph["nodes"] if node["name"] not in hidden_nodes],
         # A topic on which is nobody but the viewer is hidden with it.
         "topics": [
-            one
-            for one in graph["topics"]
-            if one["name"] in on_edges and one["name"] not in hidden_topics
+            topic
+            for topic in graph["topics"]
+            if topic["name"] in on_edges and topic["name"] not in hidden_topics
         ],
         "edges": edges,
         "links": [

@@ -195,13 +195,14 @@ def build(observation):
     topics = []
     for name in sorted({*observation.publishers, *observation.subscribers}):
         sent = {
-            observation.sender_types[name, one]
-            for one in observation.publishers.get(name, [])
-            if (name, one) in observation.sender_types
+            observation.sender_types[name, publisher]
+            for publisher in observation.publishers.get(name, [])
+            if (name, publisher) in observation.sender_types
         }
         types = sorted(sent or {observation.types.get(name, "type unknown")})
         latched = any(
-            (name, one) in observation.latched for one in observation.publishers.get(name, [])
+            (name, publisher) in observation.latched
+            for publisher in observation.publishers.get(name, [])
         )
         label = (
             types[0]
@@ -235,9 +236,9 @@ def _edges(observation, links):
     for topic, subscribers in sorted(observation.subscribers.items()):
         for subscriber in subscribers:
             worst = [
-                one
-                for one in of_subscriber[topic, subscriber]
-                if one["state"] in ("mismatch", "none")
+                link
+                for link in of_subscriber[topic, subscriber]
+                if link["state"] in ("mismatch", "none")
             ]
             edges.append(_edge(observation, topic, subscriber, subscriber, False, worst))
     return edges

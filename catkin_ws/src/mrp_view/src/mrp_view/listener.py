@@ -135,7 +135,7 @@ class Listener:
                 self._since.pop(topic, None)
         self._forget(others, now)
         self._known = {
-            (topic, one) for topic, names in observation.publishers.items() for one in names
+            (topic, known) for topic, names in observation.publishers.items() for known in names
         }
 
     def end(self):
