@@ -3,10 +3,10 @@
 
 export const byId = (id) => document.getElementById(id);
 
-function fill(one, attributes, children) {
-  for (const [name, value] of Object.entries(attributes)) one.setAttribute(name, value);
-  one.append(...children);
-  return one;
+function fill(element, attributes, children) {
+  for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, value);
+  element.append(...children);
+  return element;
 }
 
 export function html(tag, attributes = {}, ...children) {
@@ -25,8 +25,8 @@ export function setText(element, text) {
 // Has in a <select> these values, and keeps the one that is chosen.
 export function setOptions(select, values, first) {
   const wanted = first === undefined ? values : ["", ...values];
-  const had = [...select.options].map((one) => one.value);
-  if (had.length === wanted.length && had.every((one, index) => one === wanted[index])) return;
+  const had = [...select.options].map((option) => option.value);
+  if (had.length === wanted.length && had.every((value, index) => value === wanted[index])) return;
   const chosen = select.value;
   select.replaceChildren(...wanted.map((value) => html("option", { value }, value || first)));
   if (wanted.includes(chosen)) select.value = chosen;

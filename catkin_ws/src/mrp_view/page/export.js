@@ -19,11 +19,11 @@ function graphAsText() {
   if (!picture) return null;
   const copy = picture.cloneNode(true);
   const originals = picture.querySelectorAll("*");
-  copy.querySelectorAll("*").forEach((one, index) => {
+  copy.querySelectorAll("*").forEach((element, index) => {
     const style = getComputedStyle(originals[index]);
-    for (const name of COPIED) one.setAttribute(name, style.getPropertyValue(name));
-    one.removeAttribute("style");
-    one.removeAttribute("tabindex");
+    for (const name of COPIED) element.setAttribute(name, style.getPropertyValue(name));
+    element.removeAttribute("style");
+    element.removeAttribute("tabindex");
   });
   const { width, height } = picture.viewBox.baseVal;
   copy.removeAttribute("style");

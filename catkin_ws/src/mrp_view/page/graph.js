@@ -41,7 +41,7 @@ export class Graph {
     this.place.replaceChildren(picture);
     this.fit();
     for (const edge of this.edges.values()) edge.length = edge.path.getTotalLength();
-    const again = this.items.find((one) => one.dataset.key === focused);
+    const again = this.items.find((item) => item.dataset.key === focused);
     (again ?? this.items[0])?.setAttribute("tabindex", "0");
     again?.focus();
     this.placeBadges();
@@ -62,8 +62,8 @@ export class Graph {
       );
     }
     graph.edges.forEach((edge, index) => picture.append(this.edge(edge, layout.edges[index])));
-    for (const one of graph.topics) picture.append(this.topic(one, layout.topics[one.name]));
-    for (const one of graph.nodes) picture.append(this.node(one, layout.nodes[one.name]));
+    for (const topic of graph.topics) picture.append(this.topic(topic, layout.topics[topic.name]));
+    for (const node of graph.nodes) picture.append(this.node(node, layout.nodes[node.name]));
     // On top of all edges.
     for (const { badge } of this.edges.values()) picture.append(badge);
     this.front = svg("g", { "aria-hidden": "true" });
@@ -82,53 +82,53 @@ export class Graph {
   }
 
   item(key, label, detail, ...children) {
-    const one = svg("g", { class: "item", tabindex: "-1", role: "img", "aria-label": label }, ...children);
-    one.dataset.key = key;
+    const item = svg("g", { class: "item", tabindex: "-1", role: "img", "aria-label": label }, ...children);
+    item.dataset.key = key;
     const show = () => setText(byId("detail"), detail);
-    one.addEventListener("focus", show);
-    one.addEventListener("click", () => {
-      this.focus(one);
+    item.addEventListener("focus", show);
+    item.addEventListener("click", () => {
+      this.focus(item);
       show();
     });
-    this.items.push(one);
-    return one;
+    this.items.push(item);
+    return item;
   }
 
-  node(one, [x, y, width, height]) {
-    const state = STATES[one.state];
-    const detail = `Node ${one.name}: ${state ?? "alive"}.${one.why ? ` ${one.why}` : ""}`;
+  node(node, [x, y, width, height]) {
+    const state = STATES[node.state];
+    const detail = `Node ${node.name}: ${state ?? "alive"}.${node.why ? ` ${node.why}` : ""}`;
     const shape = svg("ellipse", { cx: x, cy: y, rx: width / 2, ry: height / 2 });
-    const text = svg("text", { x, y: y + (state ? -2 : 4) }, lastPart(one.name));
-    const group = this.item(`node ${one.name}`, detail, detail, shape, text);
-    group.classList.add("node", one.state);
+    const text = svg("text", { x, y: y + (state ? -2 : 4) }, lastPart(node.name));
+    const group = this.item(`node ${node.name}`, detail, detail, shape, text);
+    group.classList.add("node", node.state);
     if (state) group.append(svg("text", { class: "second", x, y: y + 13 }, state));
     return group;
   }
 
-  topic(one, [x, y, width, height]) {
-    const types = one.types.join(" or ") + (one.latched ? ", latched" : "");
-    const detail = `Topic ${one.name}: ${types}.`;
+  topic(topic, [x, y, width, height]) {
+    const types = topic.types.join(" or ") + (topic.latched ? ", latched" : "");
+    const detail = `Topic ${topic.name}: ${types}.`;
     const shape = svg("rect", { x: x - width / 2, y: y - height / 2, width, height });
     const group = this.item(
-      `topic ${one.name}`, detail, detail, shape,
-      svg("text", { x, y: y - 2 }, lastPart(one.name)),
-      svg("text", { class: "second", x, y: y + 13 }, one.label),
+      `topic ${topic.name}`, detail, detail, shape,
+      svg("text", { x, y: y - 2 }, lastPart(topic.name)),
+      svg("text", { class: "second", x, y: y + 13 }, topic.label),
     );
     group.classList.add("topic");
     return group;
   }
 
-  edge(one, d) {
-    const path = svg("path", { d, "marker-end": `url(#arrow-${one.state})` });
+  edge(edge, d) {
+    const path = svg("path", { d, "marker-end": `url(#arrow-${edge.state})` });
     const badge = svg("text", { class: "badge" });
-    const words = one.publishes ? `${one.from} publishes ${one.to}` : `${one.to} subscribes to ${one.from}`;
-    const reason = { mismatch: "The types differ", none: "Not connected", dead: "Dead" }[one.state];
-    const detail = `${words}.${reason ? ` ${reason}. ${one.why}` : ""}`;
-    const group = reason && one.state !== "dead" ? this.item(`edge ${one.from} ${one.to}`, detail, detail, path) : svg("g", {}, path);
-    group.classList.add("edge", one.state);
+    const words = edge.publishes ? `${edge.from} publishes ${edge.to}` : `${edge.to} subscribes to ${edge.from}`;
+    const reason = { mismatch: "The types differ", none: "Not connected", dead: "Dead" }[edge.state];
+    const detail = `${words}.${reason ? ` ${reason}. ${edge.why}` : ""}`;
+    const group = reason && edge.state !== "dead" ? this.item(`edge ${edge.from} ${edge.to}`, detail, detail, path) : svg("g", {}, path);
+    group.classList.add("edge", edge.state);
     group.append(svg("title", {}, detail));
-    const fault = { mismatch: "✗ other type", none: "? not connected" }[one.state] ?? "";
-    this.edges.set(`${one.publishes ? "p" : "s"} ${one.from} ${one.to}`, { path, badge, fault, group });
+    const fault = { mismatch: "✗ other type", none: "? not connected" }[edge.state] ?? "";
+    this.edges.set(`${edge.publishes ? "p" : "s"} ${edge.from} ${edge.to}`, { path, badge, fault, group });
     return group;
   }
 
@@ -142,10 +142,10 @@ export class Graph {
     this.focus(this.items[end ?? (now + step + this.items.length) % this.items.length]);
   }
 
-  focus(one) {
+  focus(item) {
     for (const other of this.items) other.setAttribute("tabindex", "-1");
-    one.setAttribute("tabindex", "0");
-    one.focus();
+    item.setAttribute("tabindex", "0");
+    item.focus();
   }
 
   // What the nodes have counted: at the edge where it happened.
@@ -155,11 +155,11 @@ export class Graph {
       if (text) this.counts.set(key, text);
     };
     const dropped = new Map();
-    for (const one of links) {
-      const key = `s ${one.topic} ${one.to}`;
+    for (const link of links) {
+      const key = `s ${link.topic} ${link.to}`;
       const sum = dropped.get(key) ?? { dropped: 0, missing: 0 };
-      sum.dropped += one.dropped ?? 0;
-      sum.missing += one.missing ?? 0;
+      sum.dropped += link.dropped ?? 0;
+      sum.missing += link.missing ?? 0;
       dropped.set(key, sum);
     }
     for (const [key, sum] of dropped) {
@@ -168,8 +168,8 @@ export class Graph {
       if (sum.missing) parts.push(`${sum.missing} dropped?`);
       add(key, parts.join(", "));
     }
-    for (const one of rows) {
-      if (one.missing?.[0]) add(`p ${one.from} ${one.topic}`, `${one.missing[0]} missing`);
+    for (const row of rows) {
+      if (row.missing?.[0]) add(`p ${row.from} ${row.topic}`, `${row.missing[0]} missing`);
     }
     this.placeBadges();
   }
@@ -193,7 +193,7 @@ export class Graph {
     if (document.hidden) return;
     const { colour } = styleOf(publisher);
     this.start(`p ${publisher} ${topic}`, colour, () => {
-      for (const one of subscribers) this.start(`s ${topic} ${one}`, colour);
+      for (const subscriber of subscribers) this.start(`s ${topic} ${subscriber}`, colour);
     });
   }
 

@@ -23,38 +23,38 @@ export class LogView {
     const down = this.place.scrollTop + this.place.clientHeight >= this.place.scrollHeight - 8;
     this.lines.push(...lines);
     const old = this.lines.splice(0, Math.max(0, this.lines.length - MOST));
-    for (const one of old) one.element?.remove();
-    for (const one of lines) this.append(one);
+    for (const line of old) line.element?.remove();
+    for (const line of lines) this.append(line);
     if (lines.length) {
-      setOptions(byId("log-node"), [...new Set(this.lines.map((one) => one.node))].sort(), "all");
+      setOptions(byId("log-node"), [...new Set(this.lines.map((line) => line.node))].sort(), "all");
       if (down) this.place.scrollTop = this.place.scrollHeight;
     }
     setText(byId("log-note"), `${count} lines since the viewer listens, ${this.lines.length} of them here.`);
   }
 
-  matches(one) {
+  matches(line) {
     const node = byId("log-node").value;
-    const level = LEVELS.indexOf(one.level);
-    return (!node || one.node === node) && (level < 0 || level >= LEVELS.indexOf(byId("log-level").value));
+    const level = LEVELS.indexOf(line.level);
+    return (!node || line.node === node) && (level < 0 || level >= LEVELS.indexOf(byId("log-level").value));
   }
 
-  append(one) {
-    if (!this.matches(one)) return;
-    const time = new Date(one.t * 1000).toTimeString().slice(0, 8);
-    one.element = html(
+  append(line) {
+    if (!this.matches(line)) return;
+    const time = new Date(line.t * 1000).toTimeString().slice(0, 8);
+    line.element = html(
       "p",
-      { class: `log-line ${LEVELS.includes(one.level) ? one.level : ""}` },
+      { class: `log-line ${LEVELS.includes(line.level) ? line.level : ""}` },
       html("span", { class: "time" }, time), " ",
-      html("span", { class: "level" }, one.level), " ",
-      html("span", { class: "from" }, one.node), " ",
-      one.text,
+      html("span", { class: "level" }, line.level), " ",
+      html("span", { class: "from" }, line.node), " ",
+      line.text,
     );
-    this.place.append(one.element);
+    this.place.append(line.element);
   }
 
   showAll() {
     this.place.replaceChildren();
-    for (const one of this.lines) this.append(one);
+    for (const line of this.lines) this.append(line);
     this.place.scrollTop = this.place.scrollHeight;
   }
 }

@@ -52,9 +52,9 @@ function take(message) {
   }
   if (message.all) begin(message);
   now = message.now;
-  for (const one of message.rows) receive(one);
+  for (const row of message.rows) receive(row);
   for (const [topic, from] of message.gone ?? []) senders.delete(keyOfSender({ topic, from }));
-  for (const one of message.links) links.set(keyOfLink(one), one);
+  for (const link of message.links) links.set(keyOfLink(link), link);
   for (const [topic, from, to] of message.links_gone ?? []) links.delete(keyOfLink({ topic, from, to }));
   if (message.findings) {
     findings = message.findings;
@@ -76,21 +76,21 @@ function begin(message) {
   viewerId = message.id;
 }
 
-function receive(one) {
-  const key = keyOfSender(one);
-  senders.set(key, one);
-  history.add(key, one.samples, now);
-  const before = shown.get(key) ?? [[now, one.count, 0]];
+function receive(row) {
+  const key = keyOfSender(row);
+  senders.set(key, row);
+  history.add(key, row.samples, now);
+  const before = shown.get(key) ?? [[now, row.count, 0]];
   const last = before[before.length - 1];
-  before.push([now, one.count, last[2] + one.samples.length]);
+  before.push([now, row.count, last[2] + row.samples.length]);
   while (before.length > 2 && before[1][0] < now - 2) before.shift();
   shown.set(key, before);
-  if (!one.samples.length || !isShown(one.topic)) return;
+  if (!row.samples.length || !isShown(row.topic)) return;
   const subscribers = (latest?.graph.links ?? [])
-    .filter((link) => link.topic === one.topic && link.from === one.from && link.state === "ok")
+    .filter((link) => link.topic === row.topic && link.from === row.from && link.state === "ok")
     .map((link) => link.to);
   // Several at once are one pulse: the eye could not tell them apart.
-  graph.pulse(one.topic, one.from, [...new Set(subscribers)]);
+  graph.pulse(row.topic, row.from, [...new Set(subscribers)]);
 }
 
 // How many messages there are for one that is shown.
@@ -116,9 +116,9 @@ function showTables() {
   }, 250);
 }
 
-const visibleSenders = () => [...senders.values()].filter((one) => isShown(one.topic));
+const visibleSenders = () => [...senders.values()].filter((sender) => isShown(sender.topic));
 const visibleLinks = () => [...links.values()].filter(
-  (one) => isShown(one.topic) && (byId("show-viewer").checked || one.to !== latest?.viewer),
+  (link) => isShown(link.topic) && (byId("show-viewer").checked || link.to !== latest?.viewer),
 );
 
 function showCounts() {
@@ -127,9 +127,9 @@ function showCounts() {
 }
 
 function showFindings() {
-  const items = findings.map((one) => {
-    const item = html("li", { class: `finding ${one.kind}` }, `${one.text}. `);
-    if (latest?.tutorial) item.append(html("a", { href: `tutorial/${one.page}` }, "Read more in the tutorial"));
+  const items = findings.map((finding) => {
+    const item = html("li", { class: `finding ${finding.kind}` }, `${finding.text}. `);
+    if (latest?.tutorial) item.append(html("a", { href: `tutorial/${finding.page}` }, "Read more in the tutorial"));
     return item;
   });
   if (!items.length) items.push(html("li", {}, "Everything looks normal."));
@@ -138,9 +138,9 @@ function showFindings() {
 
 function showTopics(topics) {
   const place = byId("topics");
-  const names = [...new Set([...topics, ...hidden])].filter((one) => !LOG_TOPICS.includes(one)).sort();
-  const had = [...place.querySelectorAll("input")].map((one) => one.value);
-  if (had.length === names.length && had.every((one, index) => one === names[index])) return;
+  const names = [...new Set([...topics, ...hidden])].filter((name) => !LOG_TOPICS.includes(name)).sort();
+  const had = [...place.querySelectorAll("input")].map((input) => input.value);
+  if (had.length === names.length && had.every((value, index) => value === names[index])) return;
   place.replaceChildren(...names.map((name) => {
     const box = html("input", { type: "checkbox", value: name });
     box.checked = !hidden.has(name);
@@ -199,7 +199,7 @@ byId("export-messages").addEventListener("click", () => {
 });
 byId("export-counts").addEventListener("click", () => {
   const rows = [["topic", "publisher", "subscriber", "messages", "sent", "received", "dropped", "missing"]];
-  for (const one of visibleSenders()) rows.push([one.topic, one.from, latest?.viewer, one.count, null, null, null, one.missing?.[0]]);
-  for (const one of visibleLinks()) rows.push([one.topic, one.from, one.to, null, one.sent, one.received, one.dropped, one.missing]);
+  for (const sender of visibleSenders()) rows.push([sender.topic, sender.from, latest?.viewer, sender.count, null, null, null, sender.missing?.[0]]);
+  for (const link of visibleLinks()) rows.push([link.topic, link.from, link.to, null, link.sent, link.received, link.dropped, link.missing]);
   saveCsv(rows, "counts.csv");
 });

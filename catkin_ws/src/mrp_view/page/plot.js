@@ -20,10 +20,10 @@ export class History {
   add(key, samples, now) {
     const kept = this.samples.get(key) ?? [];
     this.samples.set(key, kept);
-    for (const one of samples) {
+    for (const sample of samples) {
       const last = kept.length > 1 ? kept[kept.length - 2] : null;
-      if (last && one[0] - last[0] < 0.1) kept.pop();
-      kept.push(one);
+      if (last && sample[0] - last[0] < 0.1) kept.pop();
+      kept.push(sample);
     }
     let old = 0;
     while (old < kept.length && kept[old][0] < now - SECONDS) old += 1;
@@ -39,7 +39,7 @@ export class History {
 
 function ticks(low, high) {
   const step = 10 ** Math.floor(Math.log10((high - low) / 2));
-  const wide = [1, 2, 5, 10].map((one) => one * step).find((one) => (high - low) / one <= 5);
+  const wide = [1, 2, 5, 10].map((factor) => factor * step).find((factor) => (high - low) / factor <= 5);
   const result = [];
   for (let value = Math.ceil(low / wide) * wide; value <= high; value += wide) result.push(value);
   return result;
@@ -49,21 +49,21 @@ const shortened = (value) => (Math.abs(value) >= 1e7 ? value.toExponential(3) : 
 
 // Until the reader chooses: the first topic of which there is something to see.
 function chooseTopic(select, history, rows) {
-  setOptions(select, [...new Set(rows.map((one) => one.topic))].sort());
-  const fresh = rows.find((one) => history.samples.get(`${one.topic}\n${one.from}`)?.some((point) => point[1] !== null));
-  const chosen = select.dataset.chosen || rows.some((one) => one.topic === select.value && one.rate > 0);
+  setOptions(select, [...new Set(rows.map((row) => row.topic))].sort());
+  const fresh = rows.find((row) => history.samples.get(`${row.topic}\n${row.from}`)?.some((point) => point[1] !== null));
+  const chosen = select.dataset.chosen || rows.some((row) => row.topic === select.value && row.rate > 0);
   if (!chosen && fresh) select.value = fresh.topic;
 }
 
 function linesOf(topic, history, rows, now) {
   return rows
-    .filter((one) => one.topic === topic)
-    .map((one) => ({
-      name: one.from,
-      field: one.number,
-      points: (history.samples.get(`${one.topic}\n${one.from}`) ?? []).filter((point) => point[1] !== null && point[0] >= now - SECONDS),
+    .filter((row) => row.topic === topic)
+    .map((row) => ({
+      name: row.from,
+      field: row.number,
+      points: (history.samples.get(`${row.topic}\n${row.from}`) ?? []).filter((point) => point[1] !== null && point[0] >= now - SECONDS),
     }))
-    .filter((one) => one.points.length);
+    .filter((row) => row.points.length);
 }
 
 // Returns where in the picture a time and a value are, and the range of the values.
@@ -109,8 +109,8 @@ export function showPlot(history, rows, now) {
     setText(byId("plot-note"), select.value ? "No number in this topic's messages in the last 60 s." : "No message yet.");
     return;
   }
-  const scales = scalesOf(lines.flatMap((one) => one.points.map((point) => point[1])), width, now);
-  const words = lines.map((one) => `${one.name} ${shortened(one.points[one.points.length - 1][1])}`);
+  const scales = scalesOf(lines.flatMap((line) => line.points.map((point) => point[1])), width, now);
+  const words = lines.map((line) => `${line.name} ${shortened(line.points[line.points.length - 1][1])}`);
   const picture = svg("svg", {
     role: "img",
     "aria-label": `${select.value} over the last 60 seconds; last values: ${words.join(", ")}`,

@@ -29,8 +29,8 @@ class Table {
     if (!row) {
       // On a phone, where there is no room for the head, each cell says what it is.
       const [first, ...others] = this.labels.map((label) => ({ "data-label": label }));
-      row = html("tr", {}, html("th", { scope: "row", ...first }), ...others.map((one) => html("td", one)));
-      const after = [...this.rows.keys()].filter((one) => one > key).sort()[0];
+      row = html("tr", {}, html("th", { scope: "row", ...first }), ...others.map((text) => html("td", text)));
+      const after = [...this.rows.keys()].filter((other) => other > key).sort()[0];
       this.body.insertBefore(row, after === undefined ? null : this.rows.get(after));
       this.rows.set(key, row);
       this.empty.hidden = true;
@@ -43,8 +43,8 @@ class Table {
 const senders = new Table("senders", "No messages yet.");
 const links = new Table("links", "No connections yet.");
 
-export const keyOfSender = (one) => `${one.topic}\n${one.from}`;
-export const keyOfLink = (one) => `${one.topic}\n${one.from}\n${one.to}`;
+export const keyOfSender = (sender) => `${sender.topic}\n${sender.from}`;
+export const keyOfLink = (link) => `${link.topic}\n${link.from}\n${link.to}`;
 const known = (value) => (value === null || value === undefined ? "not reported" : String(value));
 
 export function latency(seconds) {
@@ -55,27 +55,27 @@ export function latency(seconds) {
 export function showSenders(rows, shares) {
   const keys = new Set(rows.map(keyOfSender));
   for (const key of [...senders.rows.keys()]) if (!keys.has(key)) senders.remove(key);
-  for (const one of rows) {
-    const key = keyOfSender(one);
+  for (const sender of rows) {
+    const key = keyOfSender(sender);
     let missing = "no counter";
-    if (one.missing) {
-      missing = String(one.missing[0]);
-      if (one.missing[1]) missing += `, restarted ${one.missing[1]} ×`;
+    if (sender.missing) {
+      missing = String(sender.missing[0]);
+      if (sender.missing[1]) missing += `, restarted ${sender.missing[1]} ×`;
     }
     const share = shares.get(key) ?? 1;
     const row = senders.set(key, [
-      one.from,
-      one.topic,
-      String(one.count),
-      one.rate.toFixed(1),
+      sender.from,
+      sender.topic,
+      String(sender.count),
+      sender.rate.toFixed(1),
       missing,
-      latency(one.latency),
+      latency(sender.latency),
       share > 1.05 ? `1 of ${Math.round(share)}` : "all",
-      one.value,
+      sender.value,
     ]);
-    row.classList.toggle("gone", one.gone);
-    row.classList.toggle("bad", Boolean(one.missing?.[0]));
-    if (!row.cells[0].querySelector("svg")) row.cells[0].prepend(sign(one.from));
+    row.classList.toggle("gone", sender.gone);
+    row.classList.toggle("bad", Boolean(sender.missing?.[0]));
+    if (!row.cells[0].querySelector("svg")) row.cells[0].prepend(sign(sender.from));
   }
 }
 
@@ -90,16 +90,16 @@ function sign(publisher) {
 export function showLinks(rows) {
   const keys = new Set(rows.map(keyOfLink));
   for (const key of [...links.rows.keys()]) if (!keys.has(key)) links.remove(key);
-  for (const one of rows) {
-    const row = links.set(keyOfLink(one), [
-      one.to,
-      one.from,
-      one.topic,
-      known(one.sent),
-      known(one.received),
-      known(one.dropped),
-      one.missing === null ? "–" : String(one.missing),
+  for (const link of rows) {
+    const row = links.set(keyOfLink(link), [
+      link.to,
+      link.from,
+      link.topic,
+      known(link.sent),
+      known(link.received),
+      known(link.dropped),
+      link.missing === null ? "–" : String(link.missing),
     ]);
-    row.classList.toggle("bad", Boolean(one.dropped || one.missing));
+    row.classList.toggle("bad", Boolean(link.dropped || link.missing));
   }
 }

@@ -42,7 +42,7 @@ function makeReachable() {
     }
   });
   // What is in a box may grow without it: a font comes late.
-  for (const one of document.querySelectorAll(`${boxes}, ${boxes} > *`)) watcher.observe(one);
+  for (const box of document.querySelectorAll(`${boxes}, ${boxes} > *`)) watcher.observe(box);
 }
 
 // Sphinx makes headings of the captions of a list of pages, but does not say of which level.
