@@ -195,7 +195,7 @@ docs: packages-docs  ## build the tutorial's pages
 
 .PHONY: pictures
 pictures: packages-test-browser $(BUILT_WHOLE)  ## take the pictures of the README and of the pages again
-	@$(IN_WORKSPACE) $(ALONE) source devel/setup.bash; tools/make_pictures.py
+	@$(IN_WORKSPACE) $(ALONE) source devel/setup.bash; tools/make_pictures.py; tools/make_map.py
 
 .PHONY: docs-serve
 docs-serve: docs  ## build the pages, and serve them to this machine's browsers
