@@ -99,26 +99,6 @@ def test_a_function_that_returns_nothing_is_found_though_it_compiles(tmp_path):
     assert (finding.certainty, finding.file, finding.line) == ("", "src/a.cpp", 4)  # seen
 
 
-def test_what_compiles_and_does_something_else(tmp_path):
-    lines = (
-        "#include <cstdio>\nint half(int a)\n{\n  if (a) return a / 2;\n}\n"
-        "int main(int argc, char **)\n{\n  long much = 3;\n  int a;\n"
-        '  printf("%d", much);\n  if (a = argc) half(a);\n  if (argc);\n  argc == a;\n'
-        "  unsigned left = 2;\n  while (left >= 0) left -= half(2);\n"
-        "  if (argc == 2 || (argc == 3 && a == 1)) return 0;\n}\n"
-    )
-    package = check_rules.make(tmp_path / "src" / "some_pkg", src__a_DOT_cpp=lines)
-    command = ["g++", *compiler.DOUBTING.split(), "-c", "-o", tmp_path / "a.o"]
-    done = subprocess.run(
-        [*command, package.root / "src" / "a.cpp"], stderr=subprocess.PIPE, text=True
-    )
-    found = [*compiler.doubts(package, done.stderr, package.root)]
-    assert {one.certainty for one in found} == {"habit"}
-    assert sorted((one.line, one.message.split()[0]) for one in found) == [
-        *((5, "In"), (10, "The"), (11, "Perhaps"), (12, "A"), (13, "This"), (15, "This"))
-    ]
-
-
 def test_error_in_a_header_of_ros_is_where_the_package_uses_it(tmp_path):
     package = check_rules.make(tmp_path / "src" / "some_pkg", src__a_DOT_cpp=CPP)
     output = (
@@ -216,23 +196,6 @@ def test_a_copy_keeps_a_header_from_being_made(tmp_path):
     assert "is not made of Go.srv" in cpp_words.of(package, problem).said
 
 
-def test_what_stands_behind_a_header_that_is_not_there(tmp_path):
-    source = "#include <ros/ros.h>\n#include <some_pkg/no.h>\nauto f = boost::bind(g, _1);\n"
-    package = check_rules.make(tmp_path, src__a_DOT_cpp=source)
-    output = f"{tmp_path}/src/a.cpp:2:10: fatal error: some_pkg/no.h: No such file or directory\n"
-    known = types.SimpleNamespace(
-        package=package,
-        package_folder=tmp_path,
-        built=types.SimpleNamespace(ok=False, output=output),
-        model=check_rules.model_of(package),
-        spec=types.SimpleNamespace(is_contract=False),
-    )
-    assert check_rules.told(check_rules.of(compile_rule.RULE, known)) == [
-        ("compile", 2),
-        ("compile", 3),
-    ]
-
-
 def test_headers_are_looked_for_where_nothing_is_compiled(tmp_path):
     source = '#include "/home/nobody/a.h"\n#include <old/Go.h>\n#include <far/No.h>\n'
     package = check_rules.make(tmp_path, src__a_DOT_cpp=source, srv__Go_DOT_srv="---\n")
@@ -300,21 +263,3 @@ def test_a_package_of_which_debian_keeps_the_headers_apart_is_not_here(tmp_path,
     (tmp_path / "include" / "far_srvs" / "Trigger.h").touch()
     assert compiler.absent(package, [problem]) == {}
     compiler.uses.is_installed.cache_clear()
-
-
-@pytest.mark.parametrize(
-    ("head", "body", "found"),
-    [
-        ("bool A::f(R& r)", "if (a) { b(); }", [5]),
-        ("bool f(R& r)", "if (a) { return b; }", []),
-        ("bool f(R& r)", "while (true) { b(); }", []),
-        ("void f(R& r)", "b();", []),
-        ("int main()", "b();", []),
-    ],
-)
-def test_a_function_without_a_return_is_seen_though_nothing_is_compiled(
-    head, body, found, tmp_path
-):
-    text = f"#include <nowhere/a.h>\n{head}\n{{\n  {body}\n}}\n"
-    package = check_rules.make(tmp_path / "some_pkg", src__a_DOT_cpp=text)
-    assert [one.line for one in compiler.unreturned(package, ["src/a.cpp"])] == found

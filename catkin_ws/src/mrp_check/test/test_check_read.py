@@ -6,7 +6,7 @@ import types
 import check_rules
 import pytest
 from check_rules import MANIFEST
-from mrp_check.build import configuring, placeholders
+from mrp_check.build import configuring
 from mrp_check.code.facts import Facts
 from mrp_check.confined.places import Kind, Place
 from mrp_check.confined.seen import LaunchResult, Seen
@@ -92,28 +92,6 @@ def test_a_target_that_is_waited_for_and_does_not_exist_is_found_where_cmake_sto
     finding = configuring.finding(package, output, package.root, model)
     assert (finding.file, finding.line) == ("CMakeLists.txt", 4)
     assert "Perhaps some_pkg_gencpp is meant." in finding.message
-
-
-@pytest.mark.parametrize(
-    ("begin", "arguments", "line"),
-    [
-        ("", "_1", 4),
-        ("#include <actionlib/server/simple_action_server.h>", "&f, _1, 2", 4),
-        ("#include <boost/bind/bind.hpp>\nusing namespace boost::placeholders;", "_1", None),
-        ("#include <boost/bind.hpp>", "_1", None),
-        ("#include <tf/message_filter.h>", "_1", None),
-        ('#include "own.h"', "_1", None),
-        ("", "boost::placeholders::_1", None),
-        ("", "std_1, 2", None),
-    ],
-    ids=range(8),
-)
-def test_a_placeholder_is_known_though_nothing_is_compiled(begin, arguments, line, tmp_path):
-    text = f"#include <ros/ros.h>\n{begin}\nint main() {{\n  boost::bind({arguments}); }}\n"
-    own = "#include <boost/bind.hpp>\n"
-    package = check_rules.make(tmp_path / "some_pkg", src__a_DOT_cpp=text, src__own_DOT_h=own)
-    found = [*placeholders.findings(package, ["src/a.cpp"])]
-    assert [one.line for one in found] == ([line] if line else [])
 
 
 @pytest.mark.parametrize(

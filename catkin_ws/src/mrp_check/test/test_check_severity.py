@@ -8,6 +8,7 @@ import pytest
 from mrp_check import rules
 from mrp_check.contract.finding import CERTAIN, HABIT, HINT, READ, SEEN, Finding
 from mrp_check.contract.requirements import Rule
+from mrp_check.verdict import causes
 from mrp_check.verdict.severity import severity, weigh
 
 pytestmark = pytest.mark.quick
@@ -37,8 +38,25 @@ def test_a_habit_never_becomes_an_error(rule, has_contract):
     habits = [Finding(id_, "It works.", "a.py", 1, HABIT) for id_ in rule.ids]
     seen = [Finding(id_, "It fails.", "a.py", 1, SEEN) for id_ in rule.ids]
     habits = [*Rule(rule.stage, (), lambda case: habits, also=rule.ids).ask(None)]
-    weigh([*seen, *habits], has_contract)
+    for one in (*seen, *habits):
+        one.stage, one.severity = rule.stage, severity(one.certainty, has_contract=True)
+    known = causes.told_once([*habits, *seen], None, None, has_contract)
+    weigh(known, has_contract)
     assert {one.severity for one in habits} == {"warning"}
+
+
+def _certainties(path):
+    """Yield each certainty that a rule of the files, or of the sources, names."""
+    for node in ast.walk(ast.parse(path.read_text())):
+        if isinstance(node, ast.Name) and node.id in ("SEEN", "CERTAIN", "READ", "HABIT", "HINT"):
+            yield node.id
+
+
+@pytest.mark.parametrize(
+    "path", [p for p in FILES if p.parent.name in ("code", "tools")], ids=lambda path: path.stem
+)
+def test_what_is_only_read_is_not_said_to_be_seen(path):
+    assert "SEEN" not in _certainties(path)
 
 
 def test_what_was_only_read_is_an_error_where_it_was_seen():

@@ -6,13 +6,12 @@ from __future__ import annotations
 import os
 import pathlib
 import re
-from typing import Iterable, Iterator
+from typing import Iterator
 
 from mrp_check.build import cpp_words
 from mrp_check.build.cpp_words import Problem
 from mrp_check.code import uses
 from mrp_check.contract.finding import HABIT, Finding, Line
-from mrp_check.contract.words import braced
 from mrp_check.package.cmake import relative
 from mrp_check.package.package import Package
 
@@ -22,35 +21,11 @@ _ERROR = re.compile(
 _NO_RETURN = re.compile(
     r"^(?P<file>[^\s:][^:]*):(?P<line>\d+):(?:\d+:)? warning: no return statement in function"
 )
-_DOUBT = re.compile(
+_WARNING = re.compile(
     r"^(?P<file>[^\s:][^:]*):(?P<line>\d+):\d+: warning: (?P<text>.*) \[-W(?P<name>[\w-]+)=?\]$"
 )
-# Options of g++ -> what is wrong where it warns: all these compile, and do something else.
-# https://gcc.gnu.org/onlinedocs/gcc/Warning-Options.html
-_DOUBTS = {
-    "div-by-zero": "Here something is divided by 0.",
-    "empty-body": "A semicolon ends this line: what follows is done in each case.",
-    "format": "The format does not fit what it is given: what is shown may be any number.",
-    "format-extra-args": "The format has no place for all that it is given.",
-    "maybe-uninitialized": "A variable is read here, and in some case has no value before.",
-    "misleading-indentation": "The indented lines do not all belong to the line above them.",
-    "overflow": "The number is too large for its type.",
-    "parentheses": "Perhaps = stands here for ==, or brackets are missing.",
-    "return-type": "In some case this function ends without a return: what it gives is any value.",
-    "tautological-compare": "This comparison is always true, or never.",
-    "type-limits": "This comparison is always true, or never.",
-    "uninitialized": "A variable is read here that has no value.",
-    "unused-value": "This line computes something, and does nothing with it.",
-}
-DOUBTING = "-Wall -Wempty-body -Wtype-limits"  # what g++ is called with to say so
-# A function that says it returns a value; and all that may end one, or keep it from its end.
-_FUNCTION = re.compile(
-    r"(?m)^[ \t]*(?:(?:static|inline|virtual)\s+)*(?:bool|char|double|float|int|(?:std::)?string)"
-    r"\s+(?:\w+::)*(?P<name>\w+)\s*\([^;{}()]*\)\s*(?:const\s*)?(?=\{)"
-)
-_LEAVES = re.compile(
-    r"return|RETURN|\b(throw|exit|abort|asm)\b|while\s*\(\s*(true|1)\b|for\s*\(\s*;"
-)
+# What g++ is called with, where a package wants no warnings of its own.
+DOUBTING = "-Wall -Wduplicated-cond -Wempty-body -Wformat-security -Wtype-limits"
 _FROM = re.compile(r"^(?P<file>[^\s:][^:]*):(?P<line>\d+):\d+:\s+required from")
 _INCLUDED = re.compile(r"^(?:In file included from| +from) (?P<file>[^:]+):(?P<line>\d+)")
 
@@ -147,28 +122,12 @@ def without_return(package: Package, output: str, copy: pathlib.Path) -> list[Fi
     return [_no_return(package, *place) for place in places if place]
 
 
-def unreturned(package: Package, files: Iterable[str]) -> Iterator[Finding]:
-    """Yield the same of sources that nobody could compile, for want of a package."""
-    for file in sorted({*files} & {*package.of_kind("cpp")}):
-        code = uses.code(package, file)
-        for match in _FUNCTION.finditer(code):
-            block = braced(code, match.end())
-            if match["name"] != "main" and not _LEAVES.search(block):
-                end = match.end() + len(block)
-                yield _no_return(package, file, code.count("\n", 0, end) + 1)
-
-
-def doubts(package: Package, output: str, copy: pathlib.Path) -> Iterator[Finding]:
-    """Yield a warning for each line of the package's own that g++ takes, and warns of."""
-    found = set()
-    for match in filter(None, map(_DOUBT.match, output.splitlines())):
-        place, said = _place(match, copy), _DOUBTS.get(match["name"])
-        if place and said and place not in found and "no return statement" not in match["text"]:
-            found.add(place)
-            line = package.line(place[0], place[1])
-            expected = "C++ that the compiler has no doubts about"
-            seen = f"{line}  (g++: {match['text']})"
-            yield Finding("compile", said, *place, HABIT, expected, seen)
+def warnings(output: str, copy: pathlib.Path) -> Iterator[tuple[str, int, str, str]]:
+    """Yield (file, line, name of the warning, what g++ says) of the package's own lines."""
+    for match in filter(None, map(_WARNING.match, output.splitlines())):
+        place = _place(match, copy)
+        if place:
+            yield (*place, match["name"], match["text"])
 
 
 def _no_return(package: Package, file: str, line: int) -> Finding:

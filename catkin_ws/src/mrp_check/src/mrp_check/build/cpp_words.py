@@ -7,7 +7,6 @@ import re
 import typing
 from typing import Callable, Sequence
 
-from mrp_check.build import placeholders
 from mrp_check.code import uses
 from mrp_check.contract.finding import Change
 from mrp_check.contract.words import last_part, nearest, perhaps
@@ -129,6 +128,9 @@ def _function_definition(error: Error) -> Words:
     return Words(said, "Add the missing }.")
 
 
+# https://www.boost.org/doc/libs/1_73_0/libs/bind/doc/html/bind.html
+_PLACEHOLDERS = "this machine's Boost has it in boost::placeholders alone."
+_BIND = "Add #include <boost/bind/bind.hpp> and using namespace boost::placeholders;"
 _INCLUDES_ROS = re.compile(r"#\s*include\s*[<\"]ros/")
 # Two words in a row are no C++.
 _UNQUOTED = re.compile(r"\b(ROS_(?:DEBUG|INFO|WARN|ERROR|FATAL))\s*\(\s*[A-Za-z_]+ +[A-Za-z_]+")
@@ -143,7 +145,7 @@ def _undeclared(error: Error) -> Words:
         used = re.search(rf"\b{re.escape(name)}::(\w+)", text)
         return _header(name, f"{name}/{used.group(1)}.h" if used else f"{name}/....h")
     if re.fullmatch(r"_[1-9]", name):
-        return Words(f"nothing is called {name} here: {placeholders.SAID}", placeholders.FIX)
+        return Words(f"nothing is called {name} here: {_PLACEHOLDERS}", _BIND)
     if name in _MESSAGES:
         said = f"nothing is called {name} here; the type is std_msgs::{name}."
         return Words(said, f"Write std_msgs::{name}.", None, (name, f"std_msgs::{name}"))

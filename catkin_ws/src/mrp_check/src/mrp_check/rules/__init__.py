@@ -86,6 +86,7 @@ from mrp_check.rules.run import (
     waiting,
     warnings,
 )
+from mrp_check.rules.tools import catkin_lint, gcc, pylint
 
 _FILES = (
     # files
@@ -136,8 +137,11 @@ _FILES = (
     ignored,
     idle,
     # build
+    pylint,
+    catkin_lint,
     configure,
     compile,
+    gcc,
     # run
     waiting,
     starts,

@@ -4,9 +4,9 @@
 from __future__ import annotations
 
 import os
-from typing import Iterable, Iterator
+from typing import Iterator
 
-from mrp_check.build import compiler, configuring, linker, placeholders
+from mrp_check.build import compiler, configuring, linker
 from mrp_check.case import evidence
 from mrp_check.case.case import Case
 from mrp_check.code import uses
@@ -20,12 +20,10 @@ def findings(case: Case) -> Iterator[Finding]:
     if not case.built:
         yield from _of_other_machines(case)
         yield from () if case.spec.is_contract else compiler.older_standard(case.package, "")
-        yield from _of_text(case, case.package.of_kind("cpp"))
         return
     output, package = case.built.output, case.package
     yield from compiler.without_return(package, output, case.package_folder)
     if not case.spec.is_contract:
-        yield from compiler.doubts(package, output, case.package_folder)
         yield from compiler.older_standard(package, output)
     if case.built.ok:
         return
@@ -36,16 +34,8 @@ def findings(case: Case) -> Iterator[Finding]:
     if not found and not absent:
         found = [configuring.unknown(package, case.built, "compile")]
     yield from found
-    stopped = [p.file for p in problems if compiler.is_no_header(p)]
-    yield from _of_text(case, () if case.spec.is_contract else stopped)
     if absent:
         raise NotHere(uses.absent(name, "cpp") for name in sorted({*absent.values()}))
-
-
-def _of_text(case: Case, files: Iterable[str]) -> Iterator[Finding]:
-    """Yield what the compiler would have found in sources that it did not come to."""
-    yield from placeholders.findings(case.package, files)
-    yield from compiler.unreturned(case.package, files)
 
 
 def _of_other_machines(case: Case) -> Iterator[Finding]:

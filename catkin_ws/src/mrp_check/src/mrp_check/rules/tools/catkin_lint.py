@@ -1,0 +1,79 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What catkin_lint says of package.xml and CMakeLists.txt: good to know, and so notes.
+
+https://fkie.github.io/catkin_lint/messages/
+"""
+
+from __future__ import annotations
+
+import json
+import shutil
+from typing import Iterator
+
+from mrp_check.build.catkin import search_path
+from mrp_check.build.row import Row
+from mrp_check.case import evidence
+from mrp_check.case.case import Case
+from mrp_check.contract.errors import CannotCheck, NotHere
+from mrp_check.contract.finding import HINT, Finding
+from mrp_check.contract.requirements import ANY, Requirement, Rule
+from mrp_check.contract.resources import SHARES
+
+_AGREE = "Let package.xml, find_package() and catkin_package() name the same packages."
+_INSTALL = "Add it to install(); or leave it, if you only work in your own workspace."
+_TABLE = {
+    "DESCRIPTION_BOILERPLATE": Row("The package's description says nothing.", "Say what it does."),
+    "DESCRIPTION_MEANINGLESS": Row("The package's description says nothing.", "Say what it does."),
+    "MISSING_CATKIN_DEPEND": Row(
+        "catkin_package() doesn't pass on a package that this one needs.", _AGREE
+    ),
+    "UNCONFIGURED_BUILD_DEPEND": Row(
+        "package.xml names a package that CMakeLists.txt doesn't look for.", _AGREE
+    ),
+    "UNCONFIGURED_MSG_DEPEND": Row(
+        "generate_messages() names a package that find_package() doesn't.", _AGREE
+    ),
+    "UNGUARDED_TEST_CMD": Row(
+        "A test is made where nobody wants tests, too.",
+        "Put it between if(CATKIN_ENABLE_TESTING) and endif().",
+    ),
+    "UNINSTALLED_INCLUDE_PATH": Row("The package's headers aren't installed.", _INSTALL),
+    "UNINSTALLED_SCRIPT": Row("A script isn't installed.", _INSTALL),
+    "UNINSTALLED_TARGET": Row("An executable or a library isn't installed.", _INSTALL),
+    "UNUSED_DEPEND": Row("package.xml names a package that nothing uses.", _AGREE),
+    "WRONG_DEPEND": Row("package.xml names a package for the wrong time.", _AGREE),
+}
+
+
+def _findings(case: Case) -> Iterator[Finding]:
+    package = case.package
+    if not shutil.which("catkin_lint", path=search_path()):
+        raise NotHere(["catkin_lint (Debian package catkin-lint)"])
+    if not case.manifest[0] or "CMakeLists.txt" not in package.files:
+        return
+    command = ("catkin_lint", "--offline", "--json", "-W2", "--package-path", ":".join(SHARES))
+    done = case.run(*command, str(case.package_folder))
+    try:
+        said = json.loads(done.output)
+    except ValueError:
+        raise CannotCheck(f"catkin_lint failed: {done.errors.strip()[-300:]}") from None
+    for one in (one for kind in ("errors", "warnings", "notices") for one in said[kind]):
+        row, place = _TABLE.get(one["id"]), one["location"]
+        file, line = place.get("file", "CMakeLists.txt"), place.get("line")
+        if row and file in package.files:
+            name = f"catkin_lint calls {one['id'].lower()}"
+            row = row._replace(certainty=HINT)
+            yield row.finding("catkin_lint", package, file, line, name, one["text"])
+
+
+RULE = Rule(
+    stage="build",
+    needs=("manifest", "model"),
+    findings=_findings,
+    requirements={
+        "catkin_lint": Requirement(
+            "catkin_lint has nothing to say", "building#cmakelists-txt", evidence.manifest
+        )
+    },
+    only=ANY,
+)

@@ -1,0 +1,184 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What pylint says of the Python sources, as far as it matters to a node.
+
+It infers what a name stands for, in rospy's own sources, too. Nothing of the package is run or
+imported. https://pylint.readthedocs.io/en/stable/user_guide/messages/messages_overview.html
+"""
+
+from __future__ import annotations
+
+import json
+from typing import Iterator
+
+from mrp_check.build.row import Row
+from mrp_check.case import evidence
+from mrp_check.case.case import Case
+from mrp_check.contract.errors import CannotCheck, NotHere
+from mrp_check.contract.finding import HABIT, HINT, READ, Finding
+from mrp_check.contract.requirements import ANY, Requirement, Rule
+
+_COMMAND = (
+    *("/usr/bin/python3", "-m", "pylint", "--rcfile=/dev/null", "--persistent=n", "--exit-zero"),
+    *("--output-format=json", "--jobs=1", "--score=n", "--disable=all"),
+)
+_TABLE = {
+    "assert-on-tuple": Row("This assert is always true.", "Leave the brackets out.", HABIT),
+    "assigning-non-slot": Row(
+        "The message has no field of that name: Python ends with an AttributeError here.",
+        "Correct the name; `rosmsg show` lists the fields.",
+        READ,
+        "no-such-field",
+    ),
+    "assignment-from-no-return": Row(
+        "The function that is called here returns nothing: the variable is None.",
+        "Return a value, or keep nothing of the call.",
+    ),
+    "bad-string-format-type": Row(
+        "The format doesn't fit the type of its value: Python ends with a TypeError here.",
+        "Write %s, or give it a value of that type.",
+        READ,
+    ),
+    "bare-except": Row(
+        "This `except` also catches what rospy raises to end the node.",
+        "Name the errors that you expect.",
+        HINT,
+    ),
+    "broad-exception-caught": Row(
+        "This `except` also catches what rospy raises to end the node.",
+        "Name the errors that you expect.",
+        HINT,
+    ),
+    "comparison-with-callable": Row(
+        "A function is compared here, and not what it returns: its brackets are missing.",
+        "Call the function.",
+    ),
+    "dangerous-default-value": Row(
+        "All calls of this function share one default value: what one puts in, the next one finds.",
+        "Write None, and make the value in the function.",
+        HINT,
+    ),
+    "function-redefined": Row(
+        "This name was defined before: Python forgets the first definition.",
+        "Give one of the two another name.",
+    ),
+    "global-variable-undefined": Row(
+        "`global` names a variable that the module doesn't have before this function has run.",
+        "Give it a first value at the top of the file.",
+        HINT,
+    ),
+    "inconsistent-return-statements": Row(
+        "Some ways through this function return a value, and others return None.",
+        "Let each way return a value.",
+        HINT,
+    ),
+    "modified-iterating-list": Row(
+        "This list is changed while a loop goes over it: the loop skips items.",
+        "Loop over a copy: list(...).",
+    ),
+    "no-member": Row(
+        "This object has nothing of that name: Python ends with an AttributeError here.",
+        "Correct the name.",
+        READ,
+    ),
+    "no-method-argument": Row(
+        "A method's first parameter has to be self: Python can't call this one.",
+        "Write self as the first parameter.",
+        READ,
+    ),
+    "no-value-for-parameter": Row(
+        "This call lacks an argument: Python ends with a TypeError here.",
+        "Give it what the function takes.",
+        READ,
+    ),
+    "pointless-statement": Row(
+        "This line computes a value, and does nothing with it.",
+        "Call the function, write = for ==, or take the line out.",
+    ),
+    "too-few-format-args": Row(
+        "The text has more places than values: Python ends with a TypeError here.",
+        "Give each place its value.",
+        READ,
+    ),
+    "too-many-format-args": Row(
+        "The text has fewer places than values: Python ends with a TypeError here.",
+        "Write a place such as %s for each value.",
+        READ,
+    ),
+    "too-many-function-args": Row(
+        "This call has more arguments than the function takes: Python ends with a TypeError here.",
+        "Give it what the function takes.",
+        READ,
+    ),
+    "unbalanced-tuple-unpacking": Row(
+        "The number of names isn't that of the values: Python ends with a ValueError here.",
+        "Write as many names as there are values.",
+        READ,
+    ),
+    "unexpected-keyword-arg": Row(
+        "The function has no parameter of that name: Python ends with a TypeError here.",
+        "Correct the name.",
+        READ,
+    ),
+    "unpacking-non-sequence": Row(
+        "One value can't be taken apart for several names: Python ends with a TypeError here.",
+        "Give each name its value.",
+        READ,
+    ),
+    "unused-wildcard-import": Row(
+        "This takes all names of a module, and hides other things of the same name.",
+        "Import the names that you use.",
+        HINT,
+    ),
+    "using-constant-test": Row(
+        "This condition never changes. Often the brackets of a call are missing.",
+        "Call the function that the condition names.",
+    ),
+}
+# Of other classes, pylint may not know what they are given at run time.
+_CLASSES = set(
+    (
+        "ActionClient Buffer Duration Publisher Rate Service ServiceProxy SimpleActionClient"
+        " SimpleActionServer Subscriber Time Timer TransformBroadcaster TransformListener"
+    ).split()
+)
+
+
+def _findings(case: Case) -> Iterator[Finding]:
+    package, read = case.package, case.facts.python
+    files = [file for file in case.facts.relevant if file in read and file not in case.facts.unread]
+    if not files:
+        return
+    paths = [str(case.package_folder / file) for file in files]
+    command = *_COMMAND, f"--enable={','.join(_TABLE)}", *paths
+    done = case.run_once(*command, of=package.of_kind("python"))
+    if "No module named pylint" in done.errors:
+        raise NotHere(["pylint (Debian package pylint)"])
+    try:
+        said = json.loads(done.output)
+    except ValueError:
+        raise CannotCheck(f"pylint failed: {done.errors.strip()[-300:]}") from None
+    for one in said:
+        row = _TABLE.get(one["symbol"])
+        file = next((f for f, path in zip(files, paths) if path.endswith(one["path"])), None)
+        if row and file and _is_sure(one) and one["line"] not in read[file].told:
+            name = f"pylint calls {one['symbol']}"
+            yield row.finding("pylint", package, file, one["line"], name, one["message"])
+
+
+def _is_sure(said: dict[str, str]) -> bool:
+    if said["symbol"] != "no-member":
+        return True
+    return said["message"].startswith(tuple(f"Instance of '{name}'" for name in _CLASSES))
+
+
+RULE = Rule(
+    stage="build",
+    needs=("facts",),
+    findings=_findings,
+    requirements={
+        "pylint": Requirement(
+            "pylint has no doubts about the Python code", "wrong", evidence.python
+        )
+    },
+    only=ANY,
+)
