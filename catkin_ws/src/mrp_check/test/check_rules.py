@@ -9,26 +9,23 @@ from mrp_check import sandbox
 from mrp_check.case import case
 from mrp_check.code import facts, node, python_facts, python_read, uses
 from mrp_check.contract import spec
+from mrp_check.contract.requirements import Rule
 from mrp_check.package import cmake, manifest
 from mrp_check.package.package import Package
 from mrp_check.rules import REQUIREMENTS
 from mrp_check.rules.code import (
     callbacks,
-    early_callback,
     lifetime,
-    message_fields,
     node_start,
     not_called,
-    not_kept,
     python_names,
     responses,
     rospy_calls,
     spin,
     typed,
     unbound,
-    unpacked,
 )
-from mrp_check.rules.contract import counter, node_name, queue, swapped_sources
+from mrp_check.rules.contract import counter, queue, swapped_sources
 from mrp_check.verdict.severity import severity
 
 MANIFEST = """<?xml version="1.0"?>
@@ -96,15 +93,15 @@ def model_of(package):
     return model
 
 
-def file_findings(rule, package, **known):
-    """Return what a rule says of a package of which only the files are known.
+def file_findings(rule, package, part=None, **known):
+    """Return what a rule, or a part of it, says of a package of which only the files are known.
 
     known: what the rule knows in addition, such as started
     """
     given = {"manifest": manifest.parse(package), "model": model_of(package), "launch": None}
     given.update({"spec": PUB_SUB, "started": {}, **known})
     given.setdefault("launches", [given["launch"]] if given["launch"] else [])
-    return [*of(rule.RULE, types.SimpleNamespace(package=package, **given))]
+    return [*of(rule.RULE, types.SimpleNamespace(package=package, **given), part)]
 
 
 def python_findings(folder, source, **others):
@@ -115,14 +112,18 @@ def python_findings(folder, source, **others):
         problem.severity = "error"
         return [problem]
     known = facts.Facts(python={read.file: read}, relevant=[read.file])
-    one = types.SimpleNamespace(package=package, facts=known)
-    rules = python_names, message_fields, rospy_calls, not_called, not_kept, responses
-    rules += (early_callback, typed, unbound, unpacked)
+    one = types.SimpleNamespace(package=package, facts=known, coded=[])
+    rules = python_names, rospy_calls, not_called, responses, callbacks, typed, unbound
     return [finding for file in rules for finding in of(file.RULE, one)]
 
 
-def of(rule, one):
-    """Yield what a rule finds; it has to name each of its ids, as the checker asks for them."""
+def of(rule, one, part=None):
+    """Yield what a rule finds; it has to name each of its ids, as the checker asks for them.
+
+    part: the function that is asked, if it is only a part of the rule
+    """
+    if part:
+        rule = Rule(rule.stage, (), part, also=rule.ids, sure=rule.sure)
     for finding in rule.ask(one):
         finding.severity = severity(finding.certainty, has_contract=True)
         yield finding
@@ -131,8 +132,8 @@ def of(rule, one):
 def node_findings(package, model, found):
     """Return what the rules say of the nodes of pub_sub whose sources say that (facts.Facts)."""
     coded = node.nodes(package, PUB_SUB, model, None, found)
-    one = types.SimpleNamespace(coded=coded)
-    rules = swapped_sources, node_start, node_name, spin, queue, lifetime, callbacks, counter
+    one = types.SimpleNamespace(coded=coded, facts=facts.Facts(), package=package)
+    rules = swapped_sources, node_start, spin, queue, lifetime, callbacks, counter
     return [finding for file in rules for finding in of(file.RULE, one)]
 
 

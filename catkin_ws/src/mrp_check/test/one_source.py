@@ -4,6 +4,7 @@
 import types
 
 import check_rules
+from mrp_check.code import python_facts
 from mrp_check.code.facts import Facts
 from mrp_check.code.python_source import Source
 from mrp_check.contract.finding import ERROR, WARNING
@@ -27,15 +28,23 @@ def case(folder, ending, lines, launched=(), **files):
     file, text = f"src/a.{ending}", AROUND[ending].format(lines)
     package = check_rules.make(folder / "some_pkg", **{f"src__a_DOT_{ending}": text}, **files)
     python = {file: Source(file, text)} if ending == "py" else {}
-    facts = Facts(sources={"a": [file]}, python=python, relevant=[*python])
+    places = [place for source in python.values() for place in python_facts.places(source)]
+    facts = Facts(places, {"a": [file]}, python=python, relevant=[*python])
     nodes = [types.SimpleNamespace(type=name) for name in launched]
     model = check_rules.model_of(package)
     launches = [types.SimpleNamespace(nodes=nodes, params={})]
     return types.SimpleNamespace(
-        package=package, facts=facts, launches=launches, launch=None, model=model, spec=SPEC
+        package=package,
+        facts=facts,
+        coded=[],
+        launches=launches,
+        launch=None,
+        model=model,
+        spec=SPEC,
     )
 
 
-def lines_of(rule, known, *severities):
+def lines_of(rule, known, *severities, part=None):
     severities = severities or (ERROR, WARNING)
-    return [one.line for one in check_rules.of(rule.RULE, known) if one.severity in severities]
+    found = check_rules.of(rule.RULE, known, part)
+    return [one.line for one in found if one.severity in severities]

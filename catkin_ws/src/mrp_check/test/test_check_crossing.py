@@ -15,7 +15,7 @@ from mrp_check.confined.launch_dump import Started
 from mrp_check.confined.places import Kind, Place
 from mrp_check.confined.seen import Alone, DirectResult, Event
 from mrp_check.package.launch import Launch
-from mrp_check.rules.contract import launch_remap
+from mrp_check.rules.contract import launch_contract
 from mrp_check.run.observing import Observed
 
 pytestmark = pytest.mark.quick
@@ -71,7 +71,7 @@ def test_remap_in_a_launch_file_of_another_package_has_no_line(tmp_path):
     case = types.SimpleNamespace(
         package=check_rules.make(tmp_path), spec=check_rules.PUB_SUB, launch=Launch("", [node])
     )
-    (finding,) = launch_remap.RULE.findings(case)
+    (finding,) = launch_contract.remaps(case)
     assert (finding.id, finding.file, finding.line) == ("topic", None, None)
 
 

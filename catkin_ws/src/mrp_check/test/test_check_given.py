@@ -6,17 +6,15 @@ import types
 import check_rules
 import pytest
 from mrp_check import releases
-from mrp_check.code import asked, uses
+from mrp_check.code import uses
 from mrp_check.contract.finding import ERROR, NOTE, WARNING
 from mrp_check.package import manifest
 from mrp_check.rules.files import (
     cmake,
-    definitions,
+    dependencies,
     messages,
     package_name,
-    python_setup,
     scripts,
-    undeclared,
 )
 from mrp_check.rules.run import compile
 from one_source import SPEC, case, lines_of
@@ -55,7 +53,9 @@ def test_what_others_made_is_named_in_the_manifest(line, named, found, tmp_path,
         package_DOT_xml=check_rules.MANIFEST.replace("std_msgs", named),
     )
     known = types.SimpleNamespace(package=package, manifest=manifest.parse(package))
-    said = [one.expected for one in check_rules.of(undeclared.RULE, known)]
+    said = [
+        one.expected for one in check_rules.of(dependencies.RULE, known, dependencies.undeclared)
+    ]
     assert said == [f"<depend>{found}</depend> in package.xml"] * bool(found)
 
 
@@ -63,7 +63,9 @@ def test_what_others_made_is_named_in_the_manifest(line, named, found, tmp_path,
 def test_a_library_is_named_in_the_manifest(header, found, tmp_path):
     package = check_rules.make(tmp_path / "some_pkg", src__a_DOT_cpp=f"#include <{header}>\n")
     known = types.SimpleNamespace(package=package, manifest=manifest.parse(package))
-    assert [one.line for one in check_rules.of(undeclared.RULE, known)] == found
+    assert [
+        one.line for one in check_rules.of(dependencies.RULE, known, dependencies.undeclared)
+    ] == found
 
 
 @pytest.mark.parametrize(("name", "found"), [("Some_pkg", [3]), ("2_pkg", [3]), ("some-pkg2", [])])
@@ -100,29 +102,6 @@ def test_a_library_that_a_later_debian_does_not_have_is_a_note(library, found, t
     text = MADE_BY_CMAKE + f"add_executable(a a.cpp)\ntarget_link_libraries(a {library})\n"
     known = case(tmp_path, "cpp", INIT, CMakeLists_DOT_txt=text)
     assert lines_of(cmake, known, NOTE) == found
-
-
-ADDS = "uint32 a\nstring b\n---\nint64 sum  # of both\nint64 mul\n"
-SERVES = "def f(r):\n    return {}\nrospy.Service('add', Add, f)"
-
-
-NODE = "class Node:\n    def turn(self, side, fast=False):\n        pass\n\nn = Node()\n"
-
-
-@pytest.mark.parametrize(
-    ("line", "found"),
-    [
-        ("typedef actionlib::SimpleActionClient<A> Client;", ("commands", "do", 2)),
-        ("using Client = actionlib::SimpleActionClient<A>;", ("commands", "do", 2)),
-        ("typedef other::Client<A> Client;", None),
-    ],
-    ids=range(3),
-)
-def test_an_action_by_another_name(line, found, tmp_path):
-    text = f'{line}\nClient client("do", true);\n'
-    package = check_rules.make(tmp_path / "some_pkg", src__a_DOT_cpp=text)
-    said = [(one.what, one.name, one.line) for one in asked.of(package, ["src/a.cpp"])]
-    assert said == ([found] if found else [])
 
 
 @pytest.mark.parametrize(
@@ -173,7 +152,11 @@ def test_a_standard_of_cpp_that_newer_headers_do_not_take(line, found, tmp_path)
 )
 def test_the_names_of_types_and_fields(file, text, found, tmp_path):
     known = case(tmp_path, "cpp", INIT, **{f"{file}_DOT_msg": text})
-    said = [one for one in check_rules.of(definitions.RULE, known) if one.severity == NOTE]
+    said = [
+        one
+        for one in check_rules.of(messages.RULE, known, messages.definitions)
+        if one.severity == NOTE
+    ]
     assert [(one.file, one.line) for one in said] == found
 
 
@@ -183,7 +166,7 @@ def test_the_names_of_types_and_fields(file, text, found, tmp_path):
 def test_setup_takes_what_goes_on_to_be_there(line, found, tmp_path):
     text = f"{MADE_BY_CMAKE}catkin_python_setup()\n"
     known = case(tmp_path, "cpp", INIT, CMakeLists_DOT_txt=text, setup_DOT_py=f"\n{line}\n")
-    assert lines_of(python_setup, known) == found
+    assert lines_of(cmake, known, part=cmake.python_setup) == found
 
 
 GENERATES = """project(some_pkg)
@@ -224,7 +207,7 @@ def test_what_makes_messages_is_needed_to_build_alone(tag, passed_on, found, tmp
 def test_a_field_has_no_word_of_cpp_for_its_name(text, found, tmp_path):
     known = case(tmp_path, "cpp", INIT, msg__Own_DOT_msg=text)
     known.model.message_files = {"msg/Own.msg": 1}
-    said = check_rules.of(definitions.RULE, known)
+    said = check_rules.of(messages.RULE, known, messages.definitions)
     assert [one.line for one in said if "a word of C++" in one.message] == found
 
 

@@ -9,8 +9,8 @@ import pytest
 from check_rules import PUB_SUB, told
 from mrp_check.confined import launch_dump
 from mrp_check.package import launch as launching
-from mrp_check.rules.contract import launch_group, launch_output, launch_remap
-from mrp_check.rules.files import launch_file, launch_gone, launch_nodes
+from mrp_check.rules.contract import launch_contract
+from mrp_check.rules.files import launch_file, launch_nodes
 
 pytestmark = pytest.mark.slow  # each test imports roslaunch anew, in a process of its own
 
@@ -37,7 +37,7 @@ LAUNCH = f"""<launch>
 {"".join(NODES)}  </group>
 </launch>
 """
-FILES = (launch_file, launch_nodes, launch_group, launch_output, launch_remap)
+FILES = (launch_file, launch_nodes, launch_contract)
 RULES = [file.RULE for file in FILES]
 
 
@@ -277,5 +277,5 @@ def test_a_node_of_this_package_that_another_one_is_asked_for(package, type_, fo
 def test_what_went_with_noetic(line, found, tmp_path):
     text = f"<launch>\n{line}\n</launch>\n"
     made = check_rules.make(tmp_path, launch__a_DOT_launch=text)
-    said = check_rules.file_findings(launch_gone, made)
+    said = check_rules.file_findings(launch_nodes, made, launch_nodes.gone)
     assert [(one.severity, one.line) for one in said] == found

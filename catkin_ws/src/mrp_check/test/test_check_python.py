@@ -223,22 +223,6 @@ def test_module_that_this_machine_has_not_is_not_the_students_fault(tmp_path, mo
         assert not check_rules.python_findings(tmp_path, text)
 
 
-@pytest.mark.parametrize(
-    ("within", "after", "found"),
-    [
-        ("rospy.Subscriber('a', String, heard)", "", ["callbacks"]),
-        ("rospy.Subscriber('a', String, heard)", "rospy.Subscriber('a', String, heard)", []),
-        ("rospy.Subscriber('b', String, heard)", "heard(String())", []),
-        ("pass", "rospy.Subscriber('a', String, heard)", []),
-    ],
-    ids=range(4),
-)
-def test_a_callback_is_asked_for_outside_of_itself(within, after, found, tmp_path):
-    head = "import rospy\nfrom std_msgs.msg import String\n"
-    text = f"{head}def heard(message):\n    {within}\n{after}\n"
-    assert [id_ for id_, _ in told(check_rules.python_findings(tmp_path, text))] == found
-
-
 def test_a_loop_that_names_is_shutdown_without_brackets(tmp_path):
     loop = "    while not rospy.is_shutdown{}:\n        rospy.sleep(1)\n"
     text = replaced("    rospy.spin()\n", loop.format(""))
@@ -246,17 +230,6 @@ def test_a_loop_that_names_is_shutdown_without_brackets(tmp_path):
     assert told(check_rules.python_findings(tmp_path / "named", text)) == [("spin", line)]
     text = replaced("    rospy.spin()\n", loop.format("()"))
     assert told(check_rules.python_findings(tmp_path / "called", text)) == []
-
-
-@pytest.mark.parametrize(
-    ("loop", "found"), [("ros::ok", [("exit", 2)]), ("ros::ok()", []), ("n() /* ros::ok */", [])]
-)
-def test_a_loop_that_names_ok_without_brackets(loop, found, tmp_path):
-    text = f"int main() {{\n  while ({loop}) {{}}\n}}\n"
-    package = check_rules.make(tmp_path, src__a_DOT_cpp=text)
-    known = facts.Facts(sources={"a": ["src/a.cpp"]})
-    one = types.SimpleNamespace(package=package, facts=known)
-    assert told(check_rules.of(check_rules.not_called.RULE, one)) == found
 
 
 @pytest.mark.parametrize(

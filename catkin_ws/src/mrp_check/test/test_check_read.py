@@ -12,74 +12,10 @@ from mrp_check.confined.places import Kind, Place
 from mrp_check.confined.seen import LaunchResult, Seen
 from mrp_check.contract.finding import ERROR, NOTE, WARNING
 from mrp_check.package.cmake import Model
-from mrp_check.rules.code import arguments
-from mrp_check.rules.files import definitions
-from mrp_check.rules.run import launched, waiting
+from mrp_check.rules.files import messages
+from mrp_check.rules.run import launched
 
 pytestmark = pytest.mark.quick
-
-MAIN = "int main()\n{{\n  {}\n}}\n"
-
-
-def case(package):
-    facts = Facts(sources={file: [file] for file in package.of_kind("cpp")})
-    return types.SimpleNamespace(package=package, facts=facts, launch=None, launches=[])
-
-
-@pytest.mark.parametrize(
-    ("code", "line", "says"),
-    [
-        ("std::string name = argv[1];\n  if (argc == 2) {}", 4, "look at argc first"),
-        ("if (argc != 3)\n  {\n    return 1;\n  }\n  a = argv[3];", 8, "argc == 3 alone"),
-        ("if (argc != 3) return 1;\n  a = argv[2];", None, ""),
-        ("if (argc < 2) {}\n  a = argv[1];", None, ""),
-        ("if (argv[1] == nullptr) {}\n  a = argv[1];", None, ""),
-        ("read(argc, argv);\n  a = argv[1];", None, ""),
-        ("// a = argv[1];", None, ""),
-    ],
-)
-def test_an_argument_is_read_where_it_may_be_missing(code, line, says, tmp_path):
-    head = 'int main(int argc, char** argv)\n{\n  ros::init(argc, argv, "a");\n  '
-    package = check_rules.make(tmp_path / "some_pkg", src__a_DOT_cpp=f"{head}{code}\n}}\n")
-    found = [one for one in check_rules.of(arguments.RULE, case(package)) if one.severity != NOTE]
-    assert [one.line for one in found] == ([line] if line else [])
-    assert all(says in one.message for one in found)
-
-
-@pytest.mark.parametrize(
-    ("server", "expected"),
-    [
-        ("", ["a.cpp waits for the action wave: no node of this package serves it."]),
-        ('actionlib::SimpleActionServer<Wave> server(n, "wave", act);', []),
-        ("actionlib::SimpleActionServer<Wave> server_; Server() : server_(n_, name, act)", []),
-    ],
-    ids=["none", "named", "unnamed"],
-)
-def test_a_client_waits_in_vain_if_no_node_serves_its_action(server, expected, tmp_path):
-    client = MAIN.format('actionlib::SimpleActionClient<Wave> client("wave", true);')
-    files = {"a_DOT_cpp": client, "b_DOT_cpp": server}
-    package = check_rules.make(tmp_path / "some_pkg", **files)
-    known = case(package)
-    of_nodes = [*check_rules.of(waiting.RULE, known)]
-    known.facts.sources = {"a.cpp": ["a.cpp"]}  # nothing is made of the other one
-    for found in (of_nodes, [*check_rules.of(waiting.RULE, known)]):
-        assert [one.message for one in found if one.severity == NOTE] == expected
-
-
-@pytest.mark.parametrize(
-    ("type_", "near"),
-    [("some_pkg::WaveAction", "which nobody commands."), ("other::BowAction", "serves it.")],
-)
-def test_an_action_of_the_same_type_is_named(type_, near, tmp_path):
-    client = MAIN.format(
-        'actionlib::SimpleActionClient<some_pkg::WaveAction> client("greet", true);'
-    )
-    server = MAIN.format(f'actionlib::SimpleActionServer<{type_}> server(n, "wave_hand", act);')
-    package = check_rules.make(
-        tmp_path / "some_pkg", a_DOT_cpp=client, b_DOT_cpp=server, action__Wave_DOT_action=""
-    )
-    (found,) = check_rules.of(waiting.RULE, case(package))
-    assert found.message.endswith(near)
 
 
 def test_a_target_that_is_waited_for_and_does_not_exist_is_found_where_cmake_stops(tmp_path):
@@ -115,7 +51,7 @@ def test_ros_reads_each_line_of_a_definition(name, text, said, tmp_path):
     package = check_rules.make(tmp_path / "some_pkg", **made)
     model = types.SimpleNamespace(message_files={name})
     known = types.SimpleNamespace(package=package, model=model)
-    found = [*check_rules.of(definitions.RULE, known)]
+    found = [*check_rules.of(messages.RULE, known, messages.definitions)]
     assert [(one.file, one.line) for one in found] == ([(name, 2)] if said else [])
     assert all(said in one.message for one in found)
 
@@ -164,4 +100,6 @@ def test_what_a_node_raises_under_roslaunch(line, kind, time, other, found, tmp_
         nodes={"odd": types.SimpleNamespace(not_up=[])},
         observed=types.SimpleNamespace(launches=launches),
     )
-    assert [one.severity for one in check_rules.of(launched.RULE, known)] == found
+    assert [
+        one.severity for one in check_rules.of(launched.RULE, known, launched.under_launch_files)
+    ] == found

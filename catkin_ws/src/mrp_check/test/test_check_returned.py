@@ -29,14 +29,6 @@ def test_what_answers_a_service_returns_a_response(body, severities, tmp_path):
     assert [one.severity for one in found if one.id == "callbacks"] == severities
 
 
-ASK = """def ask():
-    try:
-        return service(1)
-    except rospy.ServiceException:
-        print("no")
-"""
-
-
 @pytest.mark.parametrize(
     ("code", "found"),
     [
@@ -65,14 +57,6 @@ def test_each_way_gives_a_value(code, found, tmp_path):
     assert [one.line - 2 for one in said if "has no value if" in one.message] == found
 
 
-HEARD = """def heard(message):
-    global pose
-    pose = message.data
-    tell()
-def tell():
-    print(pose)
-rospy.Subscriber("pose", String, heard)
-"""
 HEARS = """class Node:
     def __init__(self):
         rospy.Subscriber("pose", String, self.heard)
@@ -141,31 +125,6 @@ def test_what_an_action_server_calls_takes_the_goal(function, found, tmp_path):
     server = "actionlib.SimpleActionServer('a', None, execute_cb=run, auto_start=False)"
     text = f"{head}{function}\n    pass\n\n\nserver = {server}\n"
     assert told(check_rules.python_findings(tmp_path, text)) == found
-
-
-@pytest.mark.parametrize(
-    ("call", "indent", "found"),
-    [("", "    ", [("node-start", 6)]), ("main()", "    ", []), ("", "", [])],
-    ids=range(3),
-)
-def test_the_start_of_a_program_stands_outside_of_its_functions(call, indent, found, tmp_path):
-    test = f"{indent}if __name__ == '__main__':\n{indent}    print(1)\n"
-    text = f"import rospy\n\n\ndef main():\n    rospy.spin()\n{test}{call}\n"
-    seen = check_rules.python_findings(tmp_path, text)
-    assert [one for one in told(seen) if one[0] == "node-start"] == found
-
-
-@pytest.mark.parametrize(
-    ("within", "found"),
-    [("rospy.Publisher('a', String, queue_size=1).publish('x')", [("lifetime", 6)]), ("pass", [])],
-    ids=range(2),
-)
-def test_a_publisher_is_made_once(within, found, tmp_path):
-    head = "import rospy\nfrom std_msgs.msg import String\n\n\ndef hear(message):\n"
-    rest = "\n\n\nrospy.init_node('a')\ns = rospy.Subscriber('b', String, hear)\n"
-    rest += "p = rospy.Publisher('a', String, queue_size=1)\nrospy.spin()\n"
-    seen = check_rules.python_findings(tmp_path, f"{head}    {within}{rest}")
-    assert told(seen, "warning") == found
 
 
 OF_CLASS = """import rospy

@@ -15,6 +15,10 @@ Definition = Union[ast.FunctionDef, ast.ClassDef]
 
 LEVELS = {"logdebug", "loginfo", "logwarn", "logerr", "logerror", "logfatal"}
 _WAITS = ("join", "wait", "pause")  # methods that do
+_FAIL = ("wait_for_server", "wait_for_result")
+# What asks whether the node is to end, what ends the program, and what raises an error of rospy's
+# once it is to end. publish() gives up in silence then.
+_ENDS = set("_exit exit is_shutdown kill quit signal_shutdown spin wait_for_message".split())
 
 
 def argument(call: ast.Call, position: int, name: str) -> ast.expr | None:
@@ -27,6 +31,28 @@ def argument(call: ast.Call, position: int, name: str) -> ast.expr | None:
     ):
         return call.args[position]
     return None
+
+
+def callbacks(source: Source, **others: int) -> dict[ast.AST, set[ast.AST]]:
+    """Return the callbacks of subscribers; and of each what it calls, and itself.
+
+    others: what else of rospy's is handed a callback -> at which place
+    """
+    found: dict[ast.AST, set[ast.AST]] = {}
+    places = {f"rospy.{name}": place for name, place in {"Subscriber": 2, **others}.items()}
+    for call in source.nodes(ast.Call):
+        place = places.get(source.dotted(call.func) or "")
+        given = None if place is None else argument(call, place, "callback")
+        function = source.definition(given or argument(call, place or 0, "handler"))
+        if place is not None and isinstance(function, ast.FunctionDef):
+            found[function] = {function, *source.called([function])}
+    return found
+
+
+def in_threads(source: Source) -> set[ast.AST]:
+    """Return the functions that rospy calls in threads of its own, which end with the program."""
+    called = callbacks(source, Service=2, Timer=1).values()
+    return {function for one in called for function in one}
 
 
 def places(source: Source) -> list[Place]:
@@ -86,7 +112,13 @@ class _Node:
             yield from self.log(node, name.split(".")[1])
         elif method == "publish":
             yield self.place(Kind.PUBLISH)
-        elif name == "input" or method in _WAITS:
+        elif method == "wait_for_server":
+            yield self.place(Kind.WAITS)
+        elif name in ("input", "raw_input"):
+            yield self.place(Kind.SLEEP)
+            is_own = self.source.definition(node.func) or name in self.source.imports
+            yield from () if is_own else self.keyboard()
+        elif method in _WAITS:
             yield self.place(Kind.SLEEP)
 
     def called(self, node: ast.Call) -> str:
@@ -115,8 +147,106 @@ class _Node:
             if isinstance(value, ast.expr) and isinstance(self.source.value(value), (int, float)):
                 yield self.place(Kind.COUNTER, line=value.lineno)
 
-    def loop(self, node: ast.stmt) -> Iterator[Place]:
-        yield self.place(Kind.LOOP)
+    def loop(self, node: ast.While | ast.For) -> Iterator[Place]:
+        """Look at a loop, and whether Ctrl-C ends it."""
+        within = [part for one in (node, *self.source.called([node])) for part in ast.walk(one)]
+        named = {getattr(one, "attr", getattr(one, "id", "")) for one in within}
+        leaves = any(isinstance(one, (ast.Break, ast.Raise, ast.Return)) for one in within)
+        is_deaf = not leaves and not named & _ENDS and not self.is_in_thread()
+        test = node.test if isinstance(node, ast.While) else None
+        is_endless = is_deaf and isinstance(test, ast.Constant) and bool(test.value)
+        turns = self.turns(node) if is_deaf and isinstance(node, ast.For) else 0
+        period = turns * sum(map(self.seconds, within)) if turns else None
+        yield self.place(Kind.LOOP, "endless" if is_endless else UNKNOWN, period=period)
+
+    def is_in_thread(self) -> bool:
+        """Return whether rospy calls what is around it in a thread, which ends with the program."""
+        return self.source.function(self.node) in in_threads(self.source)
+
+    def turns(self, loop: ast.For) -> float:
+        call = loop.iter
+        if not isinstance(call, ast.Call) or self.called(call) != "range" or len(call.args) != 1:
+            return 0
+        number = self.source.value(call.args[0])
+        return number if isinstance(number, int) else 0
+
+    def seconds(self, call: ast.AST) -> float:
+        """Return how long a call sleeps, as far as that is plain."""
+        if not isinstance(call, ast.Call) or getattr(call.func, "attr", "") != "sleep":
+            return 0
+        value = self.source.value(call.args[0]) if call.args else None
+        made = self.source.made(getattr(call.func, "value", call))
+        if made and self.source.dotted(made.func) == "rospy.Rate" and made.args:
+            rate = self.source.value(made.args[0])
+            return 1 / rate if isinstance(rate, (int, float)) and rate else 0
+        return value if isinstance(value, (int, float)) else 0
+
+    def item(self, node: ast.Subscript) -> Iterator[Place]:
+        """Look for sys.argv[1] where nobody counts the arguments."""
+        number, source = self.source.value(node.slice), self.source
+        if source.dotted(node.value) != "sys.argv" or not isinstance(node.ctx, ast.Load):
+            return
+        if not isinstance(number, int) or number < 1 or source.is_guarded(node, "IndexError"):
+            return
+        calls = [*source.nodes(ast.Call)]
+        counted = (one for one in calls if getattr(one.func, "id", "") == "len" and one.args)
+        is_counted = any("argv" in ast.dump(one.args[0]) for one in counted)
+        if not is_counted and "rospy.myargv" not in {source.dotted(one.func) for one in calls}:
+            yield self.place(Kind.ARGUMENT, value=number)
+
+    def statement(self, node: ast.Expr) -> Iterator[Place]:
+        """Look for a call that waits for something, and whose result nobody looks at."""
+        call = node.value
+        name = getattr(call.func, "attr", "") if isinstance(call, ast.Call) else ""
+        asks = {one.attr for one in self.source.nodes(ast.Attribute)}
+        is_seen = name == "wait_for_result" and "get_state" in asks
+        if isinstance(call, ast.Call) and name in _FAIL and not is_seen:
+            yield self.place(Kind.IGNORED, name, value=int(bool(call.args or call.keywords)))
+
+    def keyboard(self) -> Iterator[Place]:
+        """Look at input(): after rospy.init_node(), Ctrl-C does not end it."""
+        inits = [c for c in self.source.nodes(ast.Call) if self.called(c) == "rospy.init_node"]
+        is_early = any(
+            self.source.function(one) is self.source.function(self.node)
+            and self.node.lineno < one.lineno
+            for one in inits
+        )
+        keywords = {keyword.arg for one in inits for keyword in one.keywords}
+        if inits and not is_early and "disable_signals" not in keywords:
+            yield self.place(Kind.KEYBOARD)
+
+    def named(self, kind: Kind, position: int, keyword: str) -> Iterator[Place]:
+        """Look at a service, an action or a parameter that is named."""
+        type_ = self.source.dotted(argument(self.node, position, keyword)) or ""
+        name = self.value(0, "name")
+        name = self.value(0, "ns") if name is UNKNOWN else name
+        if isinstance(name, str):
+            yield self.place(kind, name, type=type_.rpartition(".")[2])
+
+    def parameter(self, node: ast.Call) -> Iterator[Place]:
+        name, key = self.called(node), argument(node, 0, "param_name") or argument(node, 0, "key")
+        has_default = len(node.args) + len(node.keywords) > 1
+        kind = Kind.SETS if name == "rospy.set_param" else Kind.KNOWS
+        if name == "rospy.get_param" and not has_default:
+            kind = Kind.READS
+        if isinstance(self.source.value(key), str):
+            yield self.place(kind, self.source.value(key))
+
+    def asks_service(self, node: ast.Call) -> Iterator[Place]:
+        return self.named(Kind.ASKS, 1, "service_class")
+
+    def waits_for_service(self, node: ast.Call) -> Iterator[Place]:
+        yield from self.named(Kind.ASKS, 9, "")
+        yield self.place(Kind.WAITS)
+
+    def offers_service(self, node: ast.Call) -> Iterator[Place]:
+        return self.named(Kind.OFFERS, 1, "service_class")
+
+    def commands(self, node: ast.Call) -> Iterator[Place]:
+        return self.named(Kind.COMMANDS, 1, "ActionSpec")
+
+    def serves(self, node: ast.Call) -> Iterator[Place]:
+        return self.named(Kind.SERVES, 1, "ActionSpec")
 
     def definition(self, node: Definition) -> Iterator[Place]:
         unused = True if _is_unused(self.source, node) else None
@@ -194,6 +324,8 @@ _LOOKS: Sequence[tuple[Any, Callable[[_Node, Any], Iterable[Place]]]] = (
     (ast.AugAssign, _Node.changed),
     (ast.Assign, _Node.assigned),
     ((ast.While, ast.For), _Node.loop),
+    (ast.Subscript, _Node.item),
+    (ast.Expr, _Node.statement),
     ((ast.FunctionDef, ast.ClassDef), _Node.definition),
 )
 _CALLS = (
@@ -209,4 +341,14 @@ _CALLS = (
     (("sys.exit", "os._exit", "exit", "quit", "rospy.signal_shutdown"), _Node.exit),
     (("signal.signal",), _Node.signal),
     (("itertools.count",), _Node.count),
+    (("rospy.ServiceProxy",), _Node.asks_service),
+    (("rospy.wait_for_service",), _Node.waits_for_service),
+    (("rospy.Service",), _Node.offers_service),
+    (("actionlib.SimpleActionClient",), _Node.commands),
+    (("actionlib.SimpleActionServer",), _Node.serves),
+    (
+        tuple(f"rospy.{one}_param" for one in ("get", "has", "search", "set"))
+        + ("rospy.get_param_cached",),
+        _Node.parameter,
+    ),
 )

@@ -10,7 +10,7 @@ import re
 import subprocess
 import sys
 import typing
-from typing import Callable, Iterable, Iterator
+from typing import Callable, Iterator
 
 from mrp_check.contract.resources import SHARES
 from mrp_check.contract.words import last_part, line_of, nearest
@@ -183,13 +183,6 @@ def without_comments(text: str) -> str:
     return _TOKEN.sub(lambda match: blank(match) if match["comment"] else match.group(), text)
 
 
-def without_texts(code: str) -> str:
-    """Return a C++ source without comments in which spaces stand for what texts say."""
-    return _TOKEN.sub(
-        lambda match: f"{match.group()[0]}{blank(match)[2:]}{match.group()[-1]}", code
-    )
-
-
 def blank(match: re.Match[str]) -> str:
     """Return spaces for what was matched, in as many lines."""
     return re.sub(r"[^\n]", " ", match.group())
@@ -201,11 +194,6 @@ def code(package: Package, file: str) -> str:
     if kind == "python":
         return _PYTHON_COMMENT.sub("", text)
     return _XML_COMMENT.sub(blank, text) if kind == "launch" else without_comments(text)
-
-
-def cpp_code(package: Package, files: Iterable[str]) -> dict[str, str]:
-    """Return file -> code() of those that are C++ sources."""
-    return {file: code(package, file) for file in files if package.kind(file) == "cpp"}
 
 
 def includes(package: Package, file: str) -> Iterator[tuple[str, int]]:

@@ -21,6 +21,7 @@ if __name__ == "__main__":
 from mrp_check.confined import crossing
 from mrp_check.confined.cpp_counters import Counters
 from mrp_check.confined.cpp_expressions import Cursor
+from mrp_check.confined.cpp_habits import SLEEPS, Habits
 from mrp_check.confined.cpp_text import logged, percent
 from mrp_check.confined.places import Kind, Plain, Said, Task
 
@@ -68,7 +69,7 @@ def parsed(cindex: types.ModuleType, file: str, arguments: list[str], headers: s
         return cindex.Index.create().parse(file, arguments)
 
 
-class _Source(Counters):
+class _Source(Counters, Habits):
     """Finds the places of one source."""
 
     def answer(self) -> Said:
@@ -79,10 +80,6 @@ class _Source(Counters):
         self.look_at_logs()
         errors = [d.spelling for d in self.unit.diagnostics if d.severity >= d.Error]
         return Said(self.places, errors, sorted(self.named))
-
-    def look_at_loop(self, cursor: Cursor) -> None:
-        if self.is_loop(cursor):
-            self.add(cursor, Kind.LOOP)
 
     def look_at_return(self, cursor: Cursor) -> None:
         function = self.function(cursor)
@@ -104,6 +101,9 @@ class _Source(Counters):
                 look(self, kind, call, arguments)
         if call.spelling in _KEPT and scope == "NodeHandle":
             self.look_at_kept(call)
+        if call.spelling == "subscribe" and scope == "NodeHandle":
+            self.look_at_callback(call, arguments)
+        self.look_at_keyboard(call)
 
     def scope(self, call: Cursor) -> str:
         """Return the name of the class or namespace of what is called."""
@@ -297,10 +297,13 @@ _LOOKS = {
     **dict.fromkeys(("IF_STMT", "CONDITIONAL_OPERATOR"), _Source.look_at_reset),
     **dict.fromkeys(("WHILE_STMT", "DO_STMT", "FOR_STMT"), _Source.look_at_loop),
     "RETURN_STMT": _Source.look_at_return,
+    "STRING_LITERAL": _Source.look_at_text,
+    "ARRAY_SUBSCRIPT_EXPR": _Source.look_at_item,
     **dict.fromkeys(("FUNCTION_DECL", "CXX_METHOD"), _Source.look_at_function),
 }
 # (scopes or None for any, names) of a call, what it is, and what looks at it
-_HANDLE = ("NodeHandle",)
+_HANDLE, _PARAM = ("NodeHandle",), ("NodeHandle", "param")
+_FAIL = ("waitForServer", "waitForResult", "waitForExistence", "waitForService")
 _CALLS = (
     (("ros",), ("init",), Kind.INIT, _Source.add_init),
     (_HANDLE, ("advertise",), Kind.PUBLISHER, _Source.add_topic),
@@ -311,7 +314,20 @@ _CALLS = (
     (None, _SPINS, Kind.SPIN, _Source.add_spin),
     (None, _EXITS, Kind.EXIT, _Source.add_call),
     (None, ("signal", "sigaction"), Kind.SIGNAL, _Source.add_call),
-    (None, ("sleep", "usleep", "sleep_for"), Kind.SLEEP, _Source.add_call),
+    (None, tuple(SLEEPS), Kind.SLEEP, _Source.add_call),
+    (_HANDLE, ("serviceClient",), Kind.ASKS, _Source.add_name),
+    (_HANDLE, ("advertiseService",), Kind.OFFERS, _Source.add_name),
+    (_HANDLE, ("getParam",), Kind.READS, _Source.add_name),
+    (_PARAM, ("param", "getParamCached", "hasParam", "searchParam"), Kind.KNOWS, _Source.add_name),
+    (("param",), ("get", "has", "search", "getCached"), Kind.KNOWS, _Source.add_name),
+    (_PARAM, ("setParam", "set"), Kind.SETS, _Source.add_name),
+    (("service",), ("waitForService", "exists"), Kind.WAITS, _Source.add_name),
+    (None, ("waitForExistence", "waitForServer"), Kind.WAITS, _Source.add_name),
+    (("ServiceClient", "service"), ("call",), Kind.CALLS, _Source.add_name),
+    (None, ("SimpleActionClient",), Kind.COMMANDS, _Source.add_name),
+    (None, ("SimpleActionServer",), Kind.SERVES, _Source.add_name),
+    (None, _FAIL, Kind.IGNORED, _Source.look_at_ignored),
+    (("ServiceClient",), ("call",), Kind.IGNORED, _Source.look_at_ignored),
     (("", "std"), ("printf", "puts"), Kind.PRINT, _Source.add_print),
 )
 

@@ -28,10 +28,27 @@ class Kind(enum.Enum):
     EXIT = "exit"
     SIGNAL = "signal"
     FUNCTION = "function"
+    # Services, actions and parameters that are named:
+    ASKS = "asks"  # for a service
+    CALLS = "calls"  # a service
+    WAITS = "waits"  # until a service or an action's server is there
+    OFFERS = "offers"  # a service
+    COMMANDS = "commands"  # an action
+    SERVES = "serves"  # an action
+    READS = "reads"  # a parameter, without a default
+    KNOWS = "knows"  # a parameter
+    SETS = "sets"  # a parameter
+    # What may go wrong:
+    ARGUMENT = "argument"  # of the command line, which nobody has counted
+    BLOCKS = "blocks"  # a subscriber's callback sleeps
+    GOAL_LOOP = "goal loop"  # of an action's server, which does not ask whether it is cancelled
+    IGNORED = "ignored"  # what a call returns that can fail
+    KEYBOARD = "keyboard"  # somebody has to type
     # In C++ alone:
     HANDLE = "handle"
     GLOBAL = "global"  # a handle at file scope
     OWNER = "owner"  # of a handle, at file scope
+    PATH = "path"  # a text that names a home folder
     DISCARDED = "discarded"  # made, and kept nowhere
     LOCAL = "local"  # made, and kept in what ends too soon
 
@@ -46,12 +63,14 @@ class Place:
         for each value in it; of others the name of what is called, or of a variable or its type
     end: a function's last line; unused: whether nothing names it; usr: clang's name for it
     queue, queue_line: its length, and where that stands
-    period: seconds of a timer; oneshot: whether it fires once
+    period: seconds of a timer, or of all turns of a loop that does not ask whether the node is to
+        end; oneshot: whether a timer fires once, or a server starts when it is made
     anonymous: whether a node asks for such a name
     offset: where it stands in its file, in characters
-    type, bits: of a counter
+    type, bits: of a counter; type: of a service or an action, its last part
     names: of the variables that a message's field is set from
-    limit, value: a counter that has come to the limit is given the value
+    limit, value: a counter that has come to the limit is given the value; which argument of the
+        command line; whether a call that is waited for has a limit, or a loop ends on Ctrl-C
     name, function: of a handle's variable, and the function that it stands in
     holds: the types of the handles in it
     """
@@ -77,6 +96,11 @@ class Place:
     name: Optional[str] = None
     function: Optional[str] = None
     holds: List[str] = dataclasses.field(default_factory=list)
+
+    @property
+    def base(self) -> str:
+        """The name's last part: whatever namespace it is in."""
+        return (self.text or "").strip("~/").rpartition("/")[2]
 
     def is_around(self, place: "Place") -> bool:
         """Return whether this is a function in which another place is."""

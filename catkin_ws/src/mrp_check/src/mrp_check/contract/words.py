@@ -14,16 +14,6 @@ def line_of(match: re.Match[str], group: int | str = 0) -> int:
     return text.count("\n", 0, match.start(group)) + 1
 
 
-def braced(text: str, begin: int, pair: str = "{}") -> str:
-    """Return what stands from a bracket, at `begin`, to before the one that closes it."""
-    depth = 0
-    for at in range(begin, len(text)):
-        depth += {pair[0]: 1, pair[1]: -1}.get(text[at], 0)
-        if depth == 0:
-            return text[begin:at]
-    return text[begin:]
-
-
 def last_part(name: str) -> str:
     """Return what stands behind the last slash, of a path or of a name of ROS."""
     return name.rsplit("/", 1)[-1]
@@ -35,11 +25,6 @@ _NOT_UTF8 = re.compile("[\udc80-\udcff]")  # how Python reads bytes of a file's 
 def printable(name: str) -> str:
     """Return a file's name with %FC, for example, in the place of a byte that is not UTF-8."""
     return _NOT_UTF8.sub(lambda match: f"%{ord(match[0]) - 0xDC00:02X}", name)
-
-
-def with_article(name: str) -> str:
-    """Return a name behind a or an, whichever it takes."""
-    return f"{'an' if name[0] in 'AEIOUaeiou' else 'a'} {name}"
 
 
 def nearest(name: str, names: Iterable[str], alike: float = 0.6) -> str | None:

@@ -87,10 +87,10 @@ class Places:
                 return place.file, place.line
         return self.of(node, kind)
 
-    def asked(self, node: str, what: str, name: str) -> Where:
+    def asked(self, node: str, what: Kind, name: str) -> Where:
         """Return the place at which a node names a service or a parameter, as asked.py says it;
         without that name the first one of its kind, and without any where the node begins."""
-        said = [one for one in asked.of(self.package, self.sources(node)) if one.what == what]
+        said = [one for one in asked.of(self.facts, self.sources(node)) if one.kind is what]
         said.sort(key=lambda one: one.base != name)
         return (said[0].file, said[0].line) if said else self.of(node, Kind.INIT)
 

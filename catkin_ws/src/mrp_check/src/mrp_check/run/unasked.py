@@ -13,7 +13,6 @@ import re
 from typing import Mapping
 
 from mrp_check import sandbox
-from mrp_check.code import asked
 from mrp_check.code.facts import Facts
 from mrp_check.confined.places import Kind
 from mrp_check.confined.plans import LaunchNode
@@ -119,8 +118,7 @@ def _watched(workspace: Workspace, facts: Facts, nodes: Mapping[str, str]) -> li
     package = workspace.package
     # One that asks a service is waited for as one that publishes: until it has ended, or is silent.
     busy = {
-        name: bool(facts.of(name, Kind.PUBLISH))
-        or any(one.what == "asks" for one in asked.of(package, facts.sources.get(name, ())))
+        name: bool(facts.of(name, Kind.PUBLISH)) or bool(facts.of(name, Kind.ASKS))
         for name in nodes.values()
     }
     return [

@@ -1,14 +1,17 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""No function that publishes, or makes a topic, is one that nobody ever calls."""
+"""Somebody calls what publishes or subscribes; and what a callback uses is there in time."""
 
 from __future__ import annotations
 
-from typing import Iterator
+import ast
+from typing import Any, Iterator
 
 from mrp_check.case import evidence
 from mrp_check.code.node import Node, each_node
+from mrp_check.code.python_rule import PythonRule, arguments_of, ast_text, of_sources
+from mrp_check.code.python_source import Defined, Variable
 from mrp_check.confined.places import Kind, Place
-from mrp_check.contract.finding import Finding
+from mrp_check.contract.finding import HABIT, Finding
 from mrp_check.contract.requirements import Requirement, Rule
 
 
@@ -41,10 +44,114 @@ def _unused_around(node: Node, place: Place) -> Place | None:
     return around[0] if around else None
 
 
+_CALLING = {"rospy.Subscriber": "message", "rospy.Service": "request", "rospy.Timer": "call"}
+_BLOCKS = ("body", "orelse", "finalbody")
+
+
+class EarlyCallback(PythonRule):
+    def findings(self) -> Iterator[Finding]:
+        called = self.handed_over(self._calls_back)
+        for call in self.source.nodes(ast.Call):
+            what = self._calls_back(call)
+            later = self._made_after(call, called) if what else {}
+            for argument in arguments_of(call) if later else ():
+                function = self.source.definition(argument)
+                used = self._used(function, [])
+                name = next((one for one in later if one in used), None)
+                given = self.source.stored(name) if name else []
+                if isinstance(function, ast.FunctionDef) and name:
+                    if any(one and self.source.function(one) is function for one in given):
+                        continue  # perhaps it has given it a value before
+                    place, said = later[name], ast_text(used[name])
+                    yield self.finding(
+                        "callbacks",
+                        f"{function.name}() uses {said}, which is made in line {place.lineno} only:"
+                        f" a {what} that comes before raises an error.",
+                        call,
+                        certainty=HABIT,
+                        expected=f"{said} before what calls {function.name}()",
+                        fix=f"Move line {place.lineno} up to before this line.",
+                    )
+
+    def _calls_back(self, call: ast.Call) -> str:
+        """Return what comes to a callback that a call is given; nothing if none comes.
+
+        A class of the package's own may hand it on to a subscriber of its own.
+        """
+        name = self.source.dotted(call.func) or ""
+        module, _, class_ = name.rpartition(".")
+        own = [one for one in self.package.of_kind("python") if one.endswith(f"/{module}.py")]
+        is_own = class_[:1].isupper() and any(
+            "rospy.Subscriber(" in self.package.text(one) for one in own
+        )
+        return _CALLING.get(name, "message" if module and is_own else "")
+
+    def _made_after(
+        self, call: ast.Call, called: set[Defined | None]
+    ) -> dict[Variable, ast.Assign]:
+        """Return the variables that are given a value only after a call, in the same block, or by
+        one of the callbacks; and the statement that does so."""
+        made: dict[Variable, list[ast.Assign]] = {}
+        for statement in self._after(call):
+            if isinstance(statement, ast.Assign):
+                for key in filter(None, map(self.source.key, statement.targets)):
+                    made.setdefault(key, []).append(statement)
+        return {
+            key: statements[0]
+            for key, statements in made.items()
+            if not may_be_inherited(key)
+            and all(
+                one in [statement.value for statement in statements]
+                or isinstance(one, ast.expr)
+                and self.source.function(one) in called
+                for one in self.source.stored(key)
+            )
+        }
+
+    def _after(self, call: ast.Call) -> list[ast.stmt]:
+        """Return the statements that follow a call's own one."""
+        inner: ast.AST = call
+        for outer in self.source.above(call):
+            for block in (getattr(outer, name, []) for name in _BLOCKS):
+                if isinstance(block, list) and inner in block:
+                    return block[block.index(inner) + 1 :]
+            inner = outer
+        return []
+
+    def _used(self, function: ast.AST | None, seen: list[ast.AST]) -> dict[Variable, ast.AST]:
+        """Return the variables that a function reads, or one that it calls; and a place of each."""
+        if not isinstance(function, ast.FunctionDef) or function in seen:
+            return {}
+        used: dict[Variable, ast.AST] = {}
+        for node in ast.walk(function):
+            if isinstance(node, ast.Call):
+                used.update(self._used(self.source.definition(node.func), [*seen, function]))
+            is_read = isinstance(getattr(node, "ctx", None), ast.Load)
+            key = self.source.key(node) if is_read else None
+            if key and not self.source.is_guarded(node, "AttributeError", "NameError"):
+                used.setdefault(key, node)
+        return used
+
+
+def may_be_inherited(key: Variable) -> bool:
+    """Return whether a variable is a member that its class, or another one, may have, too."""
+    class_, name = key
+    if not isinstance(class_, ast.ClassDef):
+        return False
+    own = [target for one in class_.body for target in getattr(one, "targets", [])]
+    bases = [base for base in class_.bases if getattr(base, "id", "") != "object"]
+    return bool(bases) or any(getattr(target, "id", "") == name for target in own)
+
+
+def _findings(case: Any) -> Iterator[Finding]:
+    yield from of_sources(EarlyCallback)(case)
+    yield from each_node(_of)(case)
+
+
 RULE = Rule(
     stage="static",
     needs=("facts",),
-    findings=each_node(_of),
+    findings=_findings,
     requirements={
         "callbacks": Requirement(
             "Each callback is handed over and takes what it gets", "subscriber", evidence.read

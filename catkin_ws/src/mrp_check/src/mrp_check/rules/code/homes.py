@@ -10,14 +10,13 @@ from typing import Iterable, Iterator
 from mrp_check.case.case import Case
 from mrp_check.code import uses
 from mrp_check.code.python_source import Source
+from mrp_check.confined.cpp_habits import HOME
+from mrp_check.confined.places import Kind
 from mrp_check.contract.finding import HABIT, Finding
 from mrp_check.contract.requirements import ANY, Rule
 
-_HOME = re.compile(r"/(?:home|Users)/(?![A-Z_]+/)[\w.-]+/[^\s\"'<>;:]*")
 _PARAMETERS = (".yaml", ".yml", ".ini")
 _COMMENT = re.compile(r"(?m)(?:^|[ \t])#.*$")
-_CPP_TEXT = re.compile(r'"(?:[^"\\\n]|\\.)*"')
-_INCLUDE = re.compile(r"^[ \t]*#[ \t]*include[^\n]*", re.MULTILINE)
 
 
 def _findings(case: Case) -> Iterator[Finding]:
@@ -25,9 +24,8 @@ def _findings(case: Case) -> Iterator[Finding]:
     for file in case.facts.relevant:
         source = case.facts.python.get(file)
         yield from _first_of_each(file, _in_python(source) if source else ())
-    for file in package.of_kind("cpp", "header"):
-        if not uses.is_test(file):
-            yield from _first_of_each(file, _in_cpp(package.text(file)))
+    for place in (one for one in case.facts.places if one.kind is Kind.PATH):
+        yield from _first_of_each(place.file, [(place.text or "", place.line)])
     for file in package.of_kind("launch"):
         text = uses.code(package, file)
         yield from _first_of_each(file, _in_text(text, 0, text))
@@ -59,18 +57,11 @@ def _in_python(source: Source) -> Iterator[tuple[str, int]]:
     for node in source.nodes(ast.Constant):
         is_docstring = isinstance(source.parents.get(node), ast.Expr)
         if isinstance(node.value, str) and not is_docstring:
-            yield from ((path, node.lineno) for path in _HOME.findall(node.value))
-
-
-def _in_cpp(text: str) -> Iterator[tuple[str, int]]:
-    """Yield those of a C++ source. The compiler finds what it includes, or does not."""
-    text = _INCLUDE.sub("", uses.without_comments(text))
-    for match in _CPP_TEXT.finditer(text):
-        yield from _in_text(match.group(), match.start(), text)
+            yield from ((path, node.lineno) for path in HOME.findall(node.value))
 
 
 def _in_text(part: str, start: int, text: str) -> Iterator[tuple[str, int]]:
-    for match in _HOME.finditer(part):
+    for match in HOME.finditer(part):
         yield match.group(), text.count("\n", 0, start + match.start()) + 1
 
 

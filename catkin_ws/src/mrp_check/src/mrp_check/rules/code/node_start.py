@@ -25,7 +25,7 @@ def _of(node: Node) -> Iterator[Finding]:
 def _only_asks(node: Node) -> bool:
     """Return whether a program is a client of a service, and no node: rospy lets it ask."""
     is_node = node.spec.is_contract or node.places(Kind.PUBLISHER, Kind.SUBSCRIBER, Kind.TIMER)
-    return not is_node and bool(node.package.first_match(node.files, r"\bServiceProxy\s*\("))
+    return not is_node and bool(node.places(Kind.ASKS))
 
 
 def _no_init(node: Node) -> Finding:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What a Python source names and nothing has: modules, names, members."""
+"""Python can read each source, and what it names is there: modules, names, members."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ from pyflakes import checker, messages
 
 from mrp_check import releases
 from mrp_check.case import evidence
+from mrp_check.case.case import Case
 from mrp_check.code import uses
 from mrp_check.code.python_facts import last_line
 from mrp_check.code.python_modules import (
@@ -26,7 +27,7 @@ from mrp_check.code.python_modules import (
 )
 from mrp_check.code.python_rule import PythonRule, of_sources
 from mrp_check.code.python_source import Source
-from mrp_check.contract.finding import CERTAIN, Change, Finding
+from mrp_check.contract.finding import CERTAIN, HABIT, READ, Change, Finding
 from mrp_check.contract.requirements import Requirement, Rule
 from mrp_check.contract.words import last_part, nearest, perhaps
 from mrp_check.package.package import Package
@@ -398,13 +399,43 @@ def _names_of(node: ast.stmt) -> list[str]:
     return [one.name for one in names]
 
 
+def findings(case: Case) -> Iterator[Finding]:
+    of_nodes = {file for files in case.facts.sources.values() for file in files}
+    for problem in case.facts.problems:
+        if problem.file not in case.facts.relevant:
+            problem.certainty = HABIT
+            problem.message += " Nothing uses the file."
+        elif problem.file not in of_nodes:
+            problem.certainty = READ
+        yield problem
+
+
+def _syntax(case: Case) -> Iterator[Finding]:
+    """Yield what Python says where it cannot read a source."""
+    of_nodes = {file for files in case.facts.sources.values() for file in files}
+    for problem in case.facts.problems:
+        problem.certainty = problem.certainty or CERTAIN
+        if problem.file not in case.facts.relevant:
+            problem.certainty = HABIT
+            problem.message += " Nothing uses the file."
+        elif problem.file not in of_nodes:
+            problem.certainty = READ
+        yield problem
+
+
+def _findings(case: Case) -> Iterator[Finding]:
+    yield from _syntax(case)
+    yield from of_sources(Names)(case)
+
+
 RULE = Rule(
     stage="static",
     needs=("facts",),
-    findings=of_sources(Names),
+    findings=_findings,
     requirements={
+        "python-syntax": Requirement("Python can read each script", "wrong", evidence.python),
         "python-names": Requirement(
             "Each name in Python code exists", "wrong", evidence.python_read
-        )
+        ),
     },
 )

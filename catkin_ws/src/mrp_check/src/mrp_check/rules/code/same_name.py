@@ -6,23 +6,18 @@ A talker in Python and one in C++ are two ways of writing one node: of them it i
 
 from __future__ import annotations
 
-import re
 from typing import Iterator
 
 from mrp_check.case.case import Case
-from mrp_check.code import uses
 from mrp_check.confined.places import Kind, Place
 from mrp_check.contract.finding import HABIT, HINT, Finding
 from mrp_check.contract.requirements import ANY, Rule
-from mrp_check.contract.words import line_of
-
-_INIT = re.compile(r'\bros::init\s*\(\s*\w+\s*,\s*\w+\s*,\s*"(\w+)"\s*\)')
 
 
 def _findings(case: Case) -> Iterator[Finding]:
     named: dict[str, dict[str, Place]] = {}
     for node in case.facts.sources:
-        for place in case.facts.of(node, Kind.INIT)[:1] or [*_unread(case, node)][:1]:
+        for place in case.facts.of(node, Kind.INIT)[:1]:
             if place.text and place.anonymous is not True:
                 named.setdefault(place.text, {})[node] = place
     for name, places in named.items():
@@ -44,13 +39,6 @@ def _findings(case: Case) -> Iterator[Finding]:
                     fix="Give it a name of its own.",
                     node=node,
                 )
-
-
-def _unread(case: Case, node: str) -> Iterator[Place]:
-    """Yield the name in a source in C++ that could not be read, for want of a header."""
-    for file, text in uses.cpp_code(case.package, case.facts.sources[node]).items():
-        for match in _INIT.finditer(text) if file in case.facts.unread else ():
-            yield Place(file, line_of(match), Kind.INIT, match[1])
 
 
 RULE = Rule("static", ("facts",), _findings, also=("starts",), only=ANY)

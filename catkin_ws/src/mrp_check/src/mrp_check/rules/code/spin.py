@@ -12,8 +12,6 @@ from mrp_check.confined.places import Kind, Place
 from mrp_check.contract.finding import CERTAIN, READ, Finding
 from mrp_check.contract.requirements import Requirement, Rule
 
-_WAITS = r"\.wait_for_(result|server)\s*\("
-
 
 def _of(node: Node) -> Iterator[Finding]:
     waits, spins = node.places(Kind.LOOP, Kind.SLEEP), node.places(Kind.SPIN)
@@ -32,7 +30,7 @@ def _of(node: Node) -> Iterator[Finding]:
     if waits and (node.is_python or not called_back):
         return
     # A client of an action waits for what comes of it.
-    if node.is_python and not called_back and node.package.first_match(node.files, _WAITS):
+    if node.is_python and not called_back and node.places(Kind.WAITS, Kind.COMMANDS):
         return
     if called_back or node.places(Kind.TIMER, Kind.PUBLISHER):
         yield _never(node, bool(waits))
@@ -78,12 +76,8 @@ def _last_line(node: Node) -> int:
 
 def _made_too_late(node: Node, spins: Sequence[Place]) -> Iterator[Finding]:
     """Yield a finding if the node's parts are made below a spin() of the same function."""
-    classes = {
-        name
-        for file in node.files
-        for line in node.package.lines(file)
-        for name in re.findall(r"^\s*(?:class|struct) (\w+)", line)
-    }
+    classes = {p.text for p in node.places(Kind.FUNCTION) if (p.text or "")[:1].isupper()}
+    handles = {(p.file, p.line) for p in node.places(Kind.HANDLE)}
     for spin in spins:
         ends = [f.end for f in node.places(Kind.FUNCTION) if f.is_around(spin)]
         if spin.text not in (None, "spin", "waitForShutdown") or not ends:
@@ -91,7 +85,8 @@ def _made_too_late(node: Node, spins: Sequence[Place]) -> Iterator[Finding]:
         made = {p.line for p in node.places(Kind.PUBLISHER, Kind.SUBSCRIBER) if p.file == spin.file}
         for number in range(spin.line + 1, min(ends) + 1):
             line = node.package.line(spin.file, number)
-            if number in made or classes & set(re.findall(r"\w+", line)):
+            is_handle = (spin.file, number) in handles
+            if is_handle or number in made or classes & set(re.findall(r"\w+", line)):
                 call = "rospy.spin()" if node.is_python else "ros::spin()"
                 yield node.finding(
                     "spin",

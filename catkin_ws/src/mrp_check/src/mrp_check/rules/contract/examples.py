@@ -104,8 +104,8 @@ def _cause(node: Node, example: Example, ran: Alone, wrong: Message) -> tuple[Wh
         return raised[0], f" {raised[1]}: {raised[2]}"
     reads = [
         one
-        for one in asked.of(node.package, node.places.sources(node.name))
-        if one.what in ("reads", "knows")
+        for one in asked.of(node.places.facts, node.places.sources(node.name))
+        if one.kind in (Kind.READS, Kind.KNOWS)
     ]
     for name in example.parameters:
         same = [one for one in reads if one.base == name]
@@ -114,7 +114,7 @@ def _cause(node: Node, example: Example, ran: Alone, wrong: Message) -> tuple[Wh
                 (reads[0].file, reads[0].line) if reads else node.places.of(node.name, Kind.INIT)
             )
             return place, f" Nothing reads the parameter {name}."
-        if not same[0].name.startswith("~") and node.package.kind(same[0].file) == "python":
+        if not (same[0].text or "").startswith("~") and node.package.kind(same[0].file) == "python":
             return (same[0].file, same[0].line), " A private parameter's name begins with ~."
     texts = [node.places.of_text(node.name, v) for v in wrong.values() if isinstance(v, str)]
     said = next(filter(None, texts), None) or node.places.of_setting(node.name, wrong)

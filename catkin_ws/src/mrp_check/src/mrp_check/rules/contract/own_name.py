@@ -6,9 +6,10 @@ from __future__ import annotations
 import re
 from typing import Iterator
 
+from mrp_check.case import evidence
 from mrp_check.confined.places import Kind
 from mrp_check.contract.finding import HABIT, Finding
-from mrp_check.contract.requirements import CONTRACT, Rule
+from mrp_check.contract.requirements import CONTRACT, Requirement, Rule
 from mrp_check.contract.words import last_part
 from mrp_check.run.node import Node, each_node
 
@@ -47,7 +48,19 @@ def _of(node: Node) -> Iterator[Finding]:
             node.places.of(node.name, Kind.INIT),
             expected=node.name,
             seen=name,
+            fix=f'Write "{node.name}".',
+            change=(f'"{name}"', f'"{node.name}"'),
         )
 
 
-RULE = Rule("run", ("nodes",), each_node(_of, also_dead=True), also=("node-name",), only=CONTRACT)
+RULE = Rule(
+    stage="run",
+    needs=("nodes",),
+    findings=each_node(_of, also_dead=True),
+    requirements={
+        "node-name": Requirement(
+            "Each node gives itself its own name", "publisher#start-the-node", evidence.alone
+        )
+    },
+    only=CONTRACT,
+)

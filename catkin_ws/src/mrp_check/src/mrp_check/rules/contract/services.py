@@ -7,6 +7,7 @@ from typing import Iterator, Mapping, Sequence
 
 from mrp_check.case import evidence
 from mrp_check.confined import fitting
+from mrp_check.confined.places import Kind
 from mrp_check.confined.seen import Answer
 from mrp_check.contract.finding import Finding, Where
 from mrp_check.contract.requirements import CONTRACT, Requirement, Rule
@@ -41,7 +42,7 @@ def _not_offered(node: Node, service: Service) -> Finding:
     return node.finding(
         "services",
         f"{node.name} offers {few(others) or 'no service'}, not {service.name}.",
-        node.places.asked(node.name, "offers", nearest(service.name, others) or ""),
+        node.places.asked(node.name, Kind.OFFERS, nearest(service.name, others) or ""),
         expected=f"the service {service.name}",
         seen=few(others) or "no service",
     )
@@ -49,7 +50,7 @@ def _not_offered(node: Node, service: Service) -> Finding:
 
 def _answers(node: Node, service: Service, answers: list[Answer]) -> Iterator[Finding]:
     """Yield the Finding about the first call that is not answered as the contract says."""
-    place = node.places.asked(node.name, "offers", service.name)
+    place = node.places.asked(node.name, Kind.OFFERS, service.name)
     for number, call in enumerate(service.examples):
         asked = f"{node.name}, asked {_shown(call.request)} on {service.name},"
         answer = answers[number] if number < len(answers) else Answer(None, "it never answered")
@@ -90,7 +91,7 @@ def _requests(
     node: Node, service: Service, requests: Mapping[str, Sequence[Message]]
 ) -> Iterator[Finding]:
     asked = requests.get(_key(node, service), [])
-    place = node.places.asked(node.name, "asks", service.name)
+    place = node.places.asked(node.name, Kind.ASKS, service.name)
     expected = " or ".join(_shown(call.request) for call in service.examples[:4])
     if not asked:
         others = {last_part(one.topic) for one in node.seen_alone.lookups} - {service.name}
@@ -98,7 +99,7 @@ def _requests(
         yield node.finding(
             "services",
             f"{node.name} never calls {service.name}{looked}.",
-            node.places.asked(node.name, "asks", next(iter(sorted(others)), service.name)),
+            node.places.asked(node.name, Kind.ASKS, next(iter(sorted(others)), service.name)),
             expected=f"a call of {service.name}" + (f" with {expected}" if expected else ""),
             seen=few(sorted(others)) or "no call",
         )

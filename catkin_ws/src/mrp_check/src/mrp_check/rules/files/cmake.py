@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+import ast
+import posixpath
 import re
 from typing import Iterator
 
@@ -30,6 +32,7 @@ _LOST = ", and its executables are put where roslaunch and rosrun do not look"
 
 
 def _findings(case: Case) -> Iterator[Finding]:
+    yield from python_setup(case)
     if FILE in case.package.files:
         yield from _missing_calls(case.package, case.model)
         yield from _too_late(case.model)
@@ -243,6 +246,68 @@ def _no_folder(package: Package, model: Model) -> Iterator[Finding]:
                     fix=f"Take INCLUDE_DIRS {name} out; or make the folder, with a file in it, as"
                     " git keeps no empty folder.",
                 )
+
+
+SETUP = "setup.py"
+
+
+def python_setup(case: Case) -> Iterator[Finding]:
+    package = case.package
+    is_used = any(call.command == "catkin_python_setup" for call in case.model.calls)
+    if is_used and SETUP in package.files:
+        yield from _old_setup(package)
+        yield from _no_python_folder(package)
+
+
+def _old_setup(package: Package) -> Iterator[Finding]:
+    """https://wiki.ros.org/noetic/Migration#Setuptools_instead_of_Distutils"""
+    place = package.first_match([SETUP], r"^\s*(?:from|import)\s+distutils\b")
+    if place:
+        yield Finding(
+            "cmake",
+            f"{SETUP} imports distutils, which Python has not any more from 3.12 on.",
+            *place,
+            HABIT,
+            expected="from setuptools import setup",
+            seen=package.line(*place),
+            fix="Take setup from setuptools; package.xml then needs"
+            " <buildtool_depend>python3-setuptools</buildtool_depend>.",
+        )
+
+
+def _no_python_folder(package: Package) -> Iterator[Finding]:
+    """Yield a finding for each: catkin_make takes it, and `catkin_make install` fails."""
+    given = {
+        keyword.arg: _plain(keyword.value)
+        for call in ast.walk(package.tree(SETUP))
+        if isinstance(call, ast.Call)
+        for keyword in call.keywords
+    }
+    names, folders = given.get("packages"), given.get("package_dir") or {}
+    if not isinstance(names, list) or not isinstance(folders, dict):
+        return
+    for name in filter(lambda one: isinstance(one, str), names):
+        folder = folders.get(name) or posixpath.join(folders.get("", ""), name.replace(".", "/"))
+        if not (package.root / folder).is_dir():
+            line = package.find_line(SETUP, name, 1)
+            yield Finding(
+                "cmake",
+                f"{SETUP} names the Python package {name}, and there is no folder {folder}:"
+                " `catkin_make install` fails.",
+                SETUP,
+                line,
+                HABIT,
+                expected=f"a folder {folder} with a file __init__.py",
+                seen=package.line(SETUP, line),
+                fix=f"Make the folder; or take {SETUP} and catkin_python_setup() away.",
+            )
+
+
+def _plain(node: ast.expr) -> object:
+    try:
+        return ast.literal_eval(node)
+    except ValueError:
+        return None
 
 
 RULE = Rule(

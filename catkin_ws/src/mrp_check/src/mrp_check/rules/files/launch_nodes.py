@@ -14,9 +14,9 @@ from mrp_check.case import evidence
 from mrp_check.case.case import Case
 from mrp_check.code import uses
 from mrp_check.confined.launch_dump import Started
-from mrp_check.contract.finding import HABIT, HINT, Finding
+from mrp_check.contract.finding import CERTAIN, HABIT, HINT, Finding
 from mrp_check.contract.requirements import Requirement, Rule
-from mrp_check.contract.words import last_part, nearest
+from mrp_check.contract.words import last_part, line_of, nearest
 from mrp_check.package.cmake import Model
 from mrp_check.package.launch import Launch
 from mrp_check.package.package import Package
@@ -24,6 +24,7 @@ from mrp_check.package.xml_file import elements
 
 
 def _findings(case: Case) -> Iterator[Finding]:
+    yield from () if case.spec.is_contract else gone(case)
     launch = case.launch
     if not launch or launch.error:
         return
@@ -213,6 +214,48 @@ def _source_of(package: Package, model: Model, name: str) -> str | None:
 def _targets_line(model: Model) -> int:
     lines = [target.line for target in model.targets.values() if target.file == "CMakeLists.txt"]
     return max(lines) if lines else model.catkin_package.line if model.catkin_package else 1
+
+
+# What stands in the file -> what to say of it, how severe it is, what to write for it, and which
+# word the file has, too.
+_GONE = {
+    r"\btype\s*=\s*\"(state_publisher)\"": (
+        "robot_state_publisher has no executable state_publisher any more: roslaunch cannot start"
+        " it",
+        CERTAIN,
+        "robot_state_publisher",
+        "",
+    ),
+    r"\(find xacro\)/(xacro\.py)\b": (
+        "xacro has no xacro.py any more: roslaunch cannot load the file",
+        CERTAIN,
+        "xacro",
+        "",
+    ),
+    r"\bname\s*=\s*\"(use_gui)\"": (
+        "joint_state_publisher does not read use_gui any more: no window with sliders comes",
+        HABIT,
+        "a node of type joint_state_publisher_gui",
+        "joint_state_publisher",
+    ),
+}
+
+
+def gone(case: Case) -> Iterator[Finding]:
+    for file in case.package.of_kind("launch"):
+        text = uses.code(case.package, file)
+        for shape, (said, certainty, instead, beside) in _GONE.items():
+            for match in re.finditer(shape, text) if beside in text else ():
+                yield Finding(
+                    "launch-nodes",
+                    f"{said} (it went with Noetic).",
+                    file,
+                    line_of(match, 1),
+                    certainty,
+                    expected=instead,
+                    seen=match[1],
+                    fix=f"Write {instead} for {match[1]}.",
+                )
 
 
 RULE = Rule(

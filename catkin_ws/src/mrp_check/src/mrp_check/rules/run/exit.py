@@ -16,8 +16,9 @@ from mrp_check.contract.finding import HABIT, Finding, Where
 from mrp_check.contract.requirements import Requirement, Rule
 from mrp_check.contract.spec import Shutdown
 from mrp_check.contract.words import last_part
+from mrp_check.package.package import Package
 from mrp_check.run.node import Node
-from mrp_check.run.places import Traceback
+from mrp_check.run.places import Places, Traceback
 from mrp_check.run.words import code_text, last_words
 
 _BEFORE = 0.1  # seconds: what is printed so shortly before it is asked belongs to its end, too
@@ -174,15 +175,55 @@ def _leaves(node: Node, code: int | None) -> Where:
     )
 
 
+def _leftovers(case: Case) -> Iterator[Finding]:
+    seen, spec, package, places = case.observed, case.spec, case.package, case.places
+    reported: set[object] = set()
+    for left in [one for run in (seen.direct, seen.launch) if run for one in run.left]:
+        name = left.node
+        if name is None or name not in spec.nodes:
+            found = re.search(r"__name:=(\w+)", left.command)
+            name = found.group(1) if found and found.group(1) in spec.nodes else None
+        alone = seen.alone(name)
+        if {(name, "left"), left.command} & reported or alone and alone.killed:
+            continue
+        reported |= {(name, "left"), left.command}
+        file, line = _starts_program(name, package, places)
+        name = name or next((node for node in spec.nodes if file in places.sources(node)), None)
+        yield Finding(
+            "leftovers",
+            f"{name or 'The package'} leaves a process behind when it ends: {left.command[:120]}",
+            file,
+            line,
+            expected="no process of the package after its end",
+            seen=left.command[:200],
+            node=name,
+        )
+
+
+def _starts_program(name: str | None, package: Package, places: Places) -> Where:
+    files = places.sources(name) if name else package.of_kind("python", "cpp")
+    starts = r"\b(Popen|fork|system|popen|Process)\s*\(|subprocess\.\w+\("
+    place = package.first_match(files, starts)
+    return place or (places.of(name, Kind.INIT) if name else (None, None))
+
+
+def _findings(case: Case) -> Iterator[Finding]:
+    yield from findings(case)
+    yield from _leftovers(case)
+
+
 RULE = Rule(
     stage="stop",
     needs=("nodes",),
-    findings=findings,
+    findings=_findings,
     requirements={
         "exit": Requirement(
             "Each node ends cleanly on Ctrl-C",
             "launching",
             evidence.when(Node.has_ended, "was not seen to end"),
-        )
+        ),
+        "leftovers": Requirement(
+            "Nothing is left when the nodes have ended", "launching", evidence.up
+        ),
     },
 )

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What goes wrong when the nodes of a package run together, under each of its launch files."""
+"""No error is raised while the nodes run: by themselves, and under each launch file."""
 
 from __future__ import annotations
 
@@ -9,7 +9,8 @@ from mrp_check.case.case import Case
 from mrp_check.code import asked
 from mrp_check.confined.places import Kind
 from mrp_check.contract.finding import HABIT, HINT, Finding, Where
-from mrp_check.contract.requirements import ANY, Rule
+from mrp_check.contract.requirements import Rule
+from mrp_check.run.node import Node, each_node
 from mrp_check.run.observing import Launched
 from mrp_check.run.places import Traceback
 from mrp_check.run.starting import id_of_error
@@ -19,7 +20,7 @@ from mrp_check.run.words import code_text
 _GIVES_UP = "RLException: "
 
 
-def _findings(case: Case) -> Iterator[Finding]:
+def under_launch_files(case: Case) -> Iterator[Finding]:
     for launched in case.observed.launches:
         lines = launched.seen.until_asked()
         yield from _gave_up(case, launched, lines)
@@ -43,7 +44,7 @@ def _has_alternatives(case: Case) -> bool:
     """Return whether two nodes call themselves the same, or serve the same action or service."""
     found: list[tuple[str, str]] = []
     for node, files in case.facts.sources.items():
-        said = {(one.what, one.base) for one in asked.of(case.package, files)}
+        said = {(one.kind.value, one.base) for one in asked.of(case.facts, files)}
         said |= {("is", place.text or node) for place in case.facts.of(node, Kind.INIT)[:1]}
         found += [one for one in said if one[0] in ("is", "offers", "serves")]
     return len(found) > len({*found})
@@ -121,10 +122,41 @@ def _gave_up(case: Case, launched: Launched, lines: list[str]) -> Iterator[Findi
     )
 
 
+def _raises(node: Node) -> Iterator[Finding]:
+    if node.not_up:
+        return
+    found = node.places.traceback(node.errors())
+    if found:
+        place, kind, text = found
+        source = node.package.line(place[0], place[1])
+        yield node.finding(
+            id_of_error(kind, text, "callbacks"),
+            f"{node.name} runs into an error as it works: {kind}: {text}",
+            place,
+            expected="a node that works without an error",
+            seen=f"{kind}: {text}, in: {source}",
+        )
+        return
+    called = node.places.wrong_arguments(node.errors())
+    if called:
+        place, text = called
+        yield node.finding(
+            "callbacks",
+            f"{node.name} has a callback that cannot be called as ROS calls it: {text}.",
+            place,
+            expected="a callback with one argument besides self",
+            seen=f"TypeError: {text}",
+        )
+
+
+def _findings(case: Case) -> Iterator[Finding]:
+    yield from each_node(_raises, also_dead=True)(case)
+    yield from () if case.spec.is_contract else under_launch_files(case)
+
+
 RULE = Rule(
     "run",
     ("nodes",),
     _findings,
     also=("starts", "callbacks", "python-names", "python-syntax", "type", "node-start"),
-    only=ANY,
 )

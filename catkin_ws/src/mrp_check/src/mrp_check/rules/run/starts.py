@@ -220,7 +220,8 @@ def _early_call(node: Node, lines: list[str]) -> Line | None:
         return None
     if raised and not any("ServiceException" in line for line in lines):
         return None
-    return asked.unwaited(node.package, node.places.sources(node.name))
+    place = asked.unwaited(node.places.facts, node.places.sources(node.name))
+    return (place.file, place.line) if place else None
 
 
 def misses_arguments(node: Node, finding: Finding) -> bool:

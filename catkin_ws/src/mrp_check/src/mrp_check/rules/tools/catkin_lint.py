@@ -63,7 +63,7 @@ def _findings(case: Case) -> Iterator[Finding]:
         if row and file in package.files:
             name = f"catkin_lint calls {one['id'].lower()}"
             row = row._replace(certainty=HINT)
-            yield row.finding("catkin_lint", package, file, line, name, one["text"])
+            yield row.finding("catkin-lint", package, file, line, name, one["text"])
 
 
 RULE = Rule(
@@ -71,7 +71,7 @@ RULE = Rule(
     needs=("manifest", "model"),
     findings=_findings,
     requirements={
-        "catkin_lint": Requirement(
+        "catkin-lint": Requirement(
             "catkin_lint has nothing to say", "building#cmakelists-txt", evidence.manifest
         )
     },

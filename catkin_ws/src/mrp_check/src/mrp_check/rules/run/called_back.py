@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A roscpp node calls its callbacks: messages that have arrived were seen to wait for ever."""
+"""A node spins: it calls its callbacks, and keeps no processor busy while it waits for them."""
 
 from __future__ import annotations
 
@@ -8,8 +8,9 @@ from typing import Iterator
 from mrp_check.case.case import Case
 from mrp_check.confined.places import Kind
 from mrp_check.confined.seen import LaunchResult
-from mrp_check.contract.finding import Finding
+from mrp_check.contract.finding import HABIT, Finding
 from mrp_check.contract.requirements import ANY, Rule
+from mrp_check.run.node import Node, each_node
 from mrp_check.run.traces import ROS_TOPICS, ends
 
 _FEW = 3  # messages that must have come
@@ -17,6 +18,7 @@ _SECONDS = 2.0  # for which the first of them must have waited
 
 
 def _findings(case: Case) -> Iterator[Finding]:
+    yield from each_node(_busy)(case)
     reported = set()
     for launched in case.observed.launches:
         where = f"under {launched.file}" if launched.file else "together with the other nodes"
@@ -56,6 +58,27 @@ def _unheard(launch: LaunchResult, path: str) -> str | None:
             if one.type in types and len(sent) >= _FEW and launch.asked - sent[0] > _SECONDS:
                 return one.topic
     return None
+
+
+_BUSY = 0.9  # part of the time
+
+
+def _busy(node: Node) -> Iterator[Finding]:
+    busy = node.direct.busy if node.direct else None
+    if busy is None or busy < _BUSY:
+        return
+    file, line = node.places.of(node.name, Kind.LOOP, Kind.SPIN)
+    rate = "rospy.Rate" if file in node.places.facts.python else "ros::Rate"
+    yield node.finding(
+        "spin",
+        f"{node.name} keeps a processor busy, though nothing arrives: it ran for"
+        f" {min(busy, 1):.0%} of the time. A loop of it never pauses.",
+        (file, line),
+        HABIT,
+        expected=f"a {rate}, whose sleep() is called in the loop",
+        seen=f"{min(busy, 1):.0%} of a processor",
+        fix=f"Make a {rate} before the loop, and call its sleep() at the end of it.",
+    )
 
 
 RULE = Rule("run", ("nodes",), _findings, also=("spin",), only=ANY)

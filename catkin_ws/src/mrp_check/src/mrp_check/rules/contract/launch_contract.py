@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The launch file puts the nodes into the spec's group, whose name can be changed."""
+"""The launch file does as the contract says: its group, its topics, and where lines come out."""
 
 from __future__ import annotations
 
@@ -11,10 +11,18 @@ from mrp_check.case.case import Case
 from mrp_check.confined.launch_dump import Started
 from mrp_check.contract.finding import HABIT, Finding
 from mrp_check.contract.requirements import CONTRACT, Requirement, Rule
-from mrp_check.package.xml_file import Element
+from mrp_check.contract.spec import Spec
+from mrp_check.package.package import Package
+from mrp_check.package.xml_file import Element, elements
 
 
 def _findings(case: Case) -> Iterator[Finding]:
+    yield from _group(case)
+    yield from _output(case)
+    yield from remaps(case)
+
+
+def _group(case: Case) -> Iterator[Finding]:
     launch, group = case.launch, case.spec.launch.group
     if not group or not launch or launch.error:
         return
@@ -89,6 +97,58 @@ def _line(nodes: Sequence[Started], elements: Sequence[Element], has_groups: boo
     return next(e.line for tag in ("group", "launch") for e in elements if e.tag == tag)
 
 
+def _output(case: Case) -> Iterator[Finding]:
+    for node in case.launch.of_spec(case.spec) if case.launch else ():
+        if node.output != "screen":
+            yield Finding(
+                "launch-output",
+                f'What {node.name} prints goes to a log file: its <node> has no output="screen".',
+                node.file,
+                node.line,
+                node=node.name,
+                expected='output="screen"',
+                seen=f'output="{node.output}"',
+                fix='Add output="screen".',
+            )
+
+
+def remaps(case: Case) -> Iterator[Finding]:
+    for node in case.launch.of_spec(case.spec) if case.launch else ():
+        yield from _remaps_of(case.package, case.spec, node)
+
+
+def _remaps_of(package: Package, spec: Spec, node: Started) -> Iterator[Finding]:
+    wanted = spec.nodes[node.name]
+    for topic in dict.fromkeys([*wanted.publishing, *wanted.subscribing]):
+        base = node.namespace.rstrip("/") + "/"
+        own = {topic.name, base + topic.name}
+        for old, new in node.remaps:
+            if old in own and new not in own:
+                yield Finding(
+                    "topic",
+                    f"The launch file renames the topic {old} of {node.name} to {new}:"
+                    " the nodes do not meet there.",
+                    node.file,
+                    remap_line(package, node, old, new),
+                    node=node.name,
+                    expected=f"the topic {topic.name}",
+                    seen=f"{old} renamed to {new}",
+                    fix="Take the <remap> out.",
+                )
+
+
+def remap_line(package: Package, node: Started, old: str, new: str) -> int | None:
+    """Return the line of the <remap> that renames `old` to `new`."""
+    # A file of another package has no lines that could be named.
+    for element in elements(package.bytes(node.file)) if node.file else ():
+        if element.tag == "remap" and old.endswith(
+            element.attributes.get("from", "?").lstrip("~/")
+        ):
+            if new.endswith(element.attributes.get("to", "?").lstrip("~/")):
+                return element.line
+    return node.line
+
+
 RULE = Rule(
     stage="files",
     needs=("launch",),
@@ -96,7 +156,11 @@ RULE = Rule(
     requirements={
         "launch-group": Requirement(
             "The launch file puts the nodes into the group", "namespaces", evidence.launch
-        )
+        ),
+        "launch-output": Requirement(
+            "The nodes' lines come to the screen", "launching", evidence.launch
+        ),
     },
+    also=("topic",),
     only=CONTRACT,
 )

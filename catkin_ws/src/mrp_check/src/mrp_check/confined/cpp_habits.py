@@ -1,0 +1,179 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What a C++ source asks for and offers, and what in it may go wrong: loops, waits, arguments."""
+
+from __future__ import annotations
+
+import functools
+import re
+from typing import Iterable, Sequence
+
+from mrp_check.confined.cpp_expressions import Cursor, Unit
+from mrp_check.confined.places import Kind, Plain
+
+HOME = re.compile(r"/(?:home|Users)/(?![A-Z_]+/)[\w.-]+/[^\s\"'<>;:]*")
+SLEEPS = {"sleep", "usleep", "nanosleep", "sleep_for", "sleep_until"}
+_ASKS_TO_END = {"ok", "isShuttingDown", "isStarted", "exit", "_exit", "abort"}
+_ASKS_TO_CANCEL = {"isPreemptRequested", "setPreempted", "registerPreemptCallback"}
+_SPINNERS = {"AsyncSpinner", "MultiThreadedSpinner"}  # threads: other callbacks go on
+_SHORT = 0.1  # seconds that a callback may sleep
+_LEAVES = {"BREAK_STMT", "RETURN_STMT", "CXX_THROW_EXPR", "GOTO_STMT"}
+
+
+class Habits(Unit):
+    def calls(self, cursors: Iterable[Cursor]) -> set[str]:
+        """Return the names of all functions that are called there."""
+        return {one.spelling for one in cursors if one.kind == self.kinds.CALL_EXPR}
+
+    @functools.cached_property
+    def all_calls(self) -> set[str]:
+        return self.calls(self.cursors)
+
+    def add_name(self, kind: Kind, call: Cursor, arguments: Sequence[Cursor]) -> None:
+        """Note a service, an action or a parameter, by the first text that a call is given."""
+        values = (self.value(argument) for argument in arguments[:2])
+        name = next((value for value in values if isinstance(value, str)), None)
+        if name is None and kind not in (Kind.WAITS, Kind.CALLS):
+            return
+        at_once: Plain = None
+        if kind is Kind.SERVES:
+            at_once = any(self.value(argument) is True for argument in arguments[1:])
+        self.add(call, kind, name, type=self.of_type(call, arguments), oneshot=at_once)
+        if kind is Kind.WAITS and name:
+            self.add(call, Kind.ASKS, name)
+
+    def of_type(self, call: Cursor, arguments: Sequence[Cursor]) -> str:
+        """Return the last part of the type of a service or an action, or nothing."""
+        written = call.type.get_canonical().spelling if "Action" in call.spelling else ""
+        action = re.search(r"(\w+)_<", written)
+        if action:
+            return action[1]
+        for argument in arguments:  # the callback of a server: its request says it
+            for one in argument.walk_preorder():
+                function = one.referenced if one.kind.is_expression() else None
+                for given in function.get_arguments() if function is not None else ():
+                    request = re.search(r"(\w+)Request_?\b", self.type_of(given))
+                    if request:
+                        return request[1]
+        member = next(call.get_children(), call)
+        types = [one.spelling for one in member.get_children() if one.kind == self.kinds.TYPE_REF]
+        return re.split(r"::| ", types[-1])[-1] if types else ""
+
+    def look_at_text(self, literal: Cursor) -> None:
+        path = HOME.search(literal.spelling)
+        if path:
+            self.add(literal, Kind.PATH, path[0])
+
+    def look_at_item(self, item: Cursor) -> None:
+        """Look for argv[1] in a main() that does not look at argc."""
+        of, index = [*item.get_children(), None, None][:2]
+        main = self.function(item)
+        number = self.value(index)
+        if main is None or main.spelling != "main" or not isinstance(number, int) or number < 1:
+            return
+        parameters = [*main.get_arguments()]
+        if len(parameters) < 2 or of is None or not self.names(self.peel(of), parameters[1]):
+            return
+        if not any(self.is_counted(one, parameters) for one in main.walk_preorder()):
+            self.add(item, Kind.ARGUMENT, value=number)
+
+    def is_counted(self, cursor: Cursor, parameters: Sequence[Cursor]) -> bool:
+        """Return whether argc is named there, but for ros::init(), or argv is asked for."""
+        if cursor.kind == self.kinds.IF_STMT:
+            asked = next(cursor.get_children(), cursor)
+            return any(self.names(one, parameters[1]) for one in asked.walk_preorder())
+        is_named = cursor.kind == self.kinds.DECL_REF_EXPR and self.names(cursor, parameters[0])
+        around = (one for one in self.above(cursor) if one.kind == self.kinds.CALL_EXPR)
+        return is_named and not any(one.spelling == "init" for one in around)
+
+    def look_at_ignored(self, kind: Kind, call: Cursor, arguments: Sequence[Cursor]) -> None:
+        """Note a call whose result nobody looks at; of waitForResult(), the state says it, too."""
+        wrapping = (self.kinds.UNEXPOSED_EXPR, self.kinds.PAREN_EXPR)
+        parent = next((one for one in self.above(call) if one.kind not in wrapping), None)
+        is_statement = parent is not None and parent.kind == self.kinds.COMPOUND_STMT
+        is_seen = call.spelling == "waitForResult" and "getState" in self.all_calls
+        if is_statement and not is_seen:
+            given = [one for one in arguments if next(one.get_tokens(), None) is not None]
+            least = 1 if call.spelling == "waitForService" else 0
+            self.add(call, kind, call.spelling, value=int(len(given) > least))
+
+    def look_at_keyboard(self, cursor: Cursor) -> None:
+        """Note std::cin >> and getline(std::cin), after ros::init(): before, Ctrl-C ends it."""
+        named = (one.spelling for one in cursor.get_children() for one in one.walk_preorder())
+        if cursor.spelling in ("operator>>", "getline") and "cin" in named:
+            self.add(cursor, Kind.KEYBOARD, offset=cursor.extent.start.offset)
+
+    def look_at_callback(self, call: Cursor, arguments: Sequence[Cursor]) -> None:
+        """Note where the callback of a subscriber sleeps."""
+        if _SPINNERS & self.all_calls:
+            return
+        for argument in arguments[2:]:
+            for one in argument.walk_preorder():
+                function = one.referenced if one.kind.is_expression() else None
+                body = function.get_definition() if function is not None else None
+                if body is None:
+                    continue
+                for part in body.walk_preorder():
+                    if self.seconds(part) >= _SHORT and self.own_file(part):
+                        self.add(part, Kind.BLOCKS, function=body.spelling)
+                        return
+
+    def seconds(self, call: Cursor) -> float:
+        """Return how long a call sleeps: 1 if that is not plain, 0 if it does not sleep."""
+        if call.kind != self.kinds.CALL_EXPR or call.spelling not in SLEEPS:
+            return 0
+        arguments = [*call.get_arguments()]
+        duration = arguments[0] if arguments else self.base(call)
+        made = self.peel(duration) if duration is not None else None
+        target = made.referenced if made is not None else None
+        initial = self.initial(target) if target is not None else None
+        rate = self.value(initial) if "Rate" in self.type_of(duration) else None
+        if isinstance(rate, (int, float)) and rate:
+            return 1 / rate
+        value = self.value(duration)
+        per_second = 1e6 if call.spelling == "usleep" else 1
+        return value / per_second if isinstance(value, (int, float)) else 1
+
+    def look_at_loop(self, loop: Cursor) -> None:
+        if not self.is_loop(loop):
+            return
+        within = [*loop.walk_preorder()]
+        called = self.calls(within)
+        leaves = bool(_LEAVES & {one.kind.name for one in within})
+        asks = bool(_ASKS_TO_END & called) or any(self.asks(one) for one in within)
+        is_deaf = not leaves and not asks
+        endless = "endless" if is_deaf and self.is_endless(loop) else None
+        turns = self.turns(loop) if is_deaf else 0
+        period = turns * sum(map(self.seconds, within))
+        self.add(loop, Kind.LOOP, endless, period=period or None)
+        function = self.function(loop)
+        if function is not None and {"publishFeedback", "sleep"} & called:
+            ends = "setSucceeded" in self.calls(function.walk_preorder())
+            if ends and not _ASKS_TO_CANCEL & self.all_calls:
+                self.add(loop, Kind.GOAL_LOOP, value=int(asks))
+
+    def asks(self, call: Cursor) -> bool:
+        """Return whether a function of the package's own is called, which may ask for it."""
+        target = call.referenced if call.kind == self.kinds.CALL_EXPR else None
+        return target is not None and self.path(target.location.file) is not None
+
+    def is_endless(self, loop: Cursor) -> bool:
+        """Return whether the condition of a loop is always true."""
+        tokens = [token.spelling for token in loop.get_tokens()]
+        if tokens[0] == "for":
+            return tokens[:5] == ["for", "(", ";", ";", ")"]
+        asked = tokens[1:4] if tokens[0] == "while" else tokens[-3:]
+        return asked in (["(", "true", ")"], ["(", "1", ")"])
+
+    def turns(self, loop: Cursor) -> float:
+        """Return how often a loop turns that counts from one number to another; 0 if not plain."""
+        if loop.kind != self.kinds.FOR_STMT:
+            return 0
+        parts = [*loop.get_children()]
+        begin = next((c for c in parts[0].walk_preorder() if c.kind == self.kinds.VAR_DECL), None)
+        sides = [*parts[1].get_children()] if len(parts) > 1 else []
+        if begin is None or len(sides) != 2 or not self.names(self.peel(sides[0]), begin):
+            return 0
+        first, last = self.value(self.initial(begin)), self.value(sides[1])
+        if isinstance(first, (int, float)) and isinstance(last, (int, float)):
+            return last - first
+        return 0

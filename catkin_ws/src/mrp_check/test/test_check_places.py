@@ -1,0 +1,168 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What clang says of a C++ source: what it asks for and offers, and what may go wrong in it."""
+
+import pathlib
+import subprocess
+import types
+
+import check_rules
+import pytest
+from mrp_check.code.facts import Facts
+from mrp_check.confined import cpp_headers, crossing
+from mrp_check.confined.places import Answer, Kind, Task
+from mrp_check.rules.code import arguments, goals, homes, ignored, slow_callback
+from mrp_check.rules.run import ctrl_c, waiting
+
+pytestmark = [pytest.mark.quick, pytest.mark.xdist_group("check_places")]
+
+CPP_FACTS = pathlib.Path(cpp_headers.__file__).with_name("cpp_facts.py")
+BROKEN = """#include <ros/ros.h>
+#include <std_msgs/String.h>
+#include <std_srvs/SetBool.h>
+#include <actionlib/TestAction.h>
+#include <actionlib/client/simple_action_client.h>
+#include <actionlib/server/simple_action_server.h>
+
+typedef actionlib::SimpleActionClient<actionlib::TestAction> Client;
+
+bool answer(std_srvs::SetBool::Request& q, std_srvs::SetBool::Response& r) { return true; }
+
+void hear(const std_msgs::String::ConstPtr& message)
+{
+  ros::Duration(2).sleep();  // blocks hear
+}
+
+struct Doer
+{
+  actionlib::SimpleActionServer<actionlib::TestAction> server_;
+
+  Doer(ros::NodeHandle& nh)
+    : server_(nh, "do_it", boost::bind(&Doer::act, this, _1), true)  // serves do_it TestAction
+  {
+  }
+
+  void act(const actionlib::TestGoalConstPtr& goal)
+  {
+    ros::Rate rate(2);
+    for (int i = 0; i < 12; ++i)  // goal loop, loop 6
+    {
+      rate.sleep();
+    }
+    server_.setSucceeded();
+  }
+};
+
+int main(int argc, char** argv)
+{
+  ros::init(argc, argv, "a");
+  ros::NodeHandle nh;
+  std::string name = argv[1];  // argument 1
+  Client client("do_it", true);  // commands do_it TestAction
+  client.waitForServer();  // ignored waitForServer
+  client.waitForResult(ros::Duration(3));  // ignored waitForResult limited
+  auto caller = nh.serviceClient<std_srvs::SetBool>("set_it");  // asks set_it SetBool
+  std_srvs::SetBool service;
+  caller.call(service);  // ignored call limited
+  auto server = nh.advertiseService("offer_it", answer);  // offers offer_it SetBool
+  auto subscriber = nh.subscribe("words", 1, hear);
+  double gain;
+  nh.getParam("gain", gain);  // reads gain
+  nh.setParam("far", 3);  // sets far
+  std::cin >> gain;  // keyboard
+  std::string path = "/home/me/map.yaml";  // path /home/me/map.yaml
+  while (true)  // loop endless
+  {
+    ros::spinOnce();
+  }
+}
+"""
+# What only looks like it.
+VALID = """#include <ros/ros.h>
+#include <std_msgs/String.h>
+#include <std_srvs/SetBool.h>
+
+bool running() { return ros::ok(); }
+void hear(const std_msgs::String::ConstPtr&) { ros::Duration(0.01).sleep(); }
+
+int main(int argc, char** argv)
+{
+  double gain = 0;
+  std::cin >> gain;  // before ros::init(), Ctrl-C ends the program
+  ros::init(argc, argv, "a");
+  ros::NodeHandle nh;
+  std::string name = argc > 1 ? argv[1] : "a";
+  auto caller = nh.serviceClient<std_srvs::SetBool>("set_it");
+  std_srvs::SetBool service;
+  if (!caller.waitForExistence() || !caller.call(service)) return 1;
+  auto joint = nh.subscribe("words", 1, hear);
+  nh.param("gain", gain, 2.0);
+  ROS_INFO("while (true) { std::cin >> x; } argv[1] // /home/NAME/map.yaml and /* \\n");
+  for (int i = 0; i < 100 && ros::ok(); ++i) ros::Duration(0.5).sleep();
+  while (running()) ros::spinOnce();
+  while (true)
+  {
+    if (!ros::ok()) break;
+  }
+}
+"""
+
+
+def facts_of(folder, source):
+    package = check_rules.make(folder / "some_pkg", src__a_DOT_cpp=source)
+    file = str(package.root / "src" / "a.cpp")
+    task = Task(str(package.root), "none", [[file, cpp_headers.STANDARD, "-w"]])
+    done = subprocess.run(
+        ["/usr/bin/python3", CPP_FACTS, crossing.to_json(task)], stdout=subprocess.PIPE, check=True
+    )
+    (said,) = crossing.from_json(Answer, done.stdout).values()
+    assert said.errors == []
+    return package, Facts(said.places, {"a": ["src/a.cpp"]})
+
+
+def of_line(place):
+    """Return what a comment of BROKEN says of a place."""
+    words = [place.kind.value, place.text, place.type, place.function]
+    if place.kind is Kind.LOOP:
+        words = ["loop", place.text, f"{place.period:g}" if place.period else ""]
+    elif place.kind in (Kind.ARGUMENT, Kind.IGNORED):
+        words = [place.kind.value, place.text]
+        words.append("limited" if place.kind is Kind.IGNORED and place.value else "")
+        words.append(str(place.value) if place.kind is Kind.ARGUMENT else "")
+    return " ".join(filter(None, words))
+
+
+LOOKED_AT = set(Kind) - {
+    *(Kind.INIT, Kind.FUNCTION, Kind.HANDLE, Kind.SUBSCRIBER, Kind.SLEEP, Kind.SPIN, Kind.TIMER),
+    *(Kind.STEP, Kind.COUNTER, Kind.EXIT, Kind.WAITS, Kind.CALLS),
+}
+RULES = arguments, goals, homes, ignored, slow_callback, waiting, ctrl_c
+
+
+def findings(package, facts):
+    nodes = {"a": types.SimpleNamespace(direct=None)}
+    spec = types.SimpleNamespace(shutdown=types.SimpleNamespace(seconds=5))
+    known = types.SimpleNamespace(package=package, facts=facts, nodes=nodes, launches=[], spec=spec)
+    return {(one.line, one.certainty) for rule in RULES for one in check_rules.of(rule.RULE, known)}
+
+
+def test_what_may_go_wrong_is_found_at_its_line(tmp_path):
+    source = BROKEN.replace("boost::bind", "std::bind").replace("_1)", "std::placeholders::_1)")
+    package, facts = facts_of(tmp_path, source)
+    found = {}
+    for place in facts.places:
+        if place.kind in LOOKED_AT:
+            found.setdefault(place.line, []).append(of_line(place))
+    said = {
+        number: line.partition("  // ")[2]
+        for number, line in enumerate(source.splitlines(), 1)
+        if "  // " in line
+    }
+    assert {line: ", ".join(sorted(one)) for line, one in found.items()} == said
+    lines = {number for number, text in said.items() if not text.startswith(("offers", "sets"))}
+    lines -= {number for number, text in said.items() if text.startswith("commands")}
+    assert {line for line, _ in findings(package, facts)} == lines
+
+
+def test_what_only_looks_wrong_is_not_flagged(tmp_path):
+    package, facts = facts_of(tmp_path, VALID)
+    assert {one for one in findings(package, facts) if one[1] != "hint"} == set()
