@@ -104,10 +104,7 @@ def test_missing_dependency_that_is_not_here_either(tmp_path):
     package = check_rules.make(tmp_path, src__a_DOT_cpp="", **files)
     without = dataclasses.replace(check_rules.PUB_SUB, is_contract=False)
     found = file_findings(dependencies, package, spec=without)
-    assert [one.file for one in found if "some_other_msgs" in one.message] == [
-        "package.xml",
-        "CMakeLists.txt",
-    ]
+    assert [one.file for one in found if "some_other_msgs" in one.message] == ["package.xml"]
     assert file_findings(dependencies, package) == []
 
 

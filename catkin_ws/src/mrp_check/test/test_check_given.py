@@ -142,25 +142,6 @@ def test_a_standard_of_cpp_that_newer_headers_do_not_take(line, found, tmp_path)
 
 
 @pytest.mark.parametrize(
-    ("file", "text", "found"),
-    [
-        ("msg__RobotState", "int32 battery_level  # in %\nint32 MAX=3", []),
-        ("msg__robot_state", "int32 level", [("msg/robot_state.msg", 1)]),
-        ("msg__State", "\nint32[] Level  # in %", [("msg/State.msg", 2)]),
-    ],
-    ids=range(3),
-)
-def test_the_names_of_types_and_fields(file, text, found, tmp_path):
-    known = case(tmp_path, "cpp", INIT, **{f"{file}_DOT_msg": text})
-    said = [
-        one
-        for one in check_rules.of(messages.RULE, known, messages.definitions)
-        if one.severity == NOTE
-    ]
-    assert [(one.file, one.line) for one in said] == found
-
-
-@pytest.mark.parametrize(
     ("line", "found"), [("from distutils.core import setup", [2]), ("import setuptools", [])]
 )
 def test_setup_takes_what_goes_on_to_be_there(line, found, tmp_path):

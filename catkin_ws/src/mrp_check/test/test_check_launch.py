@@ -191,25 +191,6 @@ def test_what_asks_for_an_argument_is_read_all_the_same(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("used", "found"),
-    [
-        ('<param name="c" value="1"/>', [2]),
-        ('<param name="c" value="$(arg b)"/>', []),
-        ('<!-- <param name="c" value="$(arg b)"/> -->', [2]),
-        ('<param name="c" value="$(eval b + 1)"/>', []),
-        ('<include file="c.launch" pass_all_args="true"/>', []),
-        ('<include file="c.launch"><arg name="b" value="2"/></include>', [2]),
-    ],
-    ids=range(6),
-)
-def test_an_argument_that_changes_nothing(used, found, tmp_path):
-    text = f'<launch>\n  <arg name="b" default="1"/>\n  {used}\n</launch>\n'
-    package = check_rules.make(tmp_path / "some_pkg", launch__a_DOT_launch=text)
-    tags = launching.Launch("", file="launch/a.launch").elements(package)
-    assert [one.line for one in launch_file.unused(package, tags)] == found
-
-
-@pytest.mark.parametrize(
     ("command", "found"),
     [
         ("'$(find some_pkg)/package.xml'", [2]),
@@ -246,10 +227,10 @@ def test_line_of_an_included_file(tmp_path):
     ("package", "type_", "found"),
     [
         ("some_pkg", "odd.py", []),
-        ("nowhere_pkg", "odd.py", [("launch-nodes", "note"), ("package-name", "warning")]),
-        ("nowhere_pkg", "more.py", [("launch-nodes", "note")]),
+        ("nowhere_pkg", "odd.py", [("package-name", "warning")]),
+        ("nowhere_pkg", "more.py", []),
         ("roscpp", "odd.py", []),
-        ("rospy_tutorials", "odd.py", [("launch-nodes", "note")]),
+        ("rospy_tutorials", "odd.py", []),
     ],
     ids=range(5),
 )

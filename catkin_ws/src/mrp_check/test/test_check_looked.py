@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What may fail or be missing is looked at first: a call, an argument, a value of a message."""
 
-
 import check_rules
 import pytest
 from mrp_check.contract.finding import NOTE

@@ -68,7 +68,8 @@ def test_a_call_that_cmake_did_not_come_to_may_be_made(ends, ids, tmp_path):
 @pytest.mark.parametrize(("name", "number"), [("catkin", 1), ("catkin_simple", 0)])
 def test_catkin_simple_finds_what_package_xml_names(name, number, tmp_path):
     text = CMAKE.replace("catkin REQUIRED COMPONENTS roscpp rospy", f"{name} REQUIRED COMPONENTS")
-    source = {"src__odd_DOT_py": NODE.format("python")}
+    text += "\nadd_executable(a src/a.cpp)\n"
+    source = {"src__a_DOT_cpp": "#include <ros/ros.h>\n"}
     package = check_rules.make(tmp_path / "some_pkg", CMakeLists_DOT_txt=text, **source)
     found = [one for one in findings(dependencies, package) if "find_package" in one.message]
     assert len(found) == number

@@ -45,7 +45,8 @@ def _findings(case: Case) -> Iterator[Finding]:
             continue
         if not in_manifest:
             yield _not_in_manifest(package, name, use, manifest, used)
-        if not in_cmake and model.catkin:
+        # Python finds it all the same.
+        if not in_cmake and model.catkin and use.language == "cpp":
             yield _not_in_cmake(name, use, model, model.catkin)
 
 
@@ -118,19 +119,14 @@ def _not_in_manifest(
 
 def _not_in_cmake(name: str, use: Use, model: Model, call: Call) -> Finding:
     near = _misspelt(name, model.components, ())
-    is_cpp = use.language == "cpp"
     return Finding(
         "dependencies",
-        f"find_package(catkin ...) does not name {name}, which {use.file} uses in line {use.line}. "
-        + (
-            "Its headers and libraries may then not be found."
-            if is_cpp
-            else "Python finds it all the same; catkin does not know of it."
-        )
+        f"find_package(catkin ...) does not name {name}, which {use.file} uses in line {use.line}."
+        " Its headers and libraries may then not be found."
         + (f" It names {near}, and there is no such package." if near else ""),
         call.file,
         call.line,
-        certainty=READ if is_cpp and use.firm else HINT,
+        certainty=READ if use.firm else HINT,
         expected=f"find_package(catkin REQUIRED COMPONENTS ... {name} ...)",
         seen=", ".join(model.components) or "no COMPONENTS",
         fix=f"Write {name} for {near}." if near else f"Add {name} to COMPONENTS.",

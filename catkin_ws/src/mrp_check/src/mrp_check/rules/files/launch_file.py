@@ -8,7 +8,6 @@ from typing import Callable, Iterator, Optional, Sequence, Tuple
 
 from mrp_check.case import evidence
 from mrp_check.case.case import Case
-from mrp_check.code import uses
 from mrp_check.contract.finding import CERTAIN, HABIT, HINT, Finding, Line
 from mrp_check.contract.requirements import Requirement, Rule
 from mrp_check.contract.words import last_part, line_of, nearest
@@ -39,8 +38,6 @@ def _findings(case: Case) -> Iterator[Finding]:
             yield error
         yield from _unknown(tags)
         yield from _no_attributes(launch, tags)
-        if not case.spec.is_contract:
-            yield from unused(case.package, tags)
         yield from stray("launch-file", case.package, tags, ("rosparam",))
     for file in case.package.of_kind("launch"):
         for match in _BRACES.finditer(case.package.text(file)):
@@ -125,27 +122,6 @@ def _no_attributes(launch: Launch, tags: Sequence[tuple[str, Element]]) -> Itera
                 expected=f'{near}="..."' if near else "an attribute of roslaunch",
                 seen=f'{name}="{element.attributes[name]}"',
                 fix=f"Write {near} for {name}." if near else "Take it out.",
-            )
-
-
-def unused(package: Package, tags: Sequence[tuple[str, Element]]) -> Iterator[Finding]:
-    """Yield a note for each argument of a launch file that it uses nowhere."""
-    for file, element in tags:
-        name, above = element.attributes.get("name", ""), [one.tag for one in element.parents]
-        if element.tag != "arg" or "include" in above or not name:
-            continue
-        text = uses.code(package, file)
-        used = rf"arg\s+{re.escape(name)}\s*\)|\$\(eval[^\n]*\b{re.escape(name)}\b"
-        if not re.search(used, text) and "pass_all_args" not in text:
-            yield Finding(
-                "launch-file",
-                f"The argument {name} changes nothing: the launch file does not use it.",
-                file,
-                element.line,
-                HINT,
-                expected=f"$(arg {name}) somewhere",
-                seen=package.line(file, element.line),
-                fix=f"Use $(arg {name}); or take it out.",
             )
 
 

@@ -6,15 +6,13 @@ from __future__ import annotations
 import dataclasses
 import os
 import re
-import shutil
 from typing import Iterator
 
-from mrp_check.build.catkin import search_path
 from mrp_check.case import evidence
 from mrp_check.case.case import Case
 from mrp_check.code import uses
 from mrp_check.confined.launch_dump import Started
-from mrp_check.contract.finding import CERTAIN, HABIT, HINT, Finding
+from mrp_check.contract.finding import CERTAIN, HABIT, Finding
 from mrp_check.contract.requirements import Requirement, Rule
 from mrp_check.contract.words import last_part, line_of, nearest
 from mrp_check.package.cmake import Model
@@ -70,10 +68,6 @@ def _elsewhere(case: Case, launch: Launch) -> Iterator[Finding]:
     """Yield a note for each package that the launch file starts nodes of, and each program that it
     starts them by, that is not here; and a warning where this package has such a node."""
     own = _executables(case.package, case.model)
-    for name, node in {node.package: node for node in launch.nodes}.items():
-        if name != case.package.name and not uses.is_ros_package(name):
-            said = f"It starts a node of a package that is not here: {uses.absent(name, 'cpp')}."
-            yield Finding("launch-nodes", said, node.file, node.line, HINT)
     for node in launch.nodes:
         is_ros = node.package == case.package.name or uses.is_called_so(node.package)
         # Both names are those of before the package was renamed.
@@ -83,12 +77,6 @@ def _elsewhere(case: Case, launch: Launch) -> Iterator[Finding]:
         if (node.type in own or is_old) and not is_ros:
             found = _other_package(case.package, case.model, node, None)
             yield dataclasses.replace(found, certainty=HABIT)
-    for node in launch.nodes:
-        program = node.prefix.split()[0] if node.prefix else None
-        if program and not shutil.which(program, path=search_path()):
-            where = uses.absent(program, "program")
-            said = f"It starts a node by a program that is not here: {where}."
-            yield Finding("launch-nodes", said, node.file, node.line, HINT)
 
 
 def _missing(package: Package, launch: Launch, name: str, spare: list[Started]) -> Finding:

@@ -16,7 +16,7 @@ from mrp_check.case import evidence
 from mrp_check.case.case import Case
 from mrp_check.code import uses
 from mrp_check.contract import resources
-from mrp_check.contract.finding import CERTAIN, HABIT, HINT, READ, Finding, Line
+from mrp_check.contract.finding import CERTAIN, HABIT, READ, Finding, Line
 from mrp_check.contract.requirements import Requirement, Rule
 from mrp_check.contract.spec import PACKAGE
 from mrp_check.contract.words import last_part, nearest, perhaps
@@ -336,8 +336,6 @@ def _headers(package: Package, model: Model, target: Target) -> list[str]:
 _BETWEEN = "---"  # a request and its response
 # Types of C++ and Python.
 _OF_LANGUAGES = {"int": "int32", "float": "float32", "double": "float64", "str": "string"}
-# https://wiki.ros.org/ROS/Patterns/Conventions
-_USUAL_TYPE = re.compile(r"[A-Z][A-Za-z0-9]*")
 _WORDS_OF_CPP = set(
     (
         "auto bool break case catch char class const continue default delete do double else enum"
@@ -347,44 +345,14 @@ _WORDS_OF_CPP = set(
         " volatile while"
     ).split()
 )
-_UNUSUAL_FIELD = re.compile(r"^\s*[\w/]+(?:\[\d*\])?\s+(\w*[A-Z]\w*)\s*(?:#|$)")
 
 
 def definitions(case: Case) -> Iterator[Finding]:
-    yield from _unusual(case.package)
     package, context = case.package, genmsg.MsgContext.create_default()
     for path in sorted({*package.of_kind(*uses.DEFINITIONS)} & {*case.model.message_files}):
         for line, text in enumerate(package.lines(path), 1):
             if not text.startswith(_BETWEEN):
                 yield from _of_line(package, context, path, line, text)
-
-
-def _unusual(package: Package) -> Iterator[Finding]:
-    """Yield a note if types, or fields, have other names than ROS's own have."""
-    types: dict[str, tuple[str, int]] = {}
-    fields: dict[str, tuple[str, int]] = {}
-    for path in sorted(package.of_kind(*uses.DEFINITIONS)):
-        name = last_part(path).partition(".")[0]
-        if not _USUAL_TYPE.fullmatch(name):
-            types.setdefault(name, (path, 1))
-        for line, text in enumerate(package.lines(path), 1):
-            field = _UNUSUAL_FIELD.match(text)
-            if field:
-                fields.setdefault(field[1], (path, line))
-    for what, usual, found in (
-        ("types", "CamelCase, as RobotState", types),
-        ("fields", "small letters and _, as battery_level", fields),
-    ):
-        if found:
-            yield Finding(
-                "messages",
-                f"ROS writes the names of {what} in {usual}; here: {', '.join(found)}.",
-                *next(iter(found.values())),
-                HINT,
-                expected=f"names in {usual}",
-                seen=", ".join(found),
-                fix="Rename them, where they are not in use yet.",
-            )
 
 
 def _of_line(

@@ -3,14 +3,13 @@
 
 from __future__ import annotations
 
-import os
 import re
 from typing import Iterator
 
 from mrp_check.case import evidence
 from mrp_check.case.case import Case
 from mrp_check.code import uses
-from mrp_check.contract.finding import HABIT, HINT, Finding
+from mrp_check.contract.finding import HABIT, Finding
 from mrp_check.contract.requirements import Requirement, Rule
 from mrp_check.contract.words import last_part, nearest, perhaps
 from mrp_check.package.cmake import Call, Model, parsed
@@ -20,7 +19,6 @@ _LAUNCH_FILE = {"add_rostest": 0, "add_rostest_gtest": 1, "add_rostest_gmock": 1
 _NO_LAUNCH_FILES = (".cpp", ".cc", ".cxx", ".py")
 _MAIN = re.compile(r"\bint\s+main\s*\(")
 _EXPORTED = re.compile(r"\$\{(\w+)_EXPORTED_TARGETS\}")
-_NO_FOLDERS = ("BEFORE", "AFTER", "SYSTEM")
 
 
 def _findings(case: Case) -> Iterator[Finding]:
@@ -28,7 +26,6 @@ def _findings(case: Case) -> Iterator[Finding]:
     yield from _no_dependencies(case.package, case.model)
     yield from _no_libraries(case.package, case.model)
     yield from _no_system_libraries(case.package, case.model)
-    yield from _no_folders(case.package, case.model)
     yield from _no_launch_files(case.package)
     if not case.spec.is_contract:
         yield from _commented_out(case)
@@ -134,24 +131,6 @@ def _no_system_libraries(package: Package, model: Model) -> Iterator[Finding]:
                 f"find_package({name}) above it, or no such name",
                 f"Take DEPENDS {name} out, or find it first.",
             )
-
-
-def _no_folders(package: Package, model: Model) -> Iterator[Finding]:
-    for call in model.calls:
-        for name in call.arguments if call.command == "include_directories" else ():
-            path = model.path(name, call) if "$" not in name else None
-            if path and name not in _NO_FOLDERS and not os.path.isdir(model.folder / path):
-                finding = _missing(
-                    package,
-                    call,
-                    name,
-                    f"include_directories() names the folder {path}, and there is no such folder:"
-                    " the compiler passes over it.",
-                    "a folder of the package",
-                    f"Take {name} out.",
-                )
-                finding.certainty = HINT
-                yield finding
 
 
 def _commented_out(case: Case) -> Iterator[Finding]:
