@@ -22,8 +22,6 @@ from mrp_check.contract.resources import SHARES
 _AGREE = "Let package.xml, find_package() and catkin_package() name the same packages."
 _INSTALL = "Add it to install(); or leave it, if you only work in your own workspace."
 _TABLE = {
-    "DESCRIPTION_BOILERPLATE": Row("The package's description says nothing.", "Say what it does."),
-    "DESCRIPTION_MEANINGLESS": Row("The package's description says nothing.", "Say what it does."),
     "MISSING_CATKIN_DEPEND": Row(
         "catkin_package() doesn't pass on a package that this one needs.", _AGREE
     ),
@@ -60,7 +58,10 @@ def _findings(case: Case) -> Iterator[Finding]:
     for one in (one for kind in ("errors", "warnings", "notices") for one in said[kind]):
         row, place = _TABLE.get(one["id"]), one["location"]
         file, line = place.get("file", "CMakeLists.txt"), place.get("line")
-        if row and file in package.files:
+        named = one["text"].split("'")[1::2]
+        # Any file may have the permission to be run, such as what comes from Windows.
+        is_script = "SCRIPT" not in one["id"] or any(package.kind(n) == "python" for n in named)
+        if row and is_script and file in package.files:
             name = f"catkin_lint calls {one['id'].lower()}"
             row = row._replace(certainty=HINT)
             yield row.finding("catkin-lint", package, file, line, name, one["text"])

@@ -18,7 +18,10 @@ from mrp_check.contract.requirements import ANY, Rule
 _FORMAT = "Let each place of the text fit its value, such as %d for an int."
 _VALUE = "Give the variable a value where it is declared."
 _TABLE = {
-    "address": Row("A function, or an address, is used as a condition: it is always true."),
+    "address": Row(
+        "A function is named here and not called: as a condition, that is always true.",
+        "Call it: ros::ok() has brackets.",
+    ),
     "div-by-zero": Row("Here something is divided by 0."),
     "duplicated-cond": Row("This condition was asked before: its branch is never taken."),
     "empty-body": Row("A semicolon ends this line: what follows is done in each case."),
