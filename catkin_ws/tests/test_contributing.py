@@ -73,7 +73,7 @@ def test_each_section_says_how_many_files_it_takes():
 @pytest.mark.parametrize("path", sorted(set(re.findall(r"`(catkin_ws/[\w./]+)`", TEXT))))
 def test_path_exists(path):
     """NAME and PAGE stand for new ones: others have such a place already."""
-    name = {".patch": "latched", ".py": "definitions"}.get(path[path.rfind(".") :], "latch")
+    name = {".patch": "latched", ".py": "manifest"}.get(path[path.rfind(".") :], "latch")
     assert (ROOT / path.replace("NAME", name).replace("PAGE", "latch")).exists()
 
 
@@ -144,8 +144,8 @@ def test_a_new_rule_finds_its_defect_and_nothing_else(copy):
     rules = copy / "src" / "mrp_check" / "src" / "mrp_check" / "rules"
     shutil.copy(WORKSPACE / "tests" / "described_rule.py", rules / "files" / "described.py")
     text = (rules / "__init__.py").read_text()
-    assert text.count("    definitions,\n") == 2
-    text = text.replace("    definitions,\n", "    definitions,\n    described,\n")
+    assert text.count("    manifest,\n") == 2
+    text = text.replace("    manifest,\n", "    manifest,\n    described,\n")
     (rules / "__init__.py").write_text(text)
     assert check(copy) == []
     done = subprocess.run(
