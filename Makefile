@@ -49,6 +49,7 @@ PACKAGES_docs := docs
 PACKAGES_docs-book := docs book
 PACKAGES_deb := build deb
 PACKAGES_lint := $(PACKAGES_test-all) lint
+PACKAGES_release := release
 
 # `make run` builds only the tutorial, and `make lab` adds the labs. What has been built stays built. With -j,
 # catkin_make does not add -l: a machine that was busy a minute ago would build one file at a time.
@@ -231,12 +232,17 @@ deb: packages-deb  ## make Debian packages of the four nodes (mrp) and of the ch
 
 # The addresses go into each package.xml, from where images, pages and reports take them.
 .PHONY: release
-release: packages-lint  ## tag VERSION=1.2.3 of all packages, to be published by REPOSITORY=https://github.com/OWNER/NAME
+release: packages-release  ## tag VERSION=1.2.3 of all packages, to be published by REPOSITORY=https://github.com/OWNER/NAME
 	@catkin_ws/tools/release.py "$(VERSION)" "$(REPOSITORY)" $(WEBSITE)
 
 .PHONY: release-check
-release-check: packages-lint  ## list what a release still lacks
+release-check: packages-release  ## list what a release still lacks
 	@catkin_ws/tools/release.py --check
+
+.PHONY: release-notes
+release-notes:
+	@catkin_ws/tools/install_packages.sh catkin_ws/apt/release.txt >&2
+	@catkin_ws/tools/release.py --notes
 
 .PHONY: doctor
 doctor:  ## find what keeps the tutorial from running on this machine
@@ -314,6 +320,14 @@ docker-build-check: need-docker  ## build the image that checks any package: doc
 .PHONY: docker-build-class
 docker-build-class: need-docker  ## build the image for docker/class.yaml, which checks a class
 	$(IMAGE_OF) --target class --tag mrp-class:$(DEBIAN) -
+
+# For the workflow: an image of a stage, with a list of what is in it and of how it was made, to a registry.
+NAME_runtime := mrp
+NAME_view := mrp-view
+NAME_check := mrp-check
+docker-push-%:
+	$(subst docker build,docker buildx build --push --sbom=true --provenance=mode=max,$(IMAGE_OF)) --target $* \
+	  --tag $(REGISTRY)/$(NAME_$*):$(TAG) -
 
 # Without a network: ROS 1 has no authentication, and the nodes talk to one another alone.
 .PHONY: docker-run

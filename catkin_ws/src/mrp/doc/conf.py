@@ -32,7 +32,7 @@ extensions = [
 ]
 
 html_theme = "furo"
-html_title = "ROS 1: publish and subscribe"
+html_title = "ROS 1 on Debian: publish and subscribe"
 html_theme_options = {"top_of_page_buttons": []}
 html_static_path = ["static"]
 html_css_files = ["page.css"]
@@ -41,6 +41,13 @@ html_favicon = "static/icon.svg"
 html_show_sourcelink = False
 _manifest = (pathlib.Path(__file__).parents[1] / "package.xml").read_text()
 html_last_updated_fmt = f"%Y-%m-%d, version {re.search('<version>(.*)</version>', _manifest)[1]}"
+# In a release, package.xml has the site's address: then each page has a description for search engines, and
+# sitemap.xml lists them all.
+if website := re.search('<url type="website">(.*)</url>', _manifest):
+    html_baseurl = ogp_site_url = website[1] + "/"
+    extensions += ["sphinx_sitemap", "sphinxext.opengraph"]
+    sitemap_url_scheme = "{link}"
+    ogp_social_cards = {"enable": False}
 html_show_sphinx = False
 # What was printed is there to be read, not to be typed.
 copybutton_selector = "div:not(.output) > div.highlight pre"

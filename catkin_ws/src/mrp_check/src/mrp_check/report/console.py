@@ -10,6 +10,7 @@ import shutil
 import textwrap
 import time
 
+from mrp_check.contract import resources
 from mrp_check.contract.finding import ERROR, NOTE, WARNING, Finding
 from mrp_check.contract.requirements import STAGES
 from mrp_check.contract.verdict import BROKEN, MET, UNCHECKED
@@ -194,13 +195,16 @@ def pages(finding):
 
 def address_of(page):
     """Return where a reader finds a page of the tutorial: at the address of its site, if
-    MRP_PAGES has one; else its file, if it was built here; else the page's name."""
+    MRP_PAGES has one; else its file, if it was built here; else at the release's site, if it has one;
+    else the page's name."""
     path, hash_, anchor = page.partition("#")
     site = os.environ.get("MRP_PAGES", "")
     if site:
         return f"{site.rstrip('/')}/{page}"
     if (SITE / path).is_file():
         return (SITE / path).as_uri() + hash_ + anchor
+    if site := resources.website():
+        return f"{site}/{page}"
     name = path.rpartition("/")[2].partition(".")[0].replace("_", " ")
     return f"“{name}” of the tutorial" + (f", {anchor}" if anchor else "")
 
