@@ -41,8 +41,8 @@ html_favicon = "static/icon.svg"
 html_show_sourcelink = False
 _manifest = (pathlib.Path(__file__).parents[1] / "package.xml").read_text()
 html_last_updated_fmt = f"%Y-%m-%d, version {re.search('<version>(.*)</version>', _manifest)[1]}"
-# In a release, package.xml has the site's address: then each page has a description for search engines, and
-# sitemap.xml lists them all.
+# In a release, package.xml has the site's address: then each page has a description for search
+# engines, and sitemap.xml lists them all.
 if website := re.search('<url type="website">(.*)</url>', _manifest):
     html_baseurl = ogp_site_url = website[1] + "/"
     extensions += ["sphinx_sitemap", "sphinxext.opengraph"]

@@ -195,8 +195,8 @@ def pages(finding):
 
 def address_of(page):
     """Return where a reader finds a page of the tutorial: at the address of its site, if
-    MRP_PAGES has one; else its file, if it was built here; else at the release's site, if it has one;
-    else the page's name."""
+    MRP_PAGES has one; else its file, if it was built here; else at the site that package.xml has in
+    a release; else the page's name."""
     path, hash_, anchor = page.partition("#")
     site = os.environ.get("MRP_PAGES", "")
     if site:
