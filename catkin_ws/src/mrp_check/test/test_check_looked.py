@@ -104,8 +104,10 @@ MADE = "add_executable(b src/b.cpp)\n"
         (MADE, "b", []),
         ("file(GLOB all src/*.cpp)\n", "b", []),
         ("foreach(one b c)\n", "b", []),
+        ("add_executable(${one} src/test_${one}.cpp)\n", "test_b", []),
+        ("add_executable(${one} src/test_${one}.cpp)\n", "b", [1]),
     ],
-    ids=range(4),
+    ids=range(6),
 )
 def test_a_program_that_no_target_is_made_of(more, name, found, tmp_path):
     text = "int main(int argc, char** argv)\n{\n  ros::init(argc, argv, a);\n}\n"

@@ -18,6 +18,7 @@ from mrp_check.package.package import Package
 _LAUNCH_FILE = {"add_rostest": 0, "add_rostest_gtest": 1, "add_rostest_gmock": 1}  # its place
 _NO_LAUNCH_FILES = (".cpp", ".cc", ".cxx", ".py")
 _MAIN = re.compile(r"\bint\s+main\s*\(")
+_VARIED = re.compile(r"[\w.-]*\$\{\w+\}[\w.-]*\.c\w+")  # a source's name with a variable in it
 _EXPORTED = re.compile(r"\$\{(\w+)_EXPORTED_TARGETS\}")
 
 
@@ -161,6 +162,11 @@ def _never_built(case: Case) -> Iterator[Finding]:
     for source in case.package.of_kind("cpp") if "file(" not in text.lower() else ():
         code, name = uses.code(case.package, source), last_part(source)
         is_named = re.search(rf"\b{re.escape(name.rpartition('.')[0])}\b", text)
+        # As foreach() names several: test_${name}.cpp.
+        patterns = (
+            re.sub(r"\\\$\\{.*?\\}", ".*", re.escape(word)) for word in _VARIED.findall(text)
+        )
+        is_named = is_named or any(re.fullmatch(pattern, name) for pattern in patterns)
         if "aux_source" in text or is_named or source.startswith(tuple(others)):
             continue
         if _MAIN.search(code) and "ros::init" in code or "PLUGINLIB_EXPORT_CLASS(" in code:
