@@ -296,7 +296,7 @@ def test_an_xml_bomb_is_reported(uploads):
 def test_one_archive_alone(uploads, monkeypatch):
     seen = []
 
-    def look(package, *_):
+    def look(package, *_, **__):
         seen.extend(package.files)
         return unchecked("looked at")
 
