@@ -147,6 +147,12 @@ check: packages-check  ## check the package at PKG against the tutorial's contra
 	@$(IN_ENVIRONMENT) PYTHONPATH=catkin_ws/src/mrp_check/src exec /usr/bin/python3 \
 	  catkin_ws/src/mrp_check/scripts/check "$(PKG)" $(if $(ANY),--any) $(if $(SPEC),--spec "$(SPEC)")
 
+# LANGUAGE on the command line only: as a variable of the environment, it is the desktop's own.
+.PHONY: new
+new:  ## write a package of your own to start from, PKG=~/catkin_ws/src/laser_filter; LANGUAGE=cpp or both
+	@/usr/bin/python3 catkin_ws/tools/new_package.py "$(PKG)" \
+	  $(if $(findstring command,$(origin LANGUAGE)),"--language=$(LANGUAGE)")
+
 # More than 150 whole packages are built and run, and dozens of nodes at once: so it is no part of
 # `make test-all`.
 .PHONY: test-check
