@@ -47,7 +47,7 @@ PACKAGES_test-browser := $(PACKAGES_build) view check docs cluster test browser
 PACKAGES_bench := $(PACKAGES_build) bench
 PACKAGES_docs := docs
 PACKAGES_docs-book := docs book
-PACKAGES_deb := build deb
+PACKAGES_deb := $(PACKAGES_build) deb
 PACKAGES_lint := $(PACKAGES_test-all) lint
 PACKAGES_release := release
 
