@@ -83,13 +83,6 @@ BROKEN = {
         "early",
         "before main",
     ),
-    "other_name": (
-        PUBLISHER,
-        [('"publisher_cpp_node"', '"publisher"')],
-        "node-name",
-        "ros::init",
-        PUBLISHER,
-    ),
     "no_spin": (PUBLISHER, [("  ros::spin();\n", "")], "spin", "return 0", "end"),
     "no_spin_no_return": (
         PUBLISHER,
