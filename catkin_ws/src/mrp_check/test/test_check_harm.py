@@ -5,7 +5,7 @@ import textwrap
 
 import pytest
 from check_rules import ISOLATIONS
-from lab_package import PUBLISHERS, findings_of, make_package, spec_of
+from lab_package import findings_of, make_package, spec_of
 from mrp_check import sandbox
 from mrp_check.contract.finding import ERROR
 from mrp_check.contract.verdict import MET
@@ -83,7 +83,7 @@ threading.Thread(target=attack, daemon=True).start()
 @pytest.mark.parametrize("isolation", ISOLATIONS)
 def test_a_node_cannot_change_what_is_seen_of_it(tmp_path, monkeypatch, isolation):
     monkeypatch.setattr(sandbox, "isolation", lambda: isolation)
-    defects = {"start": PUBLISHERS["start"]}
+    defects = {"start": ("self.counter = 1", "self.counter = 3")}
     folder = make_package(tmp_path / "lab_pkg", defects, {})
     script = folder / "scripts" / "publisher_start.py"
     script.write_text(script.read_text().replace("\n\n\nclass Node", f"\n{FORGERY}\n\nclass Node"))
