@@ -83,7 +83,10 @@ _CODE = re.compile(r"^ *\.\. (excerpt|file|literalinclude|code-block|original|ou
 
 @pytest.mark.quick
 def test_every_line_of_code_comes_from_a_file():
-    """What is typed into a page is a command. The directives check that the files are there."""
+    """What is typed into a page is a command. The directives check that the files are there.
+
+    Only ci.rst shows what goes into the files of another repository.
+    """
     doc = WORKSPACE / "src" / "mrp" / "doc"
     kinds = set()
     for page in (doc / "index.rst", *doc.glob("pages/*.rst")):
@@ -93,7 +96,8 @@ def test_every_line_of_code_comes_from_a_file():
         for kind, name in _CODE.findall(text):
             kinds.add(kind)
             if kind == "code-block":
-                assert name == "bash", f"{page.name}: code that somebody has typed"
+                is_typed = name == "bash" or page.name == "ci.rst"
+                assert is_typed, f"{page.name}: code that somebody has typed"
             elif kind in ("excerpt", "literalinclude"):
                 sources[name] = None
         for name in sources:
