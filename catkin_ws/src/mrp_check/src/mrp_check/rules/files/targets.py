@@ -161,12 +161,14 @@ def _never_built(case: Case) -> Iterator[Finding]:
     others = [one.rpartition("/")[0] + "/" for one in files if "/" in one]
     for source in case.package.of_kind("cpp") if "file(" not in text.lower() else ():
         code, name = uses.code(case.package, source), last_part(source)
-        is_named = re.search(rf"\b{re.escape(name.rpartition('.')[0])}\b", text)
+        stem = re.escape(name.rpartition(".")[0])
         # As foreach() names several: test_${name}.cpp.
         patterns = (
             re.sub(r"\\\$\\{.*?\\}", ".*", re.escape(word)) for word in _VARIED.findall(text)
         )
-        is_named = is_named or any(re.fullmatch(pattern, name) for pattern in patterns)
+        is_named = bool(re.search(rf"\b{stem}\b", text)) or any(
+            re.fullmatch(pattern, name) for pattern in patterns
+        )
         if "aux_source" in text or is_named or source.startswith(tuple(others)):
             continue
         if _MAIN.search(code) and "ros::init" in code or "PLUGINLIB_EXPORT_CLASS(" in code:
