@@ -52,15 +52,12 @@ DOUBTED = [
     (WARNING, "targets", "CMakeLists.txt: add_dependencies", "no such target"),
     (WARNING, "targets", "CMakeLists.txt: LIBRARIES", "the library some_pkg"),
     (WARNING, "targets", "CMakeLists.txt: DEPENDS", "system_lib"),
-    (NOTE, "targets", "CMakeLists.txt: include_directories", "the folder include"),
     (WARNING, "starts", "src/busy.cpp: /home/", "/home/nobody/table.txt"),
     (WARNING, "starts", "scripts/waves.py: /home/", "/home/nobody/waves.txt"),
     (WARNING, "starts", "launch/busy.launch: /home/", "/home/nobody/map.pgm"),
     (WARNING, "starts", "src/client.cpp: client.call", "wait"),
-    (NOTE, "starts", "scripts/waves.py: SimpleActionClient", "the action wave"),
     (WARNING, "dependencies", "package.xml: depend", "does not name turtlesim"),
     (WARNING, "scripts", "scripts/tool.py: env python", "asks for 'python'"),
-    (NOTE, "launch-nodes", "launch/busy.launch: <node", "nowhere_term"),
 ]
 
 
