@@ -12,7 +12,7 @@ from mrp_check.contract import spec
 from mrp_check.contract.requirements import Rule
 from mrp_check.package import cmake, manifest
 from mrp_check.package.package import Package
-from mrp_check.rules import REQUIREMENTS
+from mrp_check.rules import OF_CONTRACT
 from mrp_check.rules.code import (
     callbacks,
     lifetime,
@@ -51,7 +51,7 @@ PUB_SUB = spec.read(spec.find("pub_sub"))
 # How commands are confined here, and as root wherever it is; otherwise nothing is promised.
 _OF_ROOT = sandbox.isolation() if os.getuid() else sandbox.Isolation.USER
 ISOLATIONS = [*dict.fromkeys([sandbox.isolation(), _OF_ROOT])]
-ASKED = {id_: one for id_, one in REQUIREMENTS.items() if PUB_SUB.asks(id_)}
+ASKED = {id_: one for id_, one in OF_CONTRACT.items() if PUB_SUB.asks(id_)}
 
 
 def make(folder, **files):

@@ -12,7 +12,7 @@ from mrp_check.classroom.by_hand import ByHand
 from mrp_check.contract.finding import ERROR
 from mrp_check.contract.verdict import BROKEN, MET, UNCHECKED, public
 from mrp_check.report import console, html, json_
-from mrp_check.rules import REQUIREMENTS
+from mrp_check.rules import OF_CONTRACT
 
 _MOST_CAUSES = 5  # in one line of the CSV
 _SIGNS = {MET: "✓", BROKEN: "✗", UNCHECKED: "?"}
@@ -45,7 +45,7 @@ class Submission:
 
     def points(self, spec):
         """Return the points of all requirements that are met."""
-        return sum(spec.points_of(id_) for id_ in REQUIREMENTS if self.verdict_on(id_) == MET)
+        return sum(spec.points_of(id_) for id_ in OF_CONTRACT if self.verdict_on(id_) == MET)
 
     def mark(self, spec):
         """Return the points with what a person has set."""
@@ -59,7 +59,7 @@ class Submission:
         if not self.before:
             return ""
         old, new = self.before["verdicts"], self.report["requirements"]
-        asked = [id_ for id_ in REQUIREMENTS if spec.asks(id_) and id_ not in hidden]
+        asked = [id_ for id_ in OF_CONTRACT if spec.asks(id_) and id_ not in hidden]
         ids = {
             "met now": [id_ for id_ in asked if new.get(id_) == MET != old.get(id_)],
             "lost": [id_ for id_ in asked if old.get(id_) == MET != new.get(id_)],
@@ -85,7 +85,7 @@ class Submission:
 
 def most(spec):
     """Return the points of a package that meets all requirements."""
-    return sum(map(spec.points_of, REQUIREMENTS))
+    return sum(map(spec.points_of, OF_CONTRACT))
 
 
 def _one_line(finding):
@@ -97,7 +97,7 @@ def csv_text(submissions, spec):
     """Return one line for each submission: name, verdict, points, mark, and each requirement."""
     file = io.StringIO()
     writer = csv.writer(file)
-    asked = [id_ for id_ in REQUIREMENTS if spec.asks(id_)]
+    asked = [id_ for id_ in OF_CONTRACT if spec.asks(id_)]
     columns = "submission package verdict points of by_hand mark moved progress".split()
     writer.writerow([*columns, *asked, "why", "isolation"])
     for one in submissions:
@@ -129,7 +129,7 @@ def broken_in(submissions):
     """Return (id, names of the submissions) for each requirement that is not met, most first."""
     found = [
         (id_, [one.name for one in submissions if one.verdict_on(id_) == BROKEN])
-        for id_ in REQUIREMENTS
+        for id_ in OF_CONTRACT
     ]
     return sorted([entry for entry in found if entry[1]], key=lambda entry: -len(entry[1]))
 
@@ -165,7 +165,7 @@ def text(submissions, spec):
     width = max(len(one.name) for one in submissions)
     lines = []
     for one in submissions:
-        broken = [id_ for id_ in REQUIREMENTS if one.verdict_on(id_) == BROKEN]
+        broken = [id_ for id_ in OF_CONTRACT if one.verdict_on(id_) == BROKEN]
         reason = one.report.get("reason") or ", ".join(broken)
         points = f"{one.points(spec):g}/{most(spec):g}"
         lines.append(

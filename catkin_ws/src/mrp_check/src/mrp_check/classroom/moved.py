@@ -16,7 +16,7 @@ from mrp_check.classroom import archive, moodle
 from mrp_check.contract.errors import CannotCheck
 from mrp_check.contract.verdict import UNCHECKED, WORDS
 from mrp_check.report import json_
-from mrp_check.rules import REQUIREMENTS
+from mrp_check.rules import OF_CONTRACT
 
 _FILE = ".marks.json"  # hidden, as no submission is
 _MOST_IDS = 5  # in one sentence
@@ -80,7 +80,7 @@ def _marks(submissions, spec):
         }
         for one in submissions
     }
-    return {"points": {id_: spec.points_of(id_) for id_ in REQUIREMENTS}, "students": students}
+    return {"points": {id_: spec.points_of(id_) for id_ in OF_CONTRACT}, "students": students}
 
 
 def _goes_on(last, now):
@@ -113,7 +113,7 @@ def _moved(before, now, name):
 def _of_points(old, new):
     """Yield what has changed in the points of requirements."""
     said: dict[str, list[str]] = {}
-    for id_ in REQUIREMENTS:
+    for id_ in OF_CONTRACT:
         was, now = old.get(id_, 0), new[id_]
         what = f"required now, with {now:g}" if not was else f"worth {now:g} now, before {was:g}"
         if was != now:
@@ -124,7 +124,7 @@ def _of_points(old, new):
 def _of_verdicts(old, new, points):
     """Yield which requirements that count have another verdict."""
     said: dict[str, list[str]] = {}
-    for id_ in REQUIREMENTS:
+    for id_ in OF_CONTRACT:
         was, now = old.get(id_, UNCHECKED), new.get(id_, UNCHECKED)
         if was != now and points[id_]:
             said.setdefault(f"{WORDS[now]} now, before {WORDS[was]}", []).append(id_)

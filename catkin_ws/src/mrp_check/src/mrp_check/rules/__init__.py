@@ -3,10 +3,12 @@
 
 RULES: in the order in which they are asked, causes before what follows from them
 REQUIREMENTS: id -> Requirement, in the same order
+OF_CONTRACT: those of them that a contract can ask for
 """
 
 from __future__ import annotations
 
+from mrp_check.contract.requirements import ANY
 from mrp_check.rules.code import (
     arguments,
     callbacks,
@@ -136,4 +138,7 @@ REQUIREMENTS = {
     id_: requirement._replace(stage=rule.stage)
     for rule in RULES
     for id_, requirement in rule.requirements.items()
+}
+OF_CONTRACT = {
+    id_: REQUIREMENTS[id_] for rule in RULES if rule.only != ANY for id_ in rule.requirements
 }
