@@ -33,7 +33,7 @@ def test_a_mark_opens_a_box_that_escape_closes(browser, addresses, size, mode):
     assert browser.run(BOX) is None
     browser.press(Keys.ENTER)
     for text in (
-        "A message can wait in two queues",
+        "There are two such queues",
         "mrp_labs/publisher_queue/test_publisher_queue passed on 20",
         "A publisher's queue while the connection is full",  # the docstring of the test's file
         "test_publisher_queue.py, line ",
