@@ -146,6 +146,7 @@ def html_text(submissions, spec, pages):
 
     return html.render(
         "class.html",
+        asked=[id_ for id_ in OF_CONTRACT if spec.asks(id_)],
         signs=_SIGNS,
         submissions=submissions,
         spec=spec,
