@@ -27,7 +27,7 @@ def test_code_has_a_copy_button_and_what_was_printed_has_none(page, browser):
 
 
 # A copy needs a press of the user's that is not long ago: see userGesture below.
-AT_ONCE = 10  # buttons
+AT_ONCE = 3  # buttons
 PRESS = """
 (async (begin, end) => {
   const wrong = [];
@@ -37,6 +37,8 @@ PRESS = """
     for (let tab = button.closest(".tab-content"); tab;
          tab = tab.parentElement.closest(".tab-content"))
       tab.previousElementSibling.click();
+    const box = button.closest("[popover]");  // a proof's source is in one
+    box?.showPopover();
     button.scrollIntoView({ block: "center", behavior: "instant" });
     const { x, y, width, height } = button.getBoundingClientRect();
     const hit = document.elementFromPoint(x + width / 2, y + height / 2);
@@ -47,6 +49,7 @@ PRESS = """
     const copied = await navigator.clipboard.readText();
     // Without its last line's end: pasted into a terminal, that would run it at once.
     if (copied !== code.replace(/\\n$/, "")) wrong.push(`${copied}, not ${code}`);
+    box?.hidePopover();
   }
   return wrong;
 })
