@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """Sends numbers to the node, and compares each one that comes back."""
 
+import math
 import time
 import unittest
 
@@ -14,13 +15,23 @@ DEADLINE = 20  # seconds
 class TestMyPackageNode(unittest.TestCase):
     def setUp(self):
         self.received = []
+        self.is_answered = False
         self.subscriber = rospy.Subscriber("output", Float64, self.output_callback)
         self.publisher = rospy.Publisher("input", Float64, queue_size=10)
         self.wait_for(self.subscriber.get_num_connections, "the node's output")
         self.wait_for(self.publisher.get_num_connections, "the node's input")
+        # While the nodes connect, a number can get lost: NaN is sent until it comes back.
+        self.wait_for(self.is_nan_answered, "an answer")
+
+    def is_nan_answered(self):
+        self.publisher.publish(Float64(math.nan))
+        return self.is_answered
 
     def output_callback(self, msg):
-        self.received.append(msg.data)
+        if math.isnan(msg.data):
+            self.is_answered = True
+        else:
+            self.received.append(msg.data)
 
     def wait_for(self, condition, what):
         end = time.monotonic() + DEADLINE
