@@ -399,17 +399,6 @@ def _names_of(node: ast.stmt) -> list[str]:
     return [one.name for one in names]
 
 
-def findings(case: Case) -> Iterator[Finding]:
-    of_nodes = {file for files in case.facts.sources.values() for file in files}
-    for problem in case.facts.problems:
-        if problem.file not in case.facts.relevant:
-            problem.certainty = HABIT
-            problem.message += " Nothing uses the file."
-        elif problem.file not in of_nodes:
-            problem.certainty = READ
-        yield problem
-
-
 def _syntax(case: Case) -> Iterator[Finding]:
     """Yield what Python says where it cannot read a source."""
     of_nodes = {file for files in case.facts.sources.values() for file in files}
