@@ -79,7 +79,7 @@ def check(
         if isinstance(case, AnyCase) and write:
             case.enough = ENOUGH
         try:
-            report = _Examination(case, rules, ids, asked, early, static).report()
+            report = _Examination(case, rules, ids, asked, early).report()
             if isinstance(case, AnyCase) and write and report.verdict == MET:
                 write(new_contract.text(case))
         except BaseException:  # such as Ctrl-C
@@ -93,7 +93,7 @@ def check(
 class _Examination:
     """The findings of all rules that are needed, and the ids of what they could not check."""
 
-    def __init__(self, case, rules, ids, asked, early, static):
+    def __init__(self, case, rules, ids, asked, early):
         self.case, self.ids, self.asked = case, ids, asked
         self.findings: list[Finding] = []
         self.failed: dict[str, str] = {}
@@ -118,7 +118,7 @@ class _Examination:
         facts = vars(case).get("facts")
         if facts and facts.absent():
             self._lose(("python-names",), NotHere(facts.absent().values()))
-        self._guarded(ids, lambda: self.failed.update(unseen(case, self._open(), static)))
+        self._guarded(ids, lambda: self.failed.update(unseen(case, self._open())))
 
     def _ask(self, rule):
         def findings():
@@ -219,9 +219,9 @@ def _failed_step(catkin):
     return [line for step in steps if step and not step.ok for line in step.output.splitlines()]
 
 
-def unseen(case, ids, static=False):
+def unseen(case, ids):
     """Return id -> why nobody can say that the requirement is met, of those for which it is so."""
-    ran = [id_ for id_ in ids if not static or REQUIREMENTS[id_].stage in STATIC]
+    ran = [id_ for id_ in ids if not case.static or REQUIREMENTS[id_].stage in STATIC]
     found = {id_: "only the files were read" for id_ in ids}
     found.update({id_: REQUIREMENTS[id_].seen(case) for id_ in ran})
     return {id_: why for id_, why in found.items() if why}
