@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The files beside the Python code: specs, schemas, templates, and defects."""
 
+import functools
 import pathlib
 import re
 
@@ -17,6 +18,7 @@ def folder(name: str) -> pathlib.Path:
     return in_sources if in_sources.is_dir() else installed
 
 
+@functools.lru_cache
 def website() -> str:
     """Return the address of the tutorial's pages, which package.xml has in a release; or ""."""
     manifest = folder("specs").parent / "package.xml"
