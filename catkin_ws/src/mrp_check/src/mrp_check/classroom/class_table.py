@@ -59,7 +59,7 @@ class Submission:
         if not self.before:
             return ""
         old, new = self.before["verdicts"], self.report["requirements"]
-        asked = [id_ for id_ in OF_CONTRACT if spec.asks(id_) and id_ not in hidden]
+        asked = [id_ for id_ in asked_by(spec) if id_ not in hidden]
         ids = {
             "met now": [id_ for id_ in asked if new.get(id_) == MET != old.get(id_)],
             "lost": [id_ for id_ in asked if old.get(id_) == MET != new.get(id_)],
@@ -83,6 +83,11 @@ class Submission:
         return [_one_line(f) for f in self.errors() if not f["consequence_of"]]
 
 
+def asked_by(spec):
+    """Return the ids of the requirements that a contract asks for, in their order."""
+    return [id_ for id_ in OF_CONTRACT if spec.asks(id_)]
+
+
 def most(spec):
     """Return the points of a package that meets all requirements."""
     return sum(map(spec.points_of, OF_CONTRACT))
@@ -97,7 +102,7 @@ def csv_text(submissions, spec):
     """Return one line for each submission: name, verdict, points, mark, and each requirement."""
     file = io.StringIO()
     writer = csv.writer(file)
-    asked = [id_ for id_ in OF_CONTRACT if spec.asks(id_)]
+    asked = asked_by(spec)
     columns = "submission package verdict points of by_hand mark moved progress".split()
     writer.writerow([*columns, *asked, "why", "isolation"])
     for one in submissions:
@@ -146,7 +151,7 @@ def html_text(submissions, spec, pages):
 
     return html.render(
         "class.html",
-        asked=[id_ for id_ in OF_CONTRACT if spec.asks(id_)],
+        asked=asked_by(spec),
         signs=_SIGNS,
         submissions=submissions,
         spec=spec,
