@@ -15,7 +15,7 @@ SLEEPS = {"sleep", "usleep", "nanosleep", "sleep_for", "sleep_until"}
 _ASKS_TO_END = {"ok", "isShuttingDown", "isStarted", "exit", "_exit", "abort"}
 _ASKS_TO_CANCEL = {"isPreemptRequested", "setPreempted", "registerPreemptCallback"}
 _SPINNERS = {"AsyncSpinner", "MultiThreadedSpinner"}  # threads: other callbacks go on
-_SHORT = 0.1  # seconds that a callback may sleep
+SHORT = 0.1  # seconds that a callback may sleep
 _LEAVES = {"BREAK_STMT", "RETURN_STMT", "CXX_THROW_EXPR", "GOTO_STMT"}
 
 
@@ -113,7 +113,7 @@ class Habits(Unit):
                 if body is None:
                     continue
                 for part in body.walk_preorder():
-                    if self.seconds(part) >= _SHORT and self.own_file(part):
+                    if self.seconds(part) >= SHORT and self.own_file(part):
                         self.add(part, Kind.BLOCKS, function=body.spelling)
                         return
 

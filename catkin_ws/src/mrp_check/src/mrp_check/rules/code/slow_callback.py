@@ -12,11 +12,10 @@ from typing import Iterator
 from mrp_check.case.case import Case
 from mrp_check.code.python_facts import callbacks
 from mrp_check.code.python_source import Source
+from mrp_check.confined.cpp_habits import SHORT
 from mrp_check.confined.places import Kind
 from mrp_check.contract.finding import HABIT, Finding
 from mrp_check.contract.requirements import ANY, Rule
-
-_SHORT = 0.1  # seconds
 
 
 def _findings(case: Case) -> Iterator[Finding]:
@@ -72,7 +71,7 @@ def _sleeps(source: Source, call: ast.Call) -> bool:
     """Return whether a call sleeps, for a rate or for at least a tenth of a second."""
     if source.dotted(call.func) in ("rospy.sleep", "time.sleep"):
         seconds = source.value(call.args[0]) if call.args else None
-        return not isinstance(seconds, (int, float)) or seconds >= _SHORT
+        return not isinstance(seconds, (int, float)) or seconds >= SHORT
     made = source.made(getattr(call.func, "value", call))
     is_rate = made is not None and source.dotted(made.func) == "rospy.Rate"
     return getattr(call.func, "attr", "") == "sleep" and is_rate
