@@ -62,7 +62,7 @@ def read(path):
 
 
 def blocks(document):
-    """Return the Blocks of a page. Code, and what a terminal prints, is none."""
+    """Return the Blocks of a page, without its code and what a terminal prints."""
     not_inline = (nodes.Inline, nodes.FixedTextElement)
     found = document.findall(
         lambda node: isinstance(node, nodes.TextElement) and not isinstance(node, not_inline)
@@ -106,18 +106,18 @@ def _is_for(test, block):
 
 def faults(rows, page):
     """Yield (line, what is wrong) of a ledger. page: the Blocks of its page"""
-    missing = {}
+    missing, proved = {}, [(block, claims(block, rows)) for block in page]
     for row in rows:
         missing.update({test: row.line for test in row.tests if not cases.find(test)})
         if not row.tests:
             yield row.line, f"expected the name of a test above this sentence: {row.text}"
-        mine = [block for block in page if row.in_text(block.text)]
+        mine = [(block, found) for block, found in proved if row.in_text(block.text)]
         if not mine:
             sentences = [one for block in page for one in re.split(r"(?<=[.!?]) ", block.text)]
             yield row.line, f"the page has no such sentence: {row.text}{_hint(row.text, sentences)}"
-        for block in mine:
+        for block, found in mine:
             for sentence in row.in_text(block.text):
-                if row.tests and not claims(block, rows)[sentence]:
+                if row.tests and not found[sentence]:
                     yield (
                         row.line,
                         f"the sentence stands in the tab {block.language}, and its tests are of "
