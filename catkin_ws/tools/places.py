@@ -10,8 +10,8 @@ release of Debian, of which mmdebstrap makes a bare root. KIND is one of
   container   root in a container of debian:SYSTEM: call it by .ci/engine, or where Docker runs
 An ARCHITECTURE that is not this machine's, as arm64, is emulated: that needs qemu-user-static.
 
-Needs root and mmdebstrap (a container needs Docker). It makes each place anew, and deletes it in
-the end; what one has fetched, the next of its system need not fetch.
+Needs root and mmdebstrap, or Docker for a container. Each place is made from scratch and deleted
+afterwards; places of one system share the packages that were downloaded.
 
 Exit code: 1 if a place failed; 69 if this machine cannot make one, and none failed.
 """

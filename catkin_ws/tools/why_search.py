@@ -63,7 +63,7 @@ _ENGLISH = {
     "error": "错误|エラー|\\bFehler\\b|\\berreur\\b|\\berro\\b",
     "warning": "警告|\\bWarnung\\b|\\bavertissement\\b",
 }
-# Of a path, only the last part counts, and whether it is one of ROS's own.
+# Only the last part of a path counts, and whether the path is one of ROS's own.
 _FOLDERS = re.compile(r"(?<![\w.])~?(/opt/ros/\w+)?/(?:[^\s/:;,'\"()\[\]<>]+/)*")
 # What only ROS 2 prints: an entry must have such a word, too. The names of its packages, such as
 # ament_cmake, turn up in what ROS 1 prints.

@@ -25,7 +25,7 @@ from mrp_view.watcher import Watcher
 
 
 def port_number(text):
-    """Return a port's number. Raises argparse.ArgumentTypeError if it is none."""
+    """Return the number of a port. Raises argparse.ArgumentTypeError for any other text."""
     if not text.isdecimal() or int(text) > 65535:
         raise argparse.ArgumentTypeError(f"expected a number from 0 to 65535; found '{text}'")
     return int(text)

@@ -243,7 +243,7 @@ def run_packages(options):
     is_one = not path.is_dir() or options.package or (path / "package.xml").exists()
     paths = [] if is_one or not options.any else siblings.packages_in(path)
     if len(paths) < 2:
-        options.path = [*paths, options.path][0]
+        options.path = paths[0] if paths else options.path
         return run_package(options)
     verdicts = []
     for number, one in enumerate(paths):

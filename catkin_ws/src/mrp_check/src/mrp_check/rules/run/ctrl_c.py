@@ -23,8 +23,8 @@ def _findings(case: Case) -> Iterator[Finding]:
             continue  # another finding says that it did not end
         if case.facts.of(name, Kind.SIGNAL):
             continue  # its own handler may end it in another way
-        told = {place.file: place for place in case.facts.of(name, Kind.KEYBOARD)[::-1]}
-        for place in (*case.facts.of(name, Kind.LOOP), *told.values()):
+        first = {place.file: place for place in case.facts.of(name, Kind.KEYBOARD)[::-1]}
+        for place in (*case.facts.of(name, Kind.LOOP), *first.values()):
             for message, expected, fix in _of(case, name, place):
                 seen = case.package.line(place.file, place.line)
                 at = place.file, place.line, HABIT

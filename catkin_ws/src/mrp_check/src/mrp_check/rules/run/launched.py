@@ -144,7 +144,7 @@ def _raises(node: Node) -> Iterator[Finding]:
             "callbacks",
             f"{node.name} has a callback that cannot be called as ROS calls it: {text}.",
             place,
-            expected="a callback with one argument besides self",
+            expected="a callback that takes one argument, plus self if it is a method",
             seen=f"TypeError: {text}",
         )
 
