@@ -56,6 +56,8 @@ def test_ci_and_the_workflow_call_targets_of_the_list():
     by_ci = {word for line in lines for word in line.split()}
     makefile = (ROOT / "Makefile").read_text()
     targets = set(re.findall(r"^([a-z-]+):", makefile, re.MULTILINE))
+    # Each target installs its own packages; CI only does so earlier.
+    by_ci = {word for word in by_ci if not word.startswith("packages-")}
     assert by_ci and by_ci - by_workflow == set()
     assert by_workflow - targets == set()
 
