@@ -26,7 +26,7 @@ env -C $book/latex latexmk -xelatex -interaction=nonstopmode -halt-on-error mrp.
 # Debian's command epubcheck needs a kernel that starts .jar files; a container's often does not.
 java -jar /usr/share/java/epubcheck.jar --quiet --error $book/epub/mrp.epub
 
-wanted=$(grep -rhE '^ *\.\. (ros-graph|timeline|queue|bench-plot)::' src/mrp/doc/pages | wc -l)
+wanted=$(grep -rhE '^ *\.\. (ros-graph|timeline|queue)::' src/mrp/doc/pages | wc -l)
 in_epub=$(find $book/epub -name '*.xhtml' -exec cat {} + | grep -o '<img' | wc -l)
 in_pdf=$(grep -o 'includegraphics' $book/latex/mrp.tex | wc -l)
 if [ "$in_epub" != "$wanted" ] || [ "$in_pdf" != "$wanted" ]; then

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Puts what `make bench` measured into the pages: extension/bench.py makes tables and plots of it.
+"""Puts what `make bench` measured into the pages: extension/bench.py makes tables of it.
 
 Usage: record_bench.py FOLDER
 """

@@ -1,18 +1,15 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""make bench: what its tables and plots make of known measurements."""
+"""make bench: what its tables make of known measurements."""
 
 import json
-import xml.etree.ElementTree as ElementTree
 
 import pytest
 from mrp_bench import (
     launch_figures,
     noise,
-    plots,
     report,
     rounds,
     summary,
-    svg,
     tables,
 )
 from mrp_bench.programs import Measurement
@@ -73,7 +70,7 @@ def content_of(measurements=(), starts=(), verdict=None, cores=2):
         "noise": {"least": 0.01, "most": 0.5, "probes": 2},
         "verdict": verdict,
         "rows": [row._asdict() for row in summary.summarise(measurements)],
-        "starts": {"figures": {}, "exits": [], "starts": 0, "timeline": None},
+        "starts": {"figures": {}, "exits": [], "starts": 0},
         "robots": launch_figures.summarise(starts, cores, 6400),
     }
     # As the pages read it.
@@ -118,10 +115,6 @@ def test_report_is_in_all_files(measurements, tmp_path):
     assert "| C++ to C++ | 25.0 " in (tmp_path / "table.md").read_text()
 
 
-def svg_texts(path):
-    return set(ElementTree.parse(path).getroot().itertext())
-
-
 def start(robots, up):
     return {
         "robots": robots,
@@ -163,19 +156,3 @@ def test_growth_with_the_robots():
     assert noisy.rows[2] == ["4", *["too noisy"] * 7, "3"]
     assert noisy.after == []
     assert launch_figures.exponents(launch_figures.medians(starts[:6])) == {}
-
-
-@pytest.mark.slow
-def test_plot_of_robots(tmp_path):
-    starts = [start(robots, robots) for robots in (1, 2, 4)]
-    content = content_of(starts=starts)
-    plots.write(content, tmp_path)
-    assert {"all nodes ready, s: ^1.00", "cores in use: ^2.00"} <= svg_texts(tmp_path / "scale.svg")
-    assert "; cores in use: ^2.00: 0.01 at 1 to 0.16 at 4; " in plots.scale(content).alt
-
-
-def test_a_scale_is_logarithmic():
-    scale = svg.Scale([1, 100], 0, 110)
-    assert [scale(1), scale(10), scale(100)] == pytest.approx([5, 55, 105])
-    assert scale.ticks() == [1, 2, 5, 10, 20, 50, 100]
-    assert svg.Scale([0.01, 5000], 0, 1).ticks() == [0.01, 0.1, 1, 10, 100, 1000]

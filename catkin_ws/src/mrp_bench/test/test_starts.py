@@ -2,10 +2,9 @@
 """make bench: the start and stop of the four nodes."""
 
 import json
-import xml.etree.ElementTree as ElementTree
 
 import pytest
-from mrp_bench import plots, rounds, start_figures, starts, tables
+from mrp_bench import rounds, start_figures, starts, tables
 from mrp_bench.launched import Console, exits
 
 pytestmark = pytest.mark.quick
@@ -118,25 +117,6 @@ def test_table_of_starts():
     (noisy,) = tables.starts(content_of(measured, verdict="noisy"))
     assert noisy.rows[4] == ["all four are ready", "too noisy"]
     assert tables.starts(content_of([])) == []
-
-
-def test_timeline_says_what_its_colours_are(tmp_path):
-    content = content_of([one_start()])
-    plots.write(content, tmp_path)
-    words = "subscriber_py_node starts at 1.80 s, runs at 2.30 s, has its first message at 4.00 s, "
-    assert words in plots.start_and_stop(content).alt
-    root = ElementTree.parse(tmp_path / "start_and_stop.svg").getroot()
-    assert set(root.itertext()) >= {
-        "roslaunch",
-        "master",
-        "subscriber_py_node",
-        "starts",
-        "runs",
-        "has the signal to end",
-        "has its first message",
-        "seconds since Ctrl-C",
-    }
-    assert [path.name for path in tmp_path.iterdir()] == ["start_and_stop.svg"]
 
 
 @pytest.mark.slow

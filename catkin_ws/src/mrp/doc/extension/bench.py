@@ -3,7 +3,6 @@
 
 .. bench-machine::       where it was measured
 .. bench-tables:: NAME   tables; NAME: a key of mrp_bench.tables.TABLES
-.. bench-plot:: NAME     a plot; NAME: a key of mrp_bench.plots.PLOTS
 """
 
 import json
@@ -12,18 +11,17 @@ import sys
 
 from cases import WORKSPACE
 from docutils import nodes
-from picture import Picture
 from sphinx.util.docutils import SphinxDirective
 
 sys.path.insert(0, str(WORKSPACE / "src" / "mrp_bench" / "src"))
 
-from mrp_bench import plots, tables
+from mrp_bench import tables
 
 
 def results(env):
-    """Return what results.json says; the page is built anew if that or the drawing changes."""
+    """Return what results.json says; the page is built anew if that or the tables change."""
     path = pathlib.Path(env.srcdir) / "recorded" / "results.json"
-    for file in (str(path), tables.__file__, plots.__file__, plots.svg.__file__):
+    for file in (str(path), tables.__file__):
         env.note_dependency(file)
     return json.loads(path.read_text())
 
@@ -63,17 +61,7 @@ class Tables(SphinxDirective):
         return nodes.row("", *(nodes.entry("", paragraph(cell)) for cell in cells))
 
 
-class Plot(Picture):
-    def run(self):
-        name = self.arguments[0]
-        if name not in plots.PLOTS:
-            raise self.error(f"expected one of {', '.join(plots.PLOTS)}, found {name}")
-        plot = plots.PLOTS[name](results(self.env))
-        return [self.svg(*plot)] if plot else []
-
-
 def setup(app):
     app.add_directive("bench-machine", Machine)
     app.add_directive("bench-tables", Tables)
-    app.add_directive("bench-plot", Plot)
     return {"parallel_read_safe": False}

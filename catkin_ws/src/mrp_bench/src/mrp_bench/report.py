@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The results in files: results.json, table.md and the plots.
+"""The results in files: results.json and table.md.
 
-results.json says all that the tables and the plots show. The tutorial's pages are made of it, too.
+results.json says all that the tables show. The tutorial's pages are made of it, too.
 """
 
 import json
@@ -11,7 +11,6 @@ from mrp_bench import (
     launches,
     machine,
     noise,
-    plots,
     start_figures,
     starts,
     summary,
@@ -47,9 +46,8 @@ def write(results, say):
     (results.folder / "results.json").write_text(as_text(content))
     text = markdown(content)
     (results.folder / "table.md").write_text(text)
-    plots.write(content, results.folder)
     print(text)
-    say(f"tables, plots and all samples are in {results.folder}")
+    say(f"tables and all samples are in {results.folder}")
 
 
 def as_text(content):

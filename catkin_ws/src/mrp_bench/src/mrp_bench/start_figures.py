@@ -47,7 +47,6 @@ def summarise(starts):
         else {},
         "exits": _exits(starts),
         "starts": len(starts),
-        "timeline": _timeline(starts) if starts else None,
     }
 
 
@@ -68,35 +67,3 @@ def _exits(starts):
         if code
     )
     return [(name, code, count) for (name, code), count in counts.items()]
-
-
-def _timeline(starts):
-    """Return what happened in the most usual of these starts. Times are in seconds."""
-    start = sorted(starts, key=lambda one: max(_all(one, "received")))[len(starts) // 2]
-    received = {
-        who.lower().replace(" ", "_"): _received(start, who)
-        for who in (_CPP, _PY)
-        if _received(start, who)
-    }
-    return {
-        "stop": start["stop"],
-        "end": start["end"],
-        "bars": {name.rsplit("/", 1)[-1]: spans for name, spans in _bars(start).items()},
-        "first_message": received,
-    }
-
-
-def _bars(start):
-    """Return process -> when it starts, runs, gets the signal to end, and has ended."""
-    of = collections.defaultdict(dict)
-    for moment, what, name in start["events"]:
-        of[name][what] = moment
-    of["master"]["ready"] = of[""]["master"]
-    names = [name for name in of if "started" in of[name] and "ready" in of[name]]
-    launching = max(of[name]["started"] for name in names)
-    bars = {"roslaunch": (0, launching, start["stop"], start["end"])}
-    for name in names:
-        signalled = of[name].get("stopping", start["stop"])
-        ended = start["ended"].get(name, start["end"])
-        bars[name] = (of[name]["started"], of[name]["ready"], signalled, ended)
-    return bars

@@ -5,7 +5,7 @@ import typing
 
 
 class Way(typing.NamedTuple):
-    """name: as in the results. text: what tables and plots say.
+    """name: as in the results. text: what tables say.
 
     sender, receiver: the commands, see programs.py; without a receiver the sender is both
     receivers: how many
