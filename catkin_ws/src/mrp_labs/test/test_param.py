@@ -81,11 +81,6 @@ class TestParam(unittest.TestCase):
             self.assertEqual(node.wait(), 1)
         self.assertEqual(node.lines[-1], "KeyError: '~speed'")
 
-    def test_missing_on_the_command_line(self):
-        with Process("rosparam", "get", "/speed") as rosparam:
-            self.assertEqual(rosparam.wait(), 1)
-        self.assertEqual(rosparam.lines, ["ERROR: Parameter [/speed] is not set"])
-
 
 if __name__ == "__main__":
     rostest.rosrun(PACKAGE, "param", TestParam)

@@ -151,18 +151,6 @@ TEST(Roscpp, debugIsNotShownUnlessAskedFor)
   ros::console::notifyLoggerLevelsChanged();
 }
 
-TEST(Roscpp, infoGoesToStdoutAndTheRestToStderr)
-{
-  const Shown shown = logOfEachLevel();
-  EXPECT_TRUE(has(shown.out, "line of info"));
-  EXPECT_FALSE(has(shown.err, "line of info"));
-  for (const char* level : {"warn", "error", "fatal"})
-  {
-    EXPECT_TRUE(has(shown.err, std::string("line of ") + level));
-    EXPECT_FALSE(has(shown.out, std::string("line of ") + level));
-  }
-}
-
 namespace
 {
 // Returns after how many messages on /clock a sleep has returned: 0 if it does without any. Each of

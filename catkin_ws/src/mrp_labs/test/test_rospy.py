@@ -166,11 +166,6 @@ class TestRospy(unittest.TestCase):
         self.assertNotIn("debug", levels(ended(LOG_BY_DEFAULT).lines))
         self.assertIn("debug", levels(ended(LOG, "DEBUG").lines))
 
-    def test_info_goes_to_stdout_and_the_rest_to_stderr_py(self):
-        process = ended(LOG_BY_DEFAULT)
-        self.assertEqual(sorted(levels(process.lines)), ["error", "fatal", "info", "warn"])
-        self.assertEqual(levels(process.errors), ["warn", "error", "fatal"])
-
     def test_print_is_no_log_py(self):
         texts = []
         subscriber = rospy.Subscriber("/rosout", Log, lambda msg: texts.append(msg.msg))
