@@ -12,7 +12,7 @@ import signal
 import sys
 import time
 
-from mrp_bench import launches, plans, report, starts
+from mrp_bench import launches, plans, report
 from mrp_bench.master import Master
 from mrp_bench.programs import ProgramError
 from mrp_bench.rounds import PlanError, Results, run
@@ -47,8 +47,6 @@ def main():
             run(plan, rounds, results, say)
             if not args.quick:
                 launches.run(plans.ROBOTS, 1, results, say)
-        # Without that master: roslaunch starts one of its own, as for a student.
-        starts.run(plans.QUICK_STARTS if args.quick else plans.FULL_STARTS, results, say)
         report.write(results, say)
     except (ProgramError, PlanError) as error:
         sys.exit(f"error: {error}")

@@ -5,7 +5,7 @@ import json
 
 import pytest
 from mrp_bench import (
-    launch_figures,
+    launches,
     noise,
     report,
     rounds,
@@ -70,8 +70,7 @@ def content_of(measurements=(), starts=(), verdict=None, cores=2):
         "noise": {"least": 0.01, "most": 0.5, "probes": 2},
         "verdict": verdict,
         "rows": [row._asdict() for row in summary.summarise(measurements)],
-        "starts": {"figures": {}, "exits": [], "starts": 0},
-        "robots": launch_figures.summarise(starts, cores, 6400),
+        "robots": launches.summarise(starts, cores, 6400),
     }
     # As the pages read it.
     return json.loads(json.dumps(content))
@@ -118,7 +117,7 @@ def test_report_is_in_all_files(measurements, tmp_path):
 def start(robots, up):
     return {
         "robots": robots,
-        "events": [],
+        "ready": {},
         "up": up,
         "stop": 100,
         "end": 103,
@@ -136,12 +135,12 @@ def start(robots, up):
 @pytest.mark.slow
 def test_growth_with_the_robots():
     starts = [start(robots, up * robots) for robots in (1, 2, 4) for up in (1, 2, 9)]
-    figures = launch_figures.medians(starts)
+    figures = launches.medians(starts)
     assert figures[4] == {
         **{"up": 8, "down": 3, "cores": pytest.approx(0.16), "cpp": 2, "py": 30},
         **{"p50": 50, "p99": 99},
     }
-    found = launch_figures.exponents(figures)
+    found = launches.exponents(figures)
     assert {name: round(estimate.value, 6) for name, estimate in found.items()} == {
         "up": 1,
         "down": 0,
@@ -155,4 +154,4 @@ def test_growth_with_the_robots():
     (noisy,) = tables.robots(content_of(starts=starts, verdict="noisy"))
     assert noisy.rows[2] == ["4", *["too noisy"] * 7, "3"]
     assert noisy.after == []
-    assert launch_figures.exponents(launch_figures.medians(starts[:6])) == {}
+    assert launches.exponents(launches.medians(starts[:6])) == {}

@@ -13,6 +13,7 @@ import rosgraph
 import yaml
 from mrp_bench import launches, plans, rounds
 from mrp_bench.comparisons import COMPARISONS
+from mrp_bench.launched import Console
 from mrp_bench.master import Master
 from mrp_bench.processes import cpu
 from mrp_bench.programs import ProgramError, Running
@@ -177,8 +178,7 @@ def test_robots_start_and_stop(master, tmp_path):
         for kind in ("publisher", "subscriber")
         for language in ("cpp", "py")
     }
-    for what in ("started", "ready", "stopping"):
-        assert {name for _, of, name in found["events"] if of == what} == names, what
+    assert found["ready"].keys() == names
     assert found["up"] < found["stop"] < found["end"]
     assert 0 < found["cpp_megabytes"] < found["py_megabytes"]
     assert found["cores"] > 0
@@ -186,6 +186,26 @@ def test_robots_start_and_stop(master, tmp_path):
     assert found["pair"]["received"][::2] == found["pair"]["sent"]
 
     launches.run([2], 1, results, pytest.fail)
+
+
+CONSOLE = """\
+\x1b[1mprocess[mrp/publisher_cpp_node-2]: started with pid [12]\x1b[0m
+[ INFO] [1795222168.680630550]: [PUBLISHER CPP NODE] namespace of nh = /mrp/publisher_cpp_node
+[ INFO] [1795222169.082939615]: [SUBSCRIBER CPP NODE] namespace of nh = /mrp/subscriber_cpp_node
+[ INFO] [1795222169.182939615]: [SUBSCRIBER CPP NODE] received message with data = 2
+"""
+
+
+def test_nodes_are_up_when_all_are_ready_and_each_subscriber_has_a_message():
+    console = Console()
+    *ready, received = CONSOLE.splitlines(keepends=True)
+    for moment, line in enumerate(ready):
+        console.add(moment, line)
+    assert not console.is_up(2), "no message yet"
+    console.add(len(ready), received)
+    assert console.is_up(2)
+    assert not console.is_up(4), "two nodes"
+    assert console.ready == {"mrp/publisher_cpp_node": 1, "mrp/subscriber_cpp_node": 2}
 
 
 @pytest.fixture

@@ -1,9 +1,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Starts and stops of the tutorial's four nodes for many robots: what each costs."""
+"""Starts and stops of the four nodes for many robots: what each costs, and how that grows."""
 
+import collections
 import json
 import pathlib
+import statistics
 
+from mrp_bench import stats
 from mrp_bench.launched import Launched
 from mrp_bench.processes import cpu, megabytes
 from mrp_bench.programs import Running, Stream
@@ -44,12 +47,11 @@ def measure(robots, results):
             before, moment = cpu(pids), launched.now()
             measurement = pair.measure(STREAM)
             cores = (cpu(pids) - before) / (launched.now() - moment)
-        stop, _, end = launched.stop({})
-    found = launched.console.events
+        stop, end = launched.stop()
     return {
         "robots": robots,
-        "events": found,
-        "up": max(moment for moment, what, _ in found if what == "ready"),
+        "ready": launched.console.ready,
+        "up": max(launched.console.ready.values()),
         "stop": stop,
         "end": end,
         "cores": cores,
@@ -77,4 +79,79 @@ def run(robots, rounds, results, say):
 def load(results):
     """Return all that run() has kept, sorted by the number of robots."""
     paths = (results.folder / "launches").glob("*.json")
-    return sorted((json.loads(path.read_text()) for path in paths), key=lambda one: one["robots"])
+    return sorted(
+        (json.loads(path.read_text()) for path in paths), key=lambda launch: launch["robots"]
+    )
+
+
+# What is fitted: a name, and how it follows from what was measured.
+_FIGURES = {
+    "up": lambda launch: launch["up"],
+    "down": lambda launch: launch["end"] - launch["stop"],
+    "cores": lambda launch: launch["cores"],
+    "cpp": lambda launch: launch["cpp_megabytes"],
+    "py": lambda launch: launch["py_megabytes"],
+    "p50": lambda launch: _latency(launch, "p50"),
+    "p99": lambda launch: _latency(launch, "p99"),
+}
+
+
+def _delivery(launch):
+    return stats.delivery(launch["pair"]["sent"], launch["pair"]["received"])
+
+
+def _latency(launch, percentile):
+    return stats.percentiles(_delivery(launch).latencies)[percentile] / 1e3
+
+
+def medians(launches):
+    """Return the number of robots -> a figure's name -> its median over the rounds."""
+    grouped = collections.defaultdict(list)
+    for launch in launches:
+        grouped[launch["robots"]].append(launch)
+    return {
+        robots: {name: statistics.median(map(value, of)) for name, value in _FIGURES.items()}
+        for robots, of in sorted(grouped.items())
+    }
+
+
+def exponents(figures):
+    """Return a figure's name -> stats.Estimate of how it grows with the robots; see medians().
+
+    Empty if there are fewer than three numbers of robots.
+    """
+    if len(figures) < 3:
+        return {}
+    return {
+        name: stats.exponent(list(figures), [of[name] for of in figures.values()])
+        for name in _FIGURES
+    }
+
+
+def most(figures, cores, megabytes):
+    """Return how many robots of four nodes fill so many cores, and how many so many megabytes.
+
+    It goes on from the largest number that was measured, with the exponent of exponents() for the
+    cores, and the same memory for each node.
+    """
+    largest, of = max(figures.items())
+    by_cores = largest * (cores / of["cores"]) ** (1 / exponents(figures)["cores"].value)
+    return round(by_cores), round(megabytes / (2 * of["cpp"] + 2 * of["py"]))
+
+
+def summarise(launches, cores, megabytes):
+    """Return what results.json says of many robots. cores, megabytes: of this machine.
+
+    most: of most(), or None if there are too few numbers of robots
+    """
+    figures = medians(launches)
+    lost = collections.Counter()
+    for launch in launches:
+        lost[launch["robots"]] += _delivery(launch).lost
+    return {
+        "figures": [
+            {"robots": robots, **of, "lost": lost[robots]} for robots, of in figures.items()
+        ],
+        "exponents": exponents(figures),
+        "most": most(figures, cores, megabytes) if len(figures) > 2 else None,
+    }

@@ -43,7 +43,6 @@ BURST_SLOW = ["py_cpp", "py_py", "py_timer_slack", "py_no_delay", "py_to_4", "py
 SMALL, LARGE = (8, 1000, 500), (MB, 50, 25)
 
 QUICK_ROUNDS = 3
-QUICK_STARTS = 1
 QUICK = [
     *steps(PAIRS + FASTER, (8, 1000, 120)),
     *steps(PAIRS, (64 * kB, 500, 40), (4 * MB, 20, 5)),
@@ -58,7 +57,6 @@ QUICK = [
 
 FULL_ROUNDS = 6
 ROBOTS = [1, 2, 5, 10, 20, 50]
-FULL_STARTS = 4
 FULL = [
     *steps(PAIRS + FASTER_SMALL, SMALL),
     # At 1 kB TCP may hold a message back until the one before it is acknowledged.

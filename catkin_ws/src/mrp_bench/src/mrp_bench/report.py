@@ -6,16 +6,7 @@ results.json says all that the tables show. The tutorial's pages are made of it,
 
 import json
 
-from mrp_bench import (
-    launch_figures,
-    launches,
-    machine,
-    noise,
-    start_figures,
-    starts,
-    summary,
-    tables,
-)
+from mrp_bench import launches, machine, noise, summary, tables
 
 _ABOUT_MESSAGES = (
     "A latency is the time from just before a message is published until its callback begins. "
@@ -35,8 +26,7 @@ def measured(results):
         "noise": {"least": min(probes), "most": max(probes), "probes": len(probes)},
         "verdict": noise.verdict(probes),
         "rows": [row._asdict() for row in summary.summarise(results.measurements())],
-        "starts": start_figures.summarise(starts.load(results)),
-        "robots": launch_figures.summarise(launches.load(results), cores, megabytes),
+        "robots": launches.summarise(launches.load(results), cores, megabytes),
     }
 
 
@@ -61,7 +51,7 @@ def as_text(content):
 def markdown(content):
     """Return table.md. On too noisy a machine, it says so instead of figures."""
     parts = [*tables.machine(content), _ABOUT_MESSAGES]
-    for name in ("latency", "throughput", "starts", "robots"):
+    for name in ("latency", "throughput", "robots"):
         for table in tables.TABLES[name](content):
             parts += _table(table)
     return "\n\n".join(parts) + "\n"

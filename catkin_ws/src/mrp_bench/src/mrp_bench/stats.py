@@ -61,15 +61,6 @@ def median_of_rounds(rounds):
     return float(numpy.median([numpy.median(values) for values in rounds]))
 
 
-def median(values, seed=0):
-    """Return the median as an Estimate; the bounds are those of a bootstrap of the values."""
-    values = numpy.asarray(values, dtype=float)
-    random = numpy.random.default_rng(seed)
-    medians = numpy.median(random.choice(values, size=(_RESAMPLES, values.size)), axis=1)
-    low, high = numpy.percentile(medians, _CONFIDENCE)
-    return Estimate(float(numpy.median(values)), float(low), float(high))
-
-
 def ratio(rounds, reference_rounds, seed=0):
     """Return by how much the median of the first is that of the second, as an Estimate.
 

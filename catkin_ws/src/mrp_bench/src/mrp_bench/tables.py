@@ -4,7 +4,6 @@
 It imports no library, because the pages are built without numpy and without ROS.
 """
 
-import signal
 from typing import NamedTuple
 
 from mrp_bench.ways import LIMITS, WAYS, size_text
@@ -140,54 +139,6 @@ def is_noisy(estimate):
     return high > _WIDEST_INTERVAL * low
 
 
-# The rows of the table of starts, and what they say.
-_STARTS = {
-    "first_line": "roslaunch's first line",
-    "master": "the master answers",
-    "first_started": "the first node is started",
-    "all_started": "all four are started",
-    "all_ready": "all four are ready",
-    "received_cpp": "first message at the C++ subscriber",
-    "received_py": "first message at the Python subscriber",
-    "nodes_ended": "Ctrl-C to the end of all four",
-    "ended": "Ctrl-C to the prompt",
-}
-
-
-def starts(content):
-    """Return the table of the starts and stops of the four nodes, if there were any."""
-    measured = content["starts"]
-    if not measured["figures"]:
-        return []
-    rows = [
-        [text, _start_cell(measured["figures"][name], content["verdict"])]
-        for name, text in _STARTS.items()
-    ]
-    return [
-        Table(
-            "Start and stop of the four nodes",
-            ["until", "seconds"],
-            [*rows, ["exit codes", _exits(measured)]],
-            ["From the call, and from Ctrl-C: medians, and intervals of 95 %."],
-        )
-    ]
-
-
-def _start_cell(estimate, noisy):
-    if noisy:
-        return NOISY
-    return "not seen" if estimate is None else _interval(estimate)
-
-
-def _exits(measured):
-    of = measured["starts"]
-    exits = [
-        f"{name}: {signal.Signals(-code).name if code < 0 else code} ({count} of {of})"
-        for name, code, count in measured["exits"]
-    ]
-    return ", ".join(exits) or "all 0"
-
-
 # What is tabled of many robots.
 ROBOTS = {
     "up": "all nodes ready, s",
@@ -228,9 +179,9 @@ def robots(content):
     ]
 
 
-def _costs(one, names, noisy):
+def _costs(figure, names, noisy):
     return [
-        NOISY if noisy else f"{one[name]:.0f}" if name in _WHOLE else f"{one[name]:.2f}"
+        NOISY if noisy else f"{figure[name]:.0f}" if name in _WHOLE else f"{figure[name]:.2f}"
         for name in names
     ]
 
@@ -260,6 +211,5 @@ TABLES = {
     "summary": summary,
     "latency": latency,
     "throughput": throughput,
-    "starts": starts,
     "robots": robots,
 }
