@@ -2,8 +2,7 @@
 """What ROS itself does wrong: with its patch in doc/upstream/, each lab goes as one would expect.
 
 What happens without it is shown by the lab's own test, which the report names. The patches are
-applied to what is installed; tools/rebuild_upstream.sh builds Debian's sources with them, and runs
-these tests with what it has built: MRP_UPSTREAM names its folder of Python's packages.
+applied to a copy of what is installed.
 """
 
 import os
@@ -34,8 +33,8 @@ def patched(request, tmp_path, monkeypatch):
     """Have a master, and nodes whose ROS has the patch of this test's name."""
     name = request.function.__name__.removeprefix("test_")
     port = free_port()
-    paths = [rebuilt] if (rebuilt := os.environ.get("MRP_UPSTREAM")) else apply(name, tmp_path)
-    monkeypatch.setenv("PYTHONPATH", ":".join([*paths, os.environ["PYTHONPATH"]]))
+    paths = [*apply(name, tmp_path), os.environ["PYTHONPATH"]]
+    monkeypatch.setenv("PYTHONPATH", ":".join(paths))
     monkeypatch.setenv("ROS_MASTER_URI", uri_of(port))
     monkeypatch.setenv("ROS_LOG_DIR", str(tmp_path))
     with master(port):
