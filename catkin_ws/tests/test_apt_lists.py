@@ -112,8 +112,8 @@ esac
     path.write_text("# to see it\nno-such-package\nbash\n")
     done = install([str(path)], tmp_path)
     assert (done.returncode, done.stderr) == (0, "")
-    said = "Installing Debian packages to see it: 3 of them, 1,234 kB to fetch, 6 MB on disk\n"
-    assert done.stdout == said
+    expected = "Installing Debian packages to see it: 3 of them, 1,234 kB to fetch, 6 MB on disk\n"
+    assert done.stdout == expected
 
 
 @pytest.mark.place
@@ -200,8 +200,10 @@ def test_installer_says_that_another_archive_keeps_catkin_out(tmp_path):
     stand_in(tmp_path, "apt-cache", f"printf 'Package: no-such-package\\n{CONFLICTS}'\n")
     path = tmp_path / "list.txt"
     path.write_text("no-such-package\n")
-    said = install([str(path)], tmp_path).stderr
-    assert "another archive's python3-catkin-pkg" in said and "\nfix: printf 'Package:" in said
+    printed = install([str(path)], tmp_path).stderr
+    assert (
+        "another archive's python3-catkin-pkg" in printed and "\nfix: printf 'Package:" in printed
+    )
 
 
 @pytest.mark.parametrize("distribution", ["one", "noetic"])

@@ -44,10 +44,10 @@ def test_package_is_right_at_once(language, nodes, tmp_path):
     ] == []
     yaml.safe_load((package / ".github/workflows/check.yml").read_text())
     # At once: run_tests builds what the test starts.
-    said = scratch.catkin_make(tmp_path, "run_tests")
+    printed = scratch.catkin_make(tmp_path, "run_tests")
     results = ("catkin_test_results", str(tmp_path / "build" / "test_results"))
     summary = subprocess.run(results, capture_output=True, text=True).stdout
-    assert summary.startswith(f"Summary: {2 * len(nodes)} tests, 0 errors, 0 failures"), said
+    assert summary.startswith(f"Summary: {2 * len(nodes)} tests, 0 errors, 0 failures"), printed
     lint = ("catkin_lint", "--strict", "-W2", "--offline", str(package))
     done = subprocess.run(lint, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
     assert done.stdout.endswith("checked 1 packages and found 0 problems\n")

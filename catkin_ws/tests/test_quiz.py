@@ -22,7 +22,7 @@ def package(site):
 
 def test_manifest_lists_every_item_and_nothing_else(package):
     manifest = package.pop("imsmanifest.xml")
-    resources = [one.attrib for one in manifest.iter(f"{PACKAGE}resource")]
+    resources = [resource.attrib for resource in manifest.iter(f"{PACKAGE}resource")]
     assert {resource["href"] for resource in resources} == set(package)
     assert {resource["type"] for resource in resources} == {"imsqti_item_xmlv2p1"}
 
@@ -37,7 +37,7 @@ def test_each_item_has_one_right_answer_and_says_why_to_each(package):
     for name, item in package.items():
         if name == "imsmanifest.xml":
             continue
-        (right,) = [one.text for one in item.iter(f"{QTI}value")]
+        (right,) = [value.text for value in item.iter(f"{QTI}value")]
         choices = list(item.iter(f"{QTI}simpleChoice"))
         identifiers = [choice.get("identifier") for choice in choices]
         assert right in identifiers and len(set(identifiers)) == len(choices) > 1, name

@@ -49,7 +49,7 @@ def test_ci_and_the_workflow_call_targets_of_the_list():
     workflow = yaml.safe_load((ROOT / ".github" / "workflows" / "ci.yml").read_text())
     matrices = [job["strategy"]["matrix"] for job in workflow["jobs"].values()]
     lines = [line for matrix_ in matrices for line in matrix_.get("targets", [])]
-    lines += [one.get("targets", "") for matrix in matrices for one in matrix.get("include", [])]
+    lines += [job.get("targets", "") for matrix in matrices for job in matrix.get("include", [])]
     by_workflow = {word for line in lines for word in line.split()}
     ci = (ROOT / ".ci" / "run").read_text()
     lines = re.findall(r"^ *(?:part \S+ |\w+=\w+ )?make ([a-z -]+)", ci, re.MULTILINE)

@@ -79,7 +79,7 @@ class TestLog(unittest.TestCase):
                 lambda: sum("a debug line" in line for line in list(lab.lines)) > count, "another"
             )
             for text in ("once", "at most once an hour"):
-                found = [one for one in log_line.texts(lab.lines) if one == text]
+                found = [line for line in log_line.texts(lab.lines) if line == text]
                 self.assertEqual(len(found), len(LOGGERS), str(lab))
 
     def test_levels_py(self):

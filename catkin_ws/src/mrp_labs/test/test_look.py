@@ -85,12 +85,12 @@ class TestLook(unittest.TestCase):
         text = "\n".join(without_address(publisher))
         self.assertIn(f"Publications:\n* {TOPIC} [std_msgs/UInt32]\n", text)
         self.assertIn("Subscriptions: None", text)
-        for one in SUBSCRIBERS:
-            self.assertIn(f"* topic: {TOPIC}\n* to: {one}\n* direction: outbound", text)
+        for name in SUBSCRIBERS:
+            self.assertIn(f"* topic: {TOPIC}\n* to: {name}\n* direction: outbound", text)
         text = "\n".join(without_address(subscriber))
         self.assertIn(f"Subscriptions:\n* {TOPIC} [std_msgs/UInt32]\n", text)
-        for one in PUBLISHERS:
-            self.assertIn(f"* topic: {TOPIC}\n* to: {one}\n* direction: inbound", text)
+        for name in PUBLISHERS:
+            self.assertIn(f"* topic: {TOPIC}\n* to: {name}\n* direction: inbound", text)
         self.check_topics(*of_topics)
         # The port at which a C++ node is called listens to all machines, that of a Python one not.
         listening = [
@@ -98,9 +98,9 @@ class TestLook(unittest.TestCase):
             for connection in open("/proc/net/tcp")
             if connection.split()[3] == "0A"
         ]
-        for one, address in zip(PUBLISHERS, ("00000000", "0100007F")):
-            port = urllib.parse.urlparse(rosgraph.Master("/test_look").lookupNode(one)).port
-            self.assertIn(f"{address}:{port:04X}", listening, one)
+        for name, address in zip(PUBLISHERS, ("00000000", "0100007F")):
+            port = urllib.parse.urlparse(rosgraph.Master("/test_look").lookupNode(name)).port
+            self.assertIn(f"{address}:{port:04X}", listening, name)
 
     def check_topics(self, topics, verbose, info, type_, echo):
         self.assertIn(TOPIC, topics)

@@ -67,7 +67,7 @@ class TestLaunched(unittest.TestCase):
     def check(self, node, language):
         """Check where the first line of the shown and of the hidden node is."""
         shown, hidden = (
-            node.start_line.format(f"/{one}_{language}") for one in ("shown", "hidden")
+            node.start_line.format(f"/{kind}_{language}") for kind in ("shown", "hidden")
         )
         self.assertTrue(self.has(shown), str(self.console))
         self.assertNotIn(shown, self.logged)

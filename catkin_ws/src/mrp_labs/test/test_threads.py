@@ -42,7 +42,7 @@ class TestThreads(unittest.TestCase):
             for subscriber in ("py", "spin", *POOLS):
                 for publisher in PUBLISHERS:
                     lab.wait_for_count("/threads/subscriber_" + subscriber, ENOUGH, publisher)
-            main = {one: pid_of("/threads/subscriber_" + one) for one in ("py", "spin", *POOLS)}
+            main = {name: pid_of("/threads/subscriber_" + name) for name in ("py", "spin", *POOLS)}
 
         # rospy: a thread for each connection, and none of them the main one.
         of_each = [threads(lab, "py", publisher) for publisher in PUBLISHERS]

@@ -82,7 +82,7 @@ class TestTime(unittest.TestCase):
         with Lab("time_fast_clock.launch") as running:
             begin = wait_until_published(running, CPP + PY + ROS, 1)
             end = wait_until_published(running, CPP + PY, 3, begin)
-            slow = max(len(published(running, one, begin, end)) for one in CPP + PY)
+            slow = max(len(published(running, publisher, begin, end)) for publisher in CPP + PY)
             for publisher in ROS:
                 # Ten times as many; but a busy machine may keep a timer from some.
                 self.assertGreater(len(published(running, publisher, begin, end)), 4 * slow)

@@ -22,20 +22,20 @@ TURN = 10.0  # seconds of the turned clock: many periods of the idiom's loop
 
 @contextlib.contextmanager
 def publisher(latch=False):
-    one = rospy.Publisher("/great_topic", UInt32, queue_size=10, latch=latch)
+    made = rospy.Publisher("/great_topic", UInt32, queue_size=10, latch=latch)
     try:
-        yield one
+        yield made
     finally:
-        one.unregister()
+        made.unregister()
 
 
-def listens(node, one):
+def listens(node, talker):
     """Wait until the idiom has a connection to the publisher."""
-    node.wait_for(lambda: one.get_num_connections() == 1, "the idiom listens")
+    node.wait_for(lambda: talker.get_num_connections() == 1, "the idiom listens")
 
 
-def listens_no_more(node, one):
-    node.wait_for(lambda: one.get_num_connections() == 0, "the idiom has unsubscribed")
+def listens_no_more(node, talker):
+    node.wait_for(lambda: talker.get_num_connections() == 0, "the idiom has unsubscribed")
 
 
 def received(node, *values):
@@ -59,22 +59,22 @@ class TestWhoListens(unittest.TestCase):
 
     def test_what_comes_between_two_waits_is_lost(self):
         for node, clock in self.each_idiom():
-            with publisher() as one:
-                listens(node, one)
-                one.publish(1)
+            with publisher() as talker:
+                listens(node, talker)
+                talker.publish(1)
                 received(node, 1)
-                listens_no_more(node, one)
-                one.publish(2)
-                clock.turn_until(node, TURN, lambda: one.get_num_connections() == 1)
-                one.publish(3)
+                listens_no_more(node, talker)
+                talker.publish(2)
+                clock.turn_until(node, TURN, lambda: talker.get_num_connections() == 1)
+                talker.publish(3)
                 received(node, 1, 3)
                 # Not by Ctrl-C: while it logs, rospy may not end.
                 node.stop(signal.SIGKILL)
 
     def test_what_is_latched_comes_again(self):
         for node, clock in self.each_idiom():
-            with publisher(latch=True) as one:
-                one.publish(1)
+            with publisher(latch=True) as talker:
+                talker.publish(1)
                 received(node, 1)
                 clock.turn_until(node, TURN, lambda: len(log_line.texts(node.lines)) >= 2)
                 received(node, 1, 1)

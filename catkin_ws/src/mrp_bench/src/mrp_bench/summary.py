@@ -51,7 +51,7 @@ class _Round:
 def summarise(measurements):
     """Return the rows, sorted by Stream, and in the order of ways.WAYS."""
     grouped = collections.defaultdict(lambda: collections.defaultdict(list))
-    for measurement in sorted(measurements, key=lambda one: one["round"]):
+    for measurement in sorted(measurements, key=lambda measurement: measurement["round"]):
         stream = (measurement["size"], measurement["rate"])
         grouped[stream][measurement["way"]].append(_Round(measurement))
     rows = []
