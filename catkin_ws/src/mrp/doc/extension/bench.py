@@ -42,20 +42,21 @@ class Tables(SphinxDirective):
         name = self.arguments[0]
         if name not in tables.TABLES:
             raise self.error(f"expected one of {', '.join(tables.TABLES)}, found {name}")
-        parts = [part for one in tables.TABLES[name](results(self.env)) for part in self.parts(one)]
+        found = tables.TABLES[name](results(self.env))
+        parts = [part for table in found for part in self.parts(table)]
         return [nodes.container("", *parts, is_div=True)]
 
-    def parts(self, one):
+    def parts(self, table):
         """Return the nodes of a tables.Table."""
-        yield from map(paragraph, one.before)
-        group = nodes.tgroup("", cols=len(one.header))
-        group += [nodes.colspec(colwidth=1) for _ in one.header]
-        group += nodes.thead("", self.row(one.header))
-        group += nodes.tbody("", *map(self.row, one.rows))
+        yield from map(paragraph, table.before)
+        group = nodes.tgroup("", cols=len(table.header))
+        group += [nodes.colspec(colwidth=1) for _ in table.header]
+        group += nodes.thead("", self.row(table.header))
+        group += nodes.tbody("", *map(self.row, table.rows))
         # Not the table's own title: the theme would write its id twice.
-        yield nodes.paragraph("", "", nodes.strong("", one.title))
+        yield nodes.paragraph("", "", nodes.strong("", table.title))
         yield nodes.table("", group, classes=["figures"])
-        yield from map(paragraph, one.after)
+        yield from map(paragraph, table.after)
 
     def row(self, cells):
         return nodes.row("", *(nodes.entry("", paragraph(cell)) for cell in cells))
