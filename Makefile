@@ -173,10 +173,9 @@ exercise: packages-check  ## show the next exercise, or check it; HINT=1 gives a
 
 # What else runs on this machine shows in the figures: end it before.
 .PHONY: bench
-bench: packages-bench $(BUILT_WHOLE)  ## measure how fast nodes are; QUICK=1: less of it; RESUME=1: go on with the last run
+bench: packages-bench $(BUILT_WHOLE)  ## measure how fast nodes are; QUICK=1: less of it
 	@$(IN_WORKSPACE) $(ALONE) source devel/setup.bash; \
-	exec rosrun mrp_bench bench.py $(if $(QUICK),--quick) \
-	  $(if $(RESUME),--resume) $(BENCH)
+	exec rosrun mrp_bench bench.py $(if $(QUICK),--quick) $(BENCH)
 
 .PHONY: bench-record
 bench-record:  ## put what `make bench` measured into the pages

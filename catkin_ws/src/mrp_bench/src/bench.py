@@ -15,14 +15,13 @@ import time
 from mrp_bench import launches, plans, report
 from mrp_bench.master import Master
 from mrp_bench.programs import ProgramError
-from mrp_bench.rounds import PlanError, Results, run
+from mrp_bench.rounds import Results, run
 
 
 def arguments():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("folder", type=pathlib.Path, help="where the results go")
     parser.add_argument("--quick", action="store_true", help="less of everything")
-    parser.add_argument("--resume", action="store_true", help="go on where the last run ended")
     return parser.parse_args()
 
 
@@ -36,22 +35,21 @@ def main():
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, signal.default_int_handler)
     args = arguments()
-    if not args.resume:
-        shutil.rmtree(args.folder, ignore_errors=True)
+    shutil.rmtree(args.folder, ignore_errors=True)
+    args.folder.mkdir(parents=True)
     plan = plans.QUICK if args.quick else plans.FULL
     rounds = plans.QUICK_ROUNDS if args.quick else plans.FULL_ROUNDS
     results = Results(args.folder)
     try:
-        results.begin(plan, rounds, args.resume)
         with Master(args.folder / "programs.log"):
             run(plan, rounds, results, say)
             if not args.quick:
                 launches.run(plans.ROBOTS, 1, results, say)
         report.write(results, say)
-    except (ProgramError, PlanError) as error:
+    except ProgramError as error:
         sys.exit(f"error: {error}")
     except KeyboardInterrupt:
-        sys.exit("ended before all was measured: RESUME=1 goes on")
+        sys.exit("ended before all was measured")
 
 
 if __name__ == "__main__":

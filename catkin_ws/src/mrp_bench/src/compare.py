@@ -48,7 +48,6 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         results = rounds.Results(folder)
         try:
-            results.begin(plan, plans.QUICK_ROUNDS, resume=False)
             with Master(pathlib.Path(folder) / "programs.log"):
                 rounds.run(plan, plans.QUICK_ROUNDS, results, lambda line: print(line, flush=True))
         except ProgramError as error:

@@ -98,7 +98,6 @@ def test_table_has_no_figures_of_a_noisy_machine(measurements):
 @pytest.mark.slow
 def test_report_is_in_all_files(measurements, tmp_path):
     results = rounds.Results(tmp_path)
-    results.begin([], 3, resume=False)
     results.keep_noise(0.01)
     for measurement in measurements:
         step = rounds.steps([measurement["way"]], (8, measurement["rate"], 100))[0]

@@ -53,7 +53,6 @@ def test_every_way_delivers_every_message_in_order(master, tmp_path):
     plan = rounds.steps(WAYS, (8, 200, 10))
     plan += rounds.steps(WAYS, (70000, 0, 3))
     results = rounds.Results(tmp_path)
-    results.begin(plan, 1, resume=False)
     rounds.run(plan, 1, results, print)
     found = results.measurements()
     assert len(found) == len(plan)
@@ -67,42 +66,15 @@ def test_every_way_delivers_every_message_in_order(master, tmp_path):
 
 
 @pytest.mark.slow
-def test_a_run_goes_on_where_it_ended(tmp_path):
-    plan = rounds.steps(LIMITS, (8, 200, 10), (70000, 0, 3))
-    results = rounds.Results(tmp_path)
-    results.begin(plan, 4, resume=False)
-    with pytest.raises(KeyboardInterrupt):
-        rounds.run(plan, 4, results, interrupt_at("[5/"))
-    kept = {path: path.stat().st_mtime_ns for path in tmp_path.glob("samples/*/*")}
-    assert len(kept) == 5
-
-    results.begin(plan, 4, resume=True)
-    lines = []
-    rounds.run(plan, 4, results, lines.append)
+def test_ways_are_measured_in_turns(tmp_path):
+    results, lines = rounds.Results(tmp_path), []
+    rounds.run(rounds.steps(LIMITS, (8, 200, 10), (70000, 0, 3)), 4, results, lines.append)
     steps = [line for line in lines if line.startswith("[")]
-    assert [line.split(" of 4")[0][-1] for line in steps] == [*"2223333", *"4444"]
-    assert [line.split(": ")[1].split(",")[0] for line in steps[3:7]] == [*LIMITS] * 2
+    assert [line.split(" of 4")[0][-1] for line in steps] == [*"1111222233334444"]
+    assert [line.split(": ")[1].split(",")[0] for line in steps] == [*LIMITS] * 8
     assert all(line.endswith(" s left") for line in steps)
-    assert steps[-1].startswith("[11/11] round 4 of 4: raw_py, 68 kB as fast as it goes")
-    assert {path: path.stat().st_mtime_ns for path in kept} == kept
+    assert steps[-1].startswith("[16/16] round 4 of 4: raw_py, 68 kB as fast as it goes")
     assert len(results.measurements()) == 16
-
-
-def interrupt_at(beginning):
-    """Return a function that raises KeyboardInterrupt when it is called with such a line."""
-
-    def say(line):
-        if line.startswith(beginning):
-            raise KeyboardInterrupt
-
-    return say
-
-
-def test_another_plan_cannot_be_resumed(tmp_path):
-    results = rounds.Results(tmp_path)
-    results.begin(rounds.steps(["raw_cpp"], (8, 0, 1)), 1, resume=False)
-    with pytest.raises(rounds.PlanError, match="found another plan: begin anew"):
-        results.begin(rounds.steps(["raw_cpp"], (8, 0, 2)), 1, resume=True)
 
 
 @pytest.mark.slow
@@ -110,7 +82,6 @@ def test_program_that_ends_is_an_error(tmp_path, monkeypatch):
     ends = Way("ends", "ends", ("bench_raw", "send=1"), ("bench_raw.py", "receive=1"))
     monkeypatch.setitem(WAYS, "ends", ends)
     results = rounds.Results(tmp_path)
-    results.begin([], 1, resume=False)
 
     class Broken(rounds.Running):
         def measure(self, stream):
@@ -184,8 +155,6 @@ def test_robots_start_and_stop(master, tmp_path):
     assert found["cores"] > 0
     assert len(found["pair"]["sent"]) == launches.STREAM.count
     assert found["pair"]["received"][::2] == found["pair"]["sent"]
-
-    launches.run([2], 1, results, pytest.fail)
 
 
 CONSOLE = """\

@@ -22,58 +22,26 @@ Step = collections.namedtuple("Step", "way stream")
 _ROUNDS_PER_START = 3
 
 
-class PlanError(Exception):
-    """A run cannot be resumed."""
-
-
 class Results:
-    """A folder with what was measured; each measurement is there as a whole, or not at all."""
+    """A folder with what was measured."""
 
     def __init__(self, folder):
         self.folder = pathlib.Path(folder)
 
-    def begin(self, plan, rounds, resume):
-        """Make the folder ready. Raises PlanError if something else was measured in it before."""
-        path = self.folder / "plan.json"
-        text = json.dumps({"rounds": rounds, "steps": plan})
-        if resume and path.exists() and path.read_text() != text:
-            raise PlanError(
-                f"expected in {path} what is to be measured now, found another plan: begin anew, "
-                "without RESUME=1"
-            )
-        self.folder.mkdir(parents=True, exist_ok=True)
-        path.write_text(text)
-
-    def path(self, number, step):
-        stream = step.stream
-        name = f"{step.way}_{stream.size}_{stream.rate}.json.gz"
-        return self.folder / "samples" / f"round_{number}" / name
-
-    def has(self, number, step):
-        return self.path(number, step).exists()
-
     def keep(self, number, step, measurement):
+        """Write down what a step has given in a round."""
+        way, stream = step
         content = {
-            "way": step.way,
-            **step.stream._asdict(),
+            "way": way,
+            **stream._asdict(),
             "round": number,
             **measurement._asdict(),
         }
-        path = self.path(number, step)
-        path.parent.mkdir(parents=True, exist_ok=True)
-        unfinished = path.with_suffix(".unfinished")
-        with gzip.open(unfinished, "wt", compresslevel=1) as file:
+        folder = self.folder / "samples" / f"round_{number}"
+        folder.mkdir(parents=True, exist_ok=True)
+        path = folder / f"{way}_{stream.size}_{stream.rate}.json.gz"
+        with gzip.open(path, "wt", compresslevel=1) as file:
             json.dump(content, file)
-        unfinished.rename(path)
-
-    def once(self, path, measure, say, line):
-        """Say the line, and keep what measure() returns in the file `path`, unless it is there."""
-        if not path.exists():
-            say(line)
-            found = json.dumps(measure(), indent=1)
-            unfinished = path.with_suffix(".unfinished")
-            unfinished.write_text(found)
-            unfinished.rename(path)
 
     def keep_noise(self, share):
         with open(self.folder / "noise.txt", "a") as file:
@@ -92,17 +60,11 @@ class Results:
 
 
 def run(plan, rounds, results, say):
-    """Measure what is not there yet. say: is called with a line on each thing that is done."""
-    pending = [
-        (number, step) for number in range(rounds) for step in plan if not results.has(number, step)
-    ]
+    """Measure a plan. say: is called with a line on each thing that is done."""
     begin = time.monotonic()
-    done = 0
+    done, count = 0, rounds * len(plan)
+    ways = list(dict.fromkeys(step.way for step in plan))
     for first in range(0, rounds, _ROUNDS_PER_START):
-        numbers = range(first, min(first + _ROUNDS_PER_START, rounds))
-        ways = list(dict.fromkeys(step.way for number, step in pending if number in numbers))
-        if not ways:
-            continue
         say(f"starting the programs of {len(ways)} ways")
         with contextlib.ExitStack() as stack:
             running = {name: Running(WAYS[name], results.folder / "programs.log") for name in ways}
@@ -114,15 +76,15 @@ def run(plan, rounds, results, say):
                 programs.start()
             for programs in running.values():
                 programs.connect()
-            for number in numbers:
+            for number in range(first, min(first + _ROUNDS_PER_START, rounds)):
                 results.keep_noise(noise.measure())
-                for step in (step for of, step in pending if of == number):
+                for step in plan:
                     results.keep(number, step, running[step.way].measure(step.stream))
                     done += 1
                     seconds = time.monotonic() - begin
-                    left = seconds / done * (len(pending) - done)
+                    left = seconds / done * (count - done)
                     say(
-                        f"[{done}/{len(pending)}] round {number + 1} of {rounds}: {step.way}, "
+                        f"[{done}/{count}] round {number + 1} of {rounds}: {step.way}, "
                         f"{describe(step.stream)}; {left:.0f} s left"
                     )
             results.keep_noise(noise.measure())
