@@ -48,10 +48,12 @@ class Activity:
         return min(waited, 1.0)
 
     def is_up_or_stuck(self, node: Optional[str], pid: Optional[int]) -> bool:
-        """Return whether a node has registered, or is not going to: its process is gone, does
+        """Return whether a node has registered, or is stuck."""
+        return node is not None and self.last(node) is not None or self.is_stuck(pid)
+
+    def is_stuck(self, pid: Optional[int]) -> bool:
+        """Return whether a node that has not registered is not going to: its process is gone, does
         nothing, or has worked for too long."""
-        if node is not None and self.last(node) is not None:
-            return True
         if pid is None:
             return False
         used = processor_seconds(pid)

@@ -199,8 +199,8 @@ class _Node:
         if self.program.poll() is not None:
             return True
         now, name = time.monotonic(), self.name()
-        if name is None:
-            return self.is_up()
+        if name is None:  # not asked twice: by then it may have come up, and is not settled
+            return self.activity.is_stuck(self.program.pid)
         if self.plan.example or not self.exchange.is_done(name):
             return self.exchange.is_done(name)
         if not self.plan.is_wrap and not self._is_watched():

@@ -100,8 +100,8 @@ class _Launch:
         if self._has_just_ended(node):
             return False
         last = self.activity.last(node.path)
-        if last is None:
-            return self.is_up(node)
+        if last is None:  # not asked twice: by then it may have come up, and is not settled
+            return self.activity.is_stuck(self._pid(node))
         pid = self._pid(node)
         silent = time.monotonic() - last > self.plan.common.silence
         if silent and (pid is None or self.activity.is_idle(pid)):
