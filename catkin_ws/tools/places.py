@@ -79,8 +79,9 @@ cat /tmp/test.log
 tail -n 5 /tmp/test.log | grep -oE '[0-9]+ (passed|failed|skipped)' |
   while read -r number what; do echo "## $what $number"; done
 echo "## lines_in_dpkg_log $(( $(wc -l < /var/log/dpkg.log) - lines ))"
-$sudo find / -xdev -newer /tmp/before -type f -not -path "$HOME/mrp/*" -not -path '/tmp/*' |
-  tee /tmp/elsewhere
+# Python keeps what it has compiled of Debian's own modules.
+$sudo find / -xdev -newer /tmp/before -type f -not -path "$HOME/mrp/*" -not -path '/tmp/*' \
+  -not -path '*/__pycache__/*' | tee /tmp/elsewhere
 echo "## files_changed_elsewhere $(wc -l < /tmp/elsewhere)"
 exit $code
 """
