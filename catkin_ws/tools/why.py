@@ -16,6 +16,7 @@ from why_search import Index
 
 SITE = WORKSPACE / "build" / "docs"
 
+_TRACEBACK = 5000  # characters above an exception
 _WIDE = 300  # characters of a line that is quoted
 _OF_PYTHON = re.compile(r"\b(?:Index|Key|Type|Value|Attribute)Error\b")
 # The last place of a traceback is in a file of ROS: what was given to it is wrong, not its code.
@@ -46,7 +47,8 @@ def _one_answer(number, one, shown, text):
     if one.doubtful:
         lines.append(f"   I'm not sure, but it looks like: {shown_on(one.entry.shows[0])[0]}")
     lines += [f"   why:  {one.entry.why}", f"   fix:  {one.entry.fix}"]
-    inside = _IN_ROS.search(text[: text.find(one.lines[0])])
+    at = text.find(one.lines[0])
+    inside = _IN_ROS.search(text[max(at - _TRACEBACK, 0) : max(at, 0)])
     if inside and _OF_PYTHON.search("\n".join(one.lines)):
         lines.append(f"   note: It happened in ROS's own {inside[1]}: look at what you gave to it.")
     return "\n".join([*lines, f"   page: {_link(one.entry.address)}"])

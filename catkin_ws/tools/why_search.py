@@ -26,6 +26,9 @@ _MASKS = (
     (COLOURS, ""),
     (re.compile("[‘’`´]"), "'"),
     (re.compile("[“”]"), '"'),
+    (re.compile(r"\bCMake (?:Error|(?:Deprecation )?Warning)(?: \(dev\))? at \S+:\d+ \(\w+\):"), ""),
+    (re.compile(r"\S+\.(?:cpp|cc|cxx|c|hpp|hh|h):\d+(?::\d+)?:"), ""),
+    (re.compile(r" ?\{aka [^}]*\}|\b_Z\w+"), ""),
     (re.compile(r"(?<![\w.])~?/[^\s:;,'\"()\[\]<>]+"), "/#"),
     (re.compile(r"\b(?:0x[0-9a-f]+|[0-9a-f]{32,})\b"), "#"),
     (re.compile(r"(?<!exit code )(?<!exit code -)(?<!\d)(?:(?<=\s)-)?\d+(?:\.\d+)*"), "#"),
@@ -83,7 +86,7 @@ _OTHERS = re.compile(
     r"|(?:dist|site)-packages/(?!numpy|cv2|yaml|serial|setuptools|pkg_resources|matplotlib|tf|gen)"
     r"|\b(?:systemd(?:-\w+)?\[|systemctl|journalctl|kubelet|kubectl|ansible|terraform)"
     r"|(?<![\w/.-])(?i:postgres\w*|psycopg\w*|mysql|mongodb?|redis|amqp|nginx|apache2?)(?![\w/])"
-    r"|[A-Z]:[/\\](?:Program|Users|Windows)|^fatal: Could not |\berror: linker `",
+    r"|[A-Z]:[/\\](?:Program|Users|Windows)|^fatal: Could not |\berror: (?:linker|linking with|could not compile) `",
     re.MULTILINE,
 )
 _ROS = re.compile(
@@ -108,13 +111,14 @@ _RARE, _CANDIDATES = 80, 60  # texts of entries
 _TOGETHER = 2  # lines: messages are broken into that many
 _LONG = 2000  # characters: a line is cut there
 _MANY = 500  # lines: of a longer text, only those around an error are searched
-_AT_EACH_END = 10_000  # lines with an error, at each end of a very long text
+_AT_EACH_END = 2_000  # places of a word, at each end of a very long text
 _NO_DIGITS = dict.fromkeys(map(ord, "0123456789"))
 _PROBLEMS = ("rror", "RROR", "xception", "ail", "atal", "FATAL", "arning", "WARN", "not ", "died")
 # The last lines of roslaunch, make and catkin: the cause is above them. A negative exit code, or
 # one of a shell (128 and the signal), does say something.
 _ENDING = re.compile(
     r".*process has died \[pid \d+, exit code (?!-|13[2-9])\d+\b.*|log files?: .*"
+    r"|.*process has finished cleanly"
     r"|=*(?:REQUIRED )?process \[.*\] has died!|Initiating shutdown!"
     r"|.*make(?:\[\d+\])?: \*\*\* .*(?:Error \d+|Waiting for unfinished jobs.*)"
     r"|.*recipe for target .* failed|compilation terminated\.?"
@@ -198,7 +202,7 @@ class Index:
     def nearest(self, text, count=ANSWERS):
         """Return the answers to a text, the nearest one first. Entries that only say that the cause
         is above come last."""
-        text = COLOURS.sub("", "\n".join(_near_problems(text.splitlines())))
+        text = COLOURS.sub("", "\n".join(_near_problems(text)))
         if _OTHERS.search(text) and not _ROS.search(text):
             return []
         for words, others in _ENGLISH.items():
@@ -276,18 +280,29 @@ def _text(text, **more):
     return _Text(frozenset(words), frozenset(names), ends, **more)
 
 
-def _near_problems(lines):
+def _near_problems(text):
     """Return the lines of a text; of a very long one, those with an error and those around them."""
-    if len(lines) > _MANY:
-        problems = [at for at, line in enumerate(lines) if any(word in line for word in _PROBLEMS)]
-        first = {}
-        for at in [*problems[:_AT_EACH_END], *problems[-_AT_EACH_END:]]:
-            first.setdefault(lines[at][:_LONG].translate(_NO_DIGITS), at)
-        ats = [*first.values()]
-        ats = sorted({*ats[: _MANY // 2], *ats[-_MANY // 2 :]})
-        around = sorted({near for at in ats for near in range(max(at - 2, 0), at + 3)})
-        lines = [lines[at] for at in around if at < len(lines)] or lines[-_MANY:]
-    return [line[:_LONG] for line in lines]
+    if len(text) <= _MANY * 100:
+        return [line[:_LONG] for line in text.splitlines()]
+    found, end = {}, 0
+    for at in sorted(set().union(*(_places(text, word) for word in _PROBLEMS))):
+        if at < end:
+            continue
+        before, after = text[max(at - _LONG, 0) : at].split("\n"), text[at : at + _LONG].split("\n")
+        line, end = before[-1] + after[0], at + len(after[0])
+        found.setdefault(line.translate(_NO_DIGITS), [*before[-3:-1], line, *after[1:3]])
+    found = [*found.values()] or [text[-_MANY * 100 :].splitlines()]
+    return [*itertools.chain.from_iterable(found[: _MANY // 2] + found[_MANY // 2 :][-_MANY // 2 :])]
+
+
+def _places(text, word):
+    """Return where a word is in a text: at most its first and its last places."""
+    first, last = [text.find(word)], [text.rfind(word)]
+    while first[-1] >= 0 and len(first) < _AT_EACH_END:
+        first.append(text.find(word, first[-1] + 1))
+    while last[-1] > first[-1] >= 0 and len(last) < _AT_EACH_END:
+        last.append(text.rfind(word, 0, last[-1]))
+    return {*first, *last} - {-1}
 
 
 def _passages(lines):
