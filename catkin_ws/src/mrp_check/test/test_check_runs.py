@@ -56,7 +56,7 @@ def _is(package, wanted, finding):
 def test_a_line_is_linked_to_the_entry_that_answers_it(monkeypatch, tmp_path):
     said = "Could not process inbound connection: topic types do not match: [a/B] vs. [c/D]{'x': 1}"
     logged.entries.cache_clear()
-    assert logged.answer(f"[WARN] [1795831174.7]: {said}") == "types-differ-rospy"
+    assert logged.answer(f"[WARN] [1795831174.7]: {said}") == "types-differ"
     assert logged.answer("Something that nobody has ever read.") == ""
     logged.entries.cache_clear()
     monkeypatch.setattr(logged, "ENTRIES", tmp_path)

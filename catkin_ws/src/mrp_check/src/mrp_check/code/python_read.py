@@ -36,8 +36,8 @@ _SHOWN = 12  # lines that a hint names
 _WHY = (
     (r"indented block|unindent does not|unexpected indent", "python-indent"),
     (r"inconsistent use of tabs", "python-tabs"),
-    (r"in call to 'print'", "python2-print"),
-    (r"multiple exception types", "python2-except"),
+    (r"in call to 'print'", "python2"),
+    (r"multiple exception types", "python2"),
     (r"", "python-syntax"),
 )
 _PRINT = re.compile(r"(^[ \t]*|^[^'\"#\n]*[:;][ \t]+)print[ \t]+(?![=(])([^\n]*)", re.MULTILINE)

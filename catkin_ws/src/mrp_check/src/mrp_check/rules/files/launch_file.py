@@ -195,7 +195,7 @@ _WORDS = (
     (
         r"Resource ?[Nn]ot ?[Ff]ound: (?:The following package was not found in .*>: )?(\S+)",
         _not_there,
-        "launch-find-not-found",
+        "package-not-found",
     ),
     (
         r"arg (?:to be set|named)? ?\[?'?(\w+)'?\]?|requires the '(\w+)' arg",
