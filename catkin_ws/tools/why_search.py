@@ -26,7 +26,7 @@ _MASKS = (
     (COLOURS, ""),
     (re.compile("[‘’`´]"), "'"),
     (re.compile("[“”]"), '"'),
-    (re.compile(r"\bCMake (?:Error|(?:Deprecation )?Warning)(?: \(dev\))? at \S+:\d+ \(\w+\):"), ""),
+    (re.compile(r"\bCMake [\w ]+(?: \(dev\))? at \S+:\d+ \(\w+\):"), ""),
     (re.compile(r"\S+\.(?:cpp|cc|cxx|c|hpp|hh|h):\d+(?::\d+)?:"), ""),
     (re.compile(r" ?\{aka [^}]*\}|\b_Z\w+"), ""),
     (re.compile(r"(?<![\w.])~?/[^\s:;,'\"()\[\]<>]+"), "/#"),
@@ -86,7 +86,8 @@ _OTHERS = re.compile(
     r"|(?:dist|site)-packages/(?!numpy|cv2|yaml|serial|setuptools|pkg_resources|matplotlib|tf|gen)"
     r"|\b(?:systemd(?:-\w+)?\[|systemctl|journalctl|kubelet|kubectl|ansible|terraform)"
     r"|(?<![\w/.-])(?i:postgres\w*|psycopg\w*|mysql|mongodb?|redis|amqp|nginx|apache2?)(?![\w/])"
-    r"|[A-Z]:[/\\](?:Program|Users|Windows)|^fatal: Could not |\berror: (?:linker|linking with|could not compile) `",
+    r"|[A-Z]:[/\\](?:Program|Users|Windows)|^fatal: Could not "
+    r"|\berror: (?:linker|linking with|could not compile) `",
     re.MULTILINE,
 )
 _ROS = re.compile(
@@ -291,8 +292,9 @@ def _near_problems(text):
         before, after = text[max(at - _LONG, 0) : at].split("\n"), text[at : at + _LONG].split("\n")
         line, end = before[-1] + after[0], at + len(after[0])
         found.setdefault(line.translate(_NO_DIGITS), [*before[-3:-1], line, *after[1:3]])
-    found = [*found.values()] or [text[-_MANY * 100 :].splitlines()]
-    return [*itertools.chain.from_iterable(found[: _MANY // 2] + found[_MANY // 2 :][-_MANY // 2 :])]
+    parts = [*found.values()] or [text[-_MANY * 100 :].splitlines()]
+    shown = parts[: _MANY // 2] + parts[_MANY // 2 :][-_MANY // 2 :]
+    return [*itertools.chain.from_iterable(shown)]
 
 
 def _places(text, word):

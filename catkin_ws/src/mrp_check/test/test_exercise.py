@@ -237,7 +237,8 @@ def test_without_a_terminal_it_goes_on_to_the_last(tmp_path, capsys, checked):
         assert f"Exercise {number} of {COUNT}, {exercise.name}: passed.\n" in printed
         learned = Course(tmp_path).exercises[number - 1].defect.learned
         assert f"You've learned: {learned}\n{number} of {COUNT}.\n" in printed
-    assert printed.endswith(f"You have finished all {COUNT}. Well done!\n")
+    assert f"You have finished all {COUNT}. Well done!\n" in printed
+    assert "\n  make new PKG=~" in printed and "\n  make check PKG=~" in printed
 
 
 def test_the_solution_is_a_diff_that_solves_it(tmp_path, monkeypatch):

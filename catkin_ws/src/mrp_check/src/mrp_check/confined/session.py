@@ -33,8 +33,11 @@ def main() -> None:
     libc.prctl(warden.PR_SET_DUMPABLE, 0, 0, 0, 0)
     starter = apart.Starter()
     # The nodes cannot write to its own files; and those of genpy lie there, too: tempfile looks at
-    # TMPDIR once, when it is first asked without a folder.
-    with answer, tempfile.TemporaryDirectory(dir="/tmp") as folder:
+    # TMPDIR once, when it is first asked without a folder. If this process is killed, whoever made
+    # the plan's folder deletes it with all that is in it; in namespaces, that one is read-only.
+    place = os.path.dirname(file)
+    place = place if os.access(place, os.W_OK) else "/tmp"
+    with answer, tempfile.TemporaryDirectory(dir=place) as folder:
         os.environ.update(dict.fromkeys(variables.FOLDERS, folder))
         with Observer() as observer:
             result: object

@@ -136,6 +136,18 @@ def progress(course: Course) -> str:
     return f"{len(course.exercises) - len(course.open)} of {len(course.exercises)}."
 
 
+def farewell(course: Course) -> list[str]:
+    """Return what somebody reads who has passed the last exercise."""
+    return [
+        "You've read the errors of Python, g++, CMake and roslaunch, and fixed"
+        f" {len(course.exercises)} packages. What's next? In the folder of the repository,",
+        "- start a package of your own, with a node and a test that work:",
+        "  make new PKG=~/robot_ws/src/laser_filter",
+        "- or check one that you have:",
+        "  make check PKG=~/catkin_ws/src/my_package ANY=1",
+    ]
+
+
 def wrong(report: Report) -> list[Finding]:
     """Return what is still wrong: an exercise is passed without errors and without warnings.
 

@@ -38,7 +38,8 @@ def passed(course: exercises.Course, exercise: exercises.Exercise) -> list[str]:
     """Return what a student reads who has passed an exercise."""
     lines = [f"You've learned: {exercise.defect.learned}", f"{exercises.progress(course)}", ""]
     if not course.open:
-        lines.append(f"You have finished all {len(course.exercises)}. Well done!")
+        lines += [f"You have finished all {len(course.exercises)}. Well done!", ""]
+        lines += exercises.farewell(course)
     return lines
 
 

@@ -87,13 +87,8 @@ def _congratulation(course: exercises.Course, width: int) -> Iterator[Line]:
     yield "", ""
     yield "passed", "* * *  That was the last one. Congratulations!  * * *"
     yield "", ""
-    text = (
-        "You've read the errors of Python, g++, CMake and roslaunch, and fixed"
-        f" {len(course.exercises)} packages. What's next? Check a package of your own, in the"
-        " folder of the repository:"
-    )
-    yield from _wrapped(text, width)
-    yield "place", "  make check PKG=~/catkin_ws/src/my_package ANY=1"
+    for line in exercises.farewell(course):
+        yield from _wrapped(line, width, "place" if line.startswith(" ") else "")
 
 
 def _findings(check: Check | None, explains: bool, width: int) -> Iterator[Line]:
