@@ -107,7 +107,7 @@ _NO_MODULE = re.compile(r"No module named ([\w.]+)")  # Python 2 has no quotes
 # How much of an entry's words a text must have, or how much of the text's words the entry must
 # explain; and the least sum of the two.
 _OF_ENTRY, _OF_TEXT, _BOTH = 0.55, 0.6, 1.1
-_LEAST = 7.0  # the weight of the words that both have
+_LEAST = 10  # the weight of the words that both have
 _RARE, _CANDIDATES = 80, 60  # texts of entries
 _TOGETHER = 2  # lines: messages are broken into that many
 _LONG = 2000  # characters: a line is cut there
