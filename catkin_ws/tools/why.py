@@ -74,8 +74,10 @@ def main(arguments):
         if sys.stdin.isatty():
             print("Paste the error text, then press Enter and Ctrl-D:", file=sys.stderr)
         text = decoded(sys.stdin.buffer.read())
-    if not text.strip():
-        print("error: expected an error text, found nothing", file=sys.stderr)
+    is_binary = text.count("\N{REPLACEMENT CHARACTER}") > len(text) / 4
+    if is_binary or not text.strip():
+        what = "a binary file" if is_binary else "nothing"
+        print(f"error: expected an error text, found {what}", file=sys.stderr)
         return 2
     found = Index(entries()).nearest(text)
     print(answer(found, text), flush=True)
