@@ -29,7 +29,7 @@ export class LogView {
       setOptions(byId("log-node"), [...new Set(this.lines.map((line) => line.node))].sort(), "all");
       if (down) this.place.scrollTop = this.place.scrollHeight;
     }
-    setText(byId("log-note"), `${count} lines since the viewer listens, ${this.lines.length} of them here.`);
+    setText(byId("log-note"), `${count} lines since the viewer started; here are the last ${this.lines.length}.`);
   }
 
   matches(line) {

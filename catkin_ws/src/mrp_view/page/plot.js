@@ -119,5 +119,5 @@ export function showPlot(history, rows, now) {
   picture.append(...axes(scales, width, now), ...lines.flatMap((line) => drawn(line, scales)));
   place.replaceChildren(picture);
   const field = lines[0].field;
-  setText(byId("plot-note"), `What is plotted: ${field}. Each line is that of the publisher with the same line in the table.`);
+  setText(byId("plot-note"), `This plots ${field}. Each publisher's line is the one next to its name in the table.`);
 }
