@@ -298,32 +298,6 @@ def test_make_why_reads_a_log(tmp_path):
     assert done.stdout.decode().startswith("1. ERROR: Unable to communicate with master!\n")
 
 
-# Each error stands among warnings, whose texts are longer.
-LOGS = {
-    "not-declared": """CMake Deprecation Warning at CMakeLists.txt:1 (cmake_minimum_required):
-  Compatibility with CMake < 2.8.12 will be removed from a future version of
-  CMake.
-[ 50%] Building CXX object a/CMakeFiles/a.dir/src/a.cpp.o
-a.cpp:12:9: warning: unused variable 'x' [-Wunused-variable]
-a.cpp:15:3: error: 'talker' was not declared in this scope
-   15 |   talker.publish(msg);
-make: *** [Makefile:146: all] Error 2
-Invoking "make -j4 -l4" failed""",
-    "name-not-defined": """process[a-1]: started with pid [4242]
-[WARN] [1.2]: The publisher should be created with an explicit keyword argument 'queue_size'.
-Traceback (most recent call last):
-  File "/home/you/catkin_ws/src/a/scripts/a.py", line 12, in <module>
-    pub.publish(Strin("x"))
-NameError: name 'Strin' is not defined
-[a-1] process has died [pid 4242, exit code 1, cmd /home/you/a.py __name:=a""",
-}
-
-
-@pytest.mark.parametrize("name", LOGS)
-def test_an_error_counts_more_than_a_warning(name, index):
-    assert name in names(index, LOGS[name])
-
-
 def test_what_the_checker_and_the_doctor_name_is_there():
     checker = WORKSPACE / "src" / "mrp_check" / "src"
     text = "".join(path.read_text() for path in checker.rglob("*.py"))
