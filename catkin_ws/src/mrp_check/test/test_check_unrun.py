@@ -52,11 +52,16 @@ def launched(file, topic, *names):
     return Launched(file, {f"/{name}": name for name in names}, seen)
 
 
-@pytest.mark.parametrize(("files", "found"), [([], [ERROR]), (["launch/a.launch"], [])])
-def test_names_that_a_launch_file_may_give(files, found):
-    """Without one, all nodes run together; with one, it has renamed what they need."""
+@pytest.mark.parametrize(
+    ("files", "made_up", "found"),
+    [([], (), [ERROR]), (["launch/a.launch"], (), []), ([], ("/say",), []), ([], ("/b",), [ERROR])],
+)
+def test_names_that_a_launch_file_may_give(files, made_up, found):
+    """Without one, all nodes run together; with one, it has renamed what they need. Nor is it an
+    error that a topic is named after a node which the checker has renamed."""
     runs = [launched(file, "/say/raw", "hear") for file in files]
     runs.append(launched("", "/hear/raw", "hear", "say"))
+    runs[-1].made_up = made_up
     observed = types.SimpleNamespace(launches=runs, direct=None)
     places = types.SimpleNamespace(of_topic=lambda *_: ("src/a.cpp", 1))
     known = types.SimpleNamespace(observed=observed, places=places, nodes={}, package=PACKAGE)
@@ -111,7 +116,7 @@ def test_a_topic_of_several_types(file, others, found):
     heard = [Registration("/hear", "/a", "std_msgs/String", 1)]
     nodes = {"/hear": "hear", **{one.node: "say" for one in said}}
     seen = types.SimpleNamespace(seen=Seen(publications=said, subscriptions=heard))
-    runs = [types.SimpleNamespace(file=file, nodes=nodes, seen=seen)]
+    runs = [Launched(file, nodes, seen)]
     places = types.SimpleNamespace(of_topic=lambda *_: ("src/a.cpp", 1))
     observed = types.SimpleNamespace(launches=runs, direct=None)
     known = types.SimpleNamespace(observed=observed, places=places, nodes={}, package=PACKAGE)

@@ -31,11 +31,13 @@ class Launched:
 
     file: relative to the package; empty of one that the checker has made
     nodes: full name -> node of the spec
+    made_up: the full names that the nodes don't give themselves, nor a launch file: the checker does
     """
 
     file: str
     nodes: dict[str, str]
     seen: LaunchResult
+    made_up: tuple[str, ...] = ()
 
 
 @dataclasses.dataclass

@@ -32,9 +32,12 @@ class End(typing.NamedTuple):
 
 
 class Graph(typing.NamedTuple):
+    """What was seen in a run. made_up: the names of nodes that the checker has made up for it."""
+
     where: str
     publishers: list[End]
     subscribers: list[End]
+    made_up: tuple[str, ...] = ()
 
 
 def _findings(case: Case) -> Iterator[Finding]:
@@ -62,7 +65,7 @@ def _graphs(case: Case) -> Iterator[tuple[Graph, set[str]]]:
         together |= nodes
         where = f"Under {launched.file}" if launched.file else _TOGETHER
         graph = _graph(where, launched.seen.seen, launched.nodes, lambda topic: topic)
-        yield graph, nodes
+        yield graph._replace(made_up=launched.made_up), nodes
     direct = case.observed.direct
     if direct:
         alone = {one.name: key for key, one in direct.nodes.items() if one.name}
@@ -139,6 +142,8 @@ def _alone(case: Case, graph: Graph, end: End, published: set[str]) -> Iterator[
     is_sure = (
         is_own or is_like(other, end) and (other.topic not in heard or not _is_moved(other, end))
     )
+    # A topic that's named after its node has another name where the checker has renamed the node.
+    is_sure = is_sure and not any(one.topic.startswith(graph.made_up) for one in (end, other))
     digits = [re.sub(r"\d", "", one.topic) for one in (other, end)]
     yield Finding(
         "topic",
