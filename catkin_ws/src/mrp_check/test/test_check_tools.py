@@ -3,6 +3,7 @@
 
 import subprocess
 import types
+from concurrent import futures
 
 import check_rules
 import pytest
@@ -10,6 +11,7 @@ from mrp_check.build import compiler
 from mrp_check.code.facts import Facts
 from mrp_check.code.python_source import Source
 from mrp_check.contract.errors import NotHere
+from mrp_check.package import manifest
 from mrp_check.rules.tools import catkin_lint, gcc, pylint
 
 pytestmark = pytest.mark.quick
@@ -22,7 +24,9 @@ def run(*command, of=()):
 
 
 def case(package, **known):
-    given = {"manifest": (True, None), "run": run, "run_once": run, **known}
+    pool = futures.ThreadPoolExecutor(max_workers=1)
+    given = {"manifest": manifest.parse(package), "run": run, "run_once": run, **known}
+    given["tool"] = lambda name, *call, **words: pool.submit(*call, **words)
     return types.SimpleNamespace(package=package, package_folder=package.root, **given)
 
 
@@ -73,6 +77,12 @@ def test_what_another_rule_has_said_pylint_does_not_repeat(tmp_path):
 
 
 CMAKE = "project(some_pkg)\nfind_package(catkin REQUIRED COMPONENTS roscpp)\ncatkin_package()\n"
+
+
+def test_catkin_lint_is_asked_only_of_packages_of_catkins(tmp_path):
+    other = check_rules.MANIFEST.replace(">catkin<", ">ament_cmake<")
+    package = check_rules.make(tmp_path / "some_pkg", package_DOT_xml=other)
+    assert not [*catkin_lint.RULE.ask(case(package))]
 
 
 def test_catkin_lint_gives_notes(tmp_path):

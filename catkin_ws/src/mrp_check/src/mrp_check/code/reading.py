@@ -23,7 +23,7 @@ def read(reader: CppReader, spec: Spec, model: Model, launch: Launch | None) -> 
     package, facts = workspace.package, Facts()
     cpp = [file for file in package.of_kind("cpp") if not uses.is_test(file)]
     said_of = {file: workspace.submit(reader.read, file) for file in cpp}
-    for file in _python_files(package):
+    for file in python_files(package):
         source, problem = python_read.read(package, file)
         if source is None:
             facts.unread.add(file)
@@ -47,7 +47,7 @@ def read(reader: CppReader, spec: Spec, model: Model, launch: Launch | None) -> 
     return facts
 
 
-def _python_files(package: Package) -> list[str]:
+def python_files(package: Package) -> list[str]:
     """Return the Python files to read: all but those of tests and of setup."""
     return [
         path

@@ -35,7 +35,7 @@ _SOURCED = (
     'for file in "$@"; do [ ! -f "$file" ] || source "$file" -- || true; done; '
     "printf '\\0'; exec env -0"
 )
-_AT_ONCE = 3  # commands that run in the background at the same time
+_AT_ONCE = 4  # commands that run in the background at the same time
 _BUILT = ("cpp", "header", "launch")  # kinds of files that CMake does not read
 _NOT_MADE = {"python", "launch"}  # kinds that make does not read, but for a command of one's own
 # What a CMakeLists.txt may have files written by that only it says.
@@ -102,6 +102,7 @@ class Workspace:
         is_made = writes or not changed <= _NOT_MADE
         self.made = None if is_made else kept and kept["made"]
         self._pool = concurrent.futures.ThreadPoolExecutor(max_workers=_AT_ONCE)
+        self._begun: dict[str, concurrent.futures.Future[confine.Result]] = {}
 
     def _copy(self, path: str) -> bool:
         """Copy a file of the package unless it is there as it is; return whether it was copied.
@@ -147,6 +148,17 @@ class Workspace:
     ) -> concurrent.futures.Future[T]:
         """Run a function in the background; return its future."""
         return self._pool.submit(function, *arguments, **keywords)
+
+    def tool(
+        self, name: str, run: Callable[..., confine.Result], *command: str, **keywords: object
+    ) -> concurrent.futures.Future[confine.Result]:
+        """Run a tool in the background, if it doesn't run already; return its future.
+
+        run: the function that is called with the command
+        """
+        if name not in self._begun:
+            self._begun[name] = self.submit(run, *command, **keywords)
+        return self._begun[name]
 
     def run(
         self,

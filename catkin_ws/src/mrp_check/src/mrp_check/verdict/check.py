@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import contextlib
 import copy
+import functools
 import itertools
 import pathlib
 import traceback
@@ -109,6 +110,9 @@ class _Examination:
             case.submit(python_modules.of_rospy)
         # Others that need no more are asked, too: they may know the cause.
         chosen = [rule for rule in rules if needs.issuperset(rule.needs)]
+        for rule in chosen:
+            if rule.begins:
+                self._guarded(rule.ids, functools.partial(rule.begins, case))
         for stage, rules in itertools.groupby(chosen, lambda rule: rule.stage):
             case.progress(f"stage {stage}")
             for rule in rules:

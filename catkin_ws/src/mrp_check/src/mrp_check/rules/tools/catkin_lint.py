@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import json
 import shutil
+from concurrent.futures import Future
 from typing import Iterator
 
 from mrp_check.build.catkin import search_path
@@ -18,6 +19,7 @@ from mrp_check.contract.errors import CannotCheck, NotHere
 from mrp_check.contract.finding import HINT, Finding
 from mrp_check.contract.requirements import ANY, Requirement, Rule
 from mrp_check.contract.resources import SHARES
+from mrp_check.sandbox.confine import Result
 
 _AGREE = "Let package.xml, find_package() and catkin_package() name the same packages."
 _INSTALL = "Add it to install(); or leave it, if you only work in your own workspace."
@@ -43,14 +45,25 @@ _TABLE = {
 }
 
 
+def _begin(case: Case) -> Future[Result] | None:
+    """Start catkin_lint, if it is there and if this is a package of catkin's."""
+    parsed, _ = case.manifest
+    tools = {one.name for one in parsed.buildtool_depends} if parsed else set()
+    is_catkins = "catkin" in tools and "CMakeLists.txt" in case.package.files
+    if not is_catkins or not shutil.which("catkin_lint", path=search_path()):
+        return None
+    command = ("catkin_lint", "--offline", "--json", "-W2", "--package-path", ":".join(SHARES))
+    return case.tool("catkin_lint", case.run, *command, str(case.package_folder))
+
+
 def _findings(case: Case) -> Iterator[Finding]:
     package = case.package
     if not shutil.which("catkin_lint", path=search_path()):
         raise NotHere(["catkin_lint (Debian package catkin-lint)"])
-    if not case.manifest[0] or "CMakeLists.txt" not in package.files:
+    running = _begin(case)
+    if not running:
         return
-    command = ("catkin_lint", "--offline", "--json", "-W2", "--package-path", ":".join(SHARES))
-    done = case.run(*command, str(case.package_folder))
+    done = running.result()
     try:
         said = json.loads(done.output)
     except ValueError:
@@ -71,6 +84,7 @@ RULE = Rule(
     stage="build",
     needs=("manifest", "model"),
     findings=_findings,
+    begins=_begin,
     requirements={
         "catkin-lint": Requirement(
             "catkin_lint has nothing to say", "building#cmakelists-txt", evidence.manifest

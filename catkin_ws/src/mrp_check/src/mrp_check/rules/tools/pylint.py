@@ -8,14 +8,17 @@ imported. https://pylint.readthedocs.io/en/stable/user_guide/messages/messages_o
 from __future__ import annotations
 
 import json
+from concurrent.futures import Future
 from typing import Iterator
 
 from mrp_check.build.row import Row
 from mrp_check.case import evidence
 from mrp_check.case.case import Case
+from mrp_check.code import reading
 from mrp_check.contract.errors import CannotCheck, NotHere
 from mrp_check.contract.finding import HABIT, HINT, READ, Finding
 from mrp_check.contract.requirements import ANY, Requirement, Rule
+from mrp_check.sandbox.confine import Result
 
 _COMMAND = (
     *("/usr/bin/python3", "-m", "pylint", "--rcfile=/dev/null", "--persistent=n", "--exit-zero"),
@@ -143,14 +146,22 @@ _CLASSES = set(
 )
 
 
+def _begin(case: Case) -> Future[Result] | None:
+    """Start pylint, if there is something to read: which files are nodes isn't known yet."""
+    files = reading.python_files(case.package)
+    paths = [str(case.package_folder / file) for file in files]
+    command = *_COMMAND, f"--enable={','.join(_TABLE)}", *paths
+    of = case.package.of_kind("python")
+    return case.tool("pylint", case.run_once, *command, of=of) if files else None
+
+
 def _findings(case: Case) -> Iterator[Finding]:
     package, read = case.package, case.facts.python
     files = [file for file in case.facts.relevant if file in read and file not in case.facts.unread]
-    if not files:
+    running = _begin(case) if files else None
+    if not running:
         return
-    paths = [str(case.package_folder / file) for file in files]
-    command = *_COMMAND, f"--enable={','.join(_TABLE)}", *paths
-    done = case.run_once(*command, of=package.of_kind("python"))
+    paths, done = [str(case.package_folder / file) for file in files], running.result()
     if "No module named pylint" in done.errors:
         raise NotHere(["pylint (Debian package pylint)"])
     try:
@@ -175,6 +186,7 @@ RULE = Rule(
     stage="build",
     needs=("facts",),
     findings=_findings,
+    begins=_begin,
     requirements={
         "pylint": Requirement(
             "pylint has no doubts about the Python code", "wrong", evidence.python
