@@ -276,7 +276,7 @@ _CMAKE_OF_DOUBTFUL = """\
 cmake_minimum_required(VERSION 2.8.12)
 project(some_pkg)
 find_package(catkin REQUIRED COMPONENTS roscpp)
-catkin_package(LIBRARIES some_pkg DEPENDS system_lib)
+catkin_package()
 include_directories(include ${catkin_INCLUDE_DIRS})
 add_executable(far src/far.cpp)
 target_link_libraries(far ${catkin_LIBRARIES})

@@ -23,7 +23,6 @@ from mrp_check.rules.code import (
     rospy_calls,
     spin,
     typed,
-    unbound,
 )
 from mrp_check.rules.contract import counter, queue, swapped_sources
 from mrp_check.verdict.severity import severity
@@ -113,7 +112,7 @@ def python_findings(folder, source, **others):
         return [problem]
     known = facts.Facts(python={read.file: read}, relevant=[read.file])
     one = types.SimpleNamespace(package=package, facts=known, coded=[])
-    rules = python_names, rospy_calls, not_called, responses, callbacks, typed, unbound
+    rules = python_names, rospy_calls, not_called, responses, callbacks, typed
     return [finding for file in rules for finding in of(file.RULE, one)]
 
 

@@ -50,8 +50,6 @@ DOUBTED = [
     (WARNING, "dependencies", "package.xml: depend", "does not name nowhere_msgs"),
     (WARNING, "dependencies", "CMakeLists.txt: find_package", "does not name nowhere_msgs"),
     (WARNING, "targets", "CMakeLists.txt: add_dependencies", "no such target"),
-    (WARNING, "targets", "CMakeLists.txt: LIBRARIES", "the library some_pkg"),
-    (WARNING, "targets", "CMakeLists.txt: DEPENDS", "system_lib"),
     (WARNING, "starts", "src/busy.cpp: /home/", "/home/nobody/table.txt"),
     (WARNING, "starts", "scripts/waves.py: /home/", "/home/nobody/waves.txt"),
     (WARNING, "starts", "launch/busy.launch: /home/", "/home/nobody/map.pgm"),

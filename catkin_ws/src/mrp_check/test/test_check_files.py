@@ -3,15 +3,17 @@
 
 import dataclasses
 import re
-import types
 
 import check_rules
 import pytest
 from check_rules import CMAKE, MANIFEST, file_findings, told
 from mrp_check.code import uses
 from mrp_check.package import cmake
+from mrp_check.package import manifest as manifests
+from mrp_check.package.package import Package
 from mrp_check.rules.files import cmake as cmake_rule
 from mrp_check.rules.files import dependencies, manifest, messages, package_name, targets, text
+from one_source import case, lines_of
 
 pytestmark = pytest.mark.quick
 
@@ -164,10 +166,8 @@ def test_comment_uses_nothing(source, tmp_path):
         ("catkin_package(", "add_executable(b src/a.cpp)\ncatkin_package(", 5, "comes after"),
         ("catkin_install", "add_executable(b src/aa.cpp)\ncatkin_install", 5, "src/a.cpp is meant"),
         ("catkin_package(", "catkin_package(INCLUDE_DIRS include ", 4, "no such folder"),
-        ("DESTINATION bin", "DESTINATION $(CATKIN_PACKAGE_BIN_DESTINATION)", 5, "braces"),
-        ("catkin_install", "add_rostest_gtest(t src/a.cpp src/t.cpp)\ncatkin_install", 5, "XML"),
     ],
-    ids=range(7),
+    ids=range(5),
 )
 def test_broken_cmake(old, new, line, says, tmp_path):
     assert CMAKE.count(old) == 1
@@ -177,23 +177,6 @@ def test_broken_cmake(old, new, line, says, tmp_path):
     (finding,) = [*file_findings(cmake_rule, package), *file_findings(targets, package)]
     assert (finding.file, finding.line) == ("CMakeLists.txt", line)
     assert says in finding.message
-
-
-@pytest.mark.parametrize(
-    ("comment", "source", "lines"),
-    [
-        ("# add_executable(b src/b.cpp)", "int main() {}\n", [5]),
-        ("# add_executable(b src/b.cpp)", "int other() {}\n", []),
-        ("# b.cpp is an old one", "int main() {}\n", []),
-        ("# see below\nadd_executable(b src/b.cpp)", "int main() {}\n", []),
-    ],
-    ids=range(4),
-)
-def test_a_program_of_which_a_comment_makes_a_target(comment, source, lines, tmp_path):
-    text_ = CMAKE.replace("catkin_install", f"{comment}\ncatkin_install")
-    package = check_rules.make(tmp_path, CMakeLists_DOT_txt=text_, src__b_DOT_cpp=source)
-    known = types.SimpleNamespace(is_contract=False)
-    assert [one.line for one in file_findings(targets, package, spec=known)] == lines
 
 
 def test_cmake_as_text():
@@ -345,3 +328,34 @@ def test_a_package_that_is_not_here_is_named_as_debian_has_it(
 ):
     monkeypatch.setattr(uses, "debian_packages", lambda: debian)
     assert says in uses.absent(name, language)
+
+
+@pytest.mark.parametrize(
+    ("name", "url", "found"),
+    [
+        ("turtlesim", "", [3]),
+        ("turtlesim", "<url>http://www.ros.org/turtlesim</url>", []),
+        ("our_turtle", "", []),
+    ],
+    ids=range(3),
+)
+def test_a_package_is_not_called_like_one_of_ros(name, url, found, tmp_path):
+    text = check_rules.MANIFEST.replace("some_pkg", name).replace(
+        "<depend>std_msgs</depend>", f"<depend>std_msgs</depend>{url}"
+    )
+    known = case(tmp_path, "cpp", 'ros::init(argc, argv, "a");', package_DOT_xml=text)
+    known.manifest = manifests.parse(known.package)
+    known.model.project = None
+    assert uses.is_of_ros(name) == (name == "turtlesim")
+    assert lines_of(package_name, known) == found
+
+
+@pytest.mark.parametrize(("path", "found"), [("src/a", [1]), (".hidden", [])])
+def test_a_package_within_another_one_is_not_found(path, found, tmp_path):
+    known = case(tmp_path, "py", "")
+    (known.package.root / path).mkdir(parents=True)
+    (known.package.root / path / "package.xml").write_text(MANIFEST)
+    known.package = Package(known.package.root)
+    known.manifest = manifests.parse(known.package)
+    known.model.project = None
+    assert lines_of(package_name, known) == found

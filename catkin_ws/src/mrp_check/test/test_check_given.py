@@ -97,13 +97,6 @@ def test_what_only_a_newer_cmake_says_is_a_note(version, release, found, tmp_pat
     assert lines_of(cmake, known, NOTE) == found
 
 
-@pytest.mark.parametrize(("library", "found"), [("boost_system", [7]), ("${Boost_LIBRARIES}", [])])
-def test_a_library_that_a_later_debian_does_not_have_is_a_note(library, found, tmp_path):
-    text = MADE_BY_CMAKE + f"add_executable(a a.cpp)\ntarget_link_libraries(a {library})\n"
-    known = case(tmp_path, "cpp", INIT, CMakeLists_DOT_txt=text)
-    assert lines_of(cmake, known, NOTE) == found
-
-
 @pytest.mark.parametrize(
     ("line", "found"),
     [
@@ -139,57 +132,6 @@ def test_a_standard_of_cpp_that_newer_headers_do_not_take(line, found, tmp_path)
     )
     known.built.output = said
     assert lines_of(compile, known) == []  # it is said as an error where the compiler says so
-
-
-@pytest.mark.parametrize(
-    ("line", "found"), [("from distutils.core import setup", [2]), ("import setuptools", [])]
-)
-def test_setup_takes_what_goes_on_to_be_there(line, found, tmp_path):
-    text = f"{MADE_BY_CMAKE}catkin_python_setup()\n"
-    known = case(tmp_path, "cpp", INIT, CMakeLists_DOT_txt=text, setup_DOT_py=f"\n{line}\n")
-    assert lines_of(cmake, known, part=cmake.python_setup) == found
-
-
-GENERATES = """project(some_pkg)
-find_package(catkin REQUIRED COMPONENTS message_generation)
-add_message_files(FILES A.msg)
-generate_messages()
-catkin_package(
-  CATKIN_DEPENDS {}
-)
-"""
-
-
-@pytest.mark.parametrize(
-    ("tag", "passed_on", "found"),
-    [
-        ("build_depend", "message_runtime", []),
-        ("exec_depend", "message_runtime", [("package.xml", 11)]),
-        ("build_depend", "message_generation", [("CMakeLists.txt", 6)]),
-    ],
-    ids=range(3),
-)
-def test_what_makes_messages_is_needed_to_build_alone(tag, passed_on, found, tmp_path):
-    named = f"<{tag}>message_generation</{tag}>\n  <exec_depend>message_runtime</exec_depend>"
-    made = check_rules.MANIFEST.replace("<depend>std_msgs</depend>", named)
-    known = case(
-        *(tmp_path, "cpp", INIT),
-        package_DOT_xml=made,
-        CMakeLists_DOT_txt=GENERATES.format(passed_on),
-        msg__A_DOT_msg="int32 a",
-    )
-    known.manifest = manifest.parse(known.package)
-    known.spec = types.SimpleNamespace(**vars(known.spec), messages={}, services={})
-    said = [one for one in check_rules.of(messages.RULE, known) if "alone; who" in one.message]
-    assert [(one.file, one.line) for one in said] == found
-
-
-@pytest.mark.parametrize(("text", "found"), [("int32 int", [1]), ("int32 integer", [])])
-def test_a_field_has_no_word_of_cpp_for_its_name(text, found, tmp_path):
-    known = case(tmp_path, "cpp", INIT, msg__Own_DOT_msg=text)
-    known.model.message_files = {"msg/Own.msg": 1}
-    said = check_rules.of(messages.RULE, known, messages.definitions)
-    assert [one.line for one in said if "a word of C++" in one.message] == found
 
 
 @pytest.mark.parametrize(

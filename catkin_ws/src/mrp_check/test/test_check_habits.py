@@ -12,7 +12,7 @@ from mrp_check.rules.code import (
     rospy_calls,
     typed,
 )
-from mrp_check.rules.files import cmake, scripts
+from mrp_check.rules.files import scripts
 from one_source import case, lines_of
 
 pytestmark = pytest.mark.quick
@@ -55,22 +55,6 @@ WORK = "def work(goal):\n    for i in range(9):\n        "
 )
 def test_what_beginners_are_used_to(rule, ending, lines, found, tmp_path):
     assert lines_of(rule, case(tmp_path, ending, lines)) == found
-
-
-@pytest.mark.parametrize(
-    ("lines", "found"),
-    [
-        ("find_package(catkin REQUIRED COMPONENTS tf)\ntarget_link_libraries(a b)", 1),
-        ("find_package(catkin REQUIRED COMPONENTS tf)", 0),
-        ("find_package(catkin REQUIRED COMPONENTS roscpp rospy std_msgs)\nadd_library(a b)", 0),
-    ],
-    ids=range(3),
-)
-def test_catkin_is_found_twice(lines, found, tmp_path):
-    text = check_rules.CMAKE + lines
-    package = check_rules.make(tmp_path / "some_pkg", CMakeLists_DOT_txt=text)
-    said = [one.message for one in check_rules.file_findings(cmake, package)]
-    assert sum("called again" in one for one in said) == found
 
 
 def test_a_first_line_without_its_slash(tmp_path):

@@ -123,12 +123,6 @@ BROKEN = {
         "/mrp/more",
     ),
     "group_written_down": ("$(arg group)", "mrp", [("launch-group", 3)], "second robot"),
-    "in_braces": (
-        NODES[1],
-        NODES[1].replace("/>", '>\n      <param name="a" value="${arg group}"/>\n    </node>'),
-        [("launch-file", 6)],
-        r"\$\(arg group\)",
-    ),
     "unknown_attribute": (
         NODES[1],
         NODES[1].replace("<node ", '<node ouput="log" '),
@@ -188,23 +182,6 @@ def test_what_asks_for_an_argument_is_read_all_the_same(tmp_path):
     assert "requires the 'a' arg to be set" in case.launch.error
     assert (case.launch.params, len(case.launch.nodes)) == ({"/b": 1}, 4)
     case.close()
-
-
-@pytest.mark.parametrize(
-    ("command", "found"),
-    [
-        ("'$(find some_pkg)/package.xml'", [2]),
-        ("$(find some_pkg)/package.xml", [2]),
-        ("cat $(find some_pkg)/package.xml", []),
-        ("$(find other_pkg)/package.xml", []),
-    ],
-    ids=range(4),
-)
-def test_what_is_run_for_a_parameter_is_executable(command, found, tmp_path):
-    text = f'<launch>\n<param name="a" command="{command}"/>\n</launch>\n'
-    package = check_rules.make(tmp_path / "some_pkg", launch__a_DOT_launch=text)
-    tags = launching.Launch("", file="launch/a.launch").elements(package)
-    assert [one.line for one in launch_file.commands(package, tags)] == found
 
 
 def test_nodes_may_be_in_an_included_file(tmp_path):

@@ -29,34 +29,6 @@ def test_what_answers_a_service_returns_a_response(body, severities, tmp_path):
     assert [one.severity for one in found if one.id == "callbacks"] == severities
 
 
-@pytest.mark.parametrize(
-    ("code", "found"),
-    [
-        ("if c == 1:\n    a = 1\nelif c == 2:\n    a = 2\nprint(a)", [5]),
-        ("def f(c):\n    if c:\n        a = 1\n    return a", [4]),
-        ("try:\n    a = f()\nexcept ValueError:\n    print(1)\nprint(a)", [5]),
-        ("try:\n    a = f()\nexcept ValueError:\n    print(1)\nwhile a > 0:\n    pass", [5]),
-        ("try:\n    a = f()\nexcept rospy.ROSInterruptException:\n    pass\nprint(a)", []),
-        ("try:\n    a = 1\n    f()\nexcept ValueError:\n    print(1)\nprint(a)", []),
-        ("try:\n    a = f()\nexcept ValueError:\n    raise\nprint(a)", []),
-        ("try:\n    a = f()\nexcept ValueError:\n    a = 1\nprint(a)", []),
-        ("if c == 1:\n    a = 1\nelse:\n    sys.exit(1)\nprint(a)", []),
-        ("def out():\n    exit()\nif c:\n    a = 1\nelse:\n    out()\nprint(a)", []),
-        ("if c > 1:\n    a = 1\nelif c <= 1:\n    a = 2\nprint(a)", []),
-        ("a = 0\nif c:\n    a = 1\nprint(a)", []),
-        ("if c:\n    a = 1\nif c:\n    print(a)", []),
-        ("for c in 1, 2:\n    if c == 1:\n        a = 1\n    print(a)", []),
-        ("if c:\n    a = 1\nprint(c and a)", []),
-        ("def f(a):\n    if a:\n        a = 1\n    print(a)", []),
-        ("if c:\n    for b in 1, 2:\n        a = b\nelse:\n    a = 2\nprint(a)", []),
-    ],
-    ids=range(17),
-)
-def test_each_way_gives_a_value(code, found, tmp_path):
-    said = check_rules.python_findings(tmp_path, f"import rospy\nimport sys\n{code}\n")
-    assert [one.line - 2 for one in said if "has no value if" in one.message] == found
-
-
 HEARS = """class Node:
     def __init__(self):
         rospy.Subscriber("pose", String, self.heard)

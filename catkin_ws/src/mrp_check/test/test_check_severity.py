@@ -6,6 +6,7 @@ import pathlib
 
 import pytest
 from mrp_check import rules
+from mrp_check.code.facts import Facts
 from mrp_check.contract.finding import CERTAIN, HABIT, HINT, READ, SEEN, Finding
 from mrp_check.contract.requirements import Rule
 from mrp_check.verdict import causes
@@ -63,6 +64,20 @@ def test_what_was_only_read_is_an_error_where_it_was_seen():
     read = [Finding("spin", "It says so.", file, 1, READ) for file in ("a.py", "b.py")]
     weigh([*read, Finding("spin", "It fails.", "a.py", 9, SEEN)], has_contract=False)
     assert [one.severity for one in read] == ["error", "warning"]
+
+
+@pytest.mark.parametrize(("cause", "severity"), [("targets", "error"), ("python-names", "warning")])
+def test_only_what_fails_because_of_it_confirms_what_was_read(cause, severity):
+    """A name that Python lacks is seen as such; a node that ends may end for another reason."""
+    files = ("a.py", "b.py") if cause == "python-names" else ("CMakeLists.txt", "a.cmake")
+    read = [Finding(cause, "It says so.", file, 1, READ, stage="files") for file in files]
+    failed = Finding("starts", "It ends.", "a.py", 9, SEEN, stage="run", node="a")
+    for one in (*read, failed):
+        one.severity = "error"
+    facts = Facts(sources={"a": ["a.py"]})
+    found = causes.told_once([*read, failed], facts, {}, has_contract=False)
+    weigh(found, has_contract=False)
+    assert [one.severity for one in read] == [severity, "warning"]
 
 
 @pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)

@@ -48,12 +48,6 @@ GONE: Mapping[str, Gone] = {
         "cmake_minimum_required(VERSION 3.10)",
         "cmake-too-old",
     ),
-    "boost_system": Gone(
-        "library boost_system, all of which has been in headers since Boost 1.69",
-        14,
-        "${Boost_LIBRARIES}",
-        "boost-no-system",
-    ),
     "pkg_resources": Gone("module pkg_resources", 14, "importlib.metadata", "pkg-resources"),
 }
 

@@ -157,7 +157,8 @@ class _Node:
         is_endless = is_deaf and isinstance(test, ast.Constant) and bool(test.value)
         turns = self.turns(node) if is_deaf and isinstance(node, ast.For) else 0
         period = turns * sum(map(self.seconds, within)) if turns else None
-        yield self.place(Kind.LOOP, "endless" if is_endless else UNKNOWN, period=period)
+        endless, end = "endless" if is_endless else UNKNOWN, last_line(node)
+        yield self.place(Kind.LOOP, endless, period=period, end=end)
 
     def is_in_thread(self) -> bool:
         """Return whether rospy calls what is around it in a thread, which ends with the program."""

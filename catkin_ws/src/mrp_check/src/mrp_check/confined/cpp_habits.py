@@ -144,7 +144,8 @@ class Habits(Unit):
         endless = "endless" if is_deaf and self.is_endless(loop) else None
         turns = self.turns(loop) if is_deaf else 0
         period = turns * sum(map(self.seconds, within))
-        self.add(loop, Kind.LOOP, endless, period=period or None)
+        end = loop.extent.end.line
+        self.add(loop, Kind.LOOP, endless, period=period or None, end=end)
         function = self.function(loop)
         if function is not None and {"publishFeedback", "sleep"} & called:
             ends = "setSucceeded" in self.calls(function.walk_preorder())

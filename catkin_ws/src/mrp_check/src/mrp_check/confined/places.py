@@ -61,7 +61,7 @@ class Place:
     line: from 1
     text: the constant text, such as a topic's or a node's name, or a line that is logged with {}
         for each value in it; of others the name of what is called, or of a variable or its type
-    end: a function's last line; unused: whether nothing names it; usr: clang's name for it
+    end: the last line of a function or a loop; unused: whether nothing names it; usr: clang's name for it
     queue, queue_line: its length, and where that stands
     period: seconds of a timer, or of all turns of a loop that does not ask whether the node is to
         end; oneshot: whether a timer fires once, or a server starts when it is made
@@ -103,9 +103,9 @@ class Place:
         return (self.text or "").strip("~/").rpartition("/")[2]
 
     def is_around(self, place: "Place") -> bool:
-        """Return whether this is a function in which another place is."""
+        """Return whether this is a function, or a loop, in which another place is."""
         within = self.line <= place.line <= self.end
-        return self.kind is Kind.FUNCTION and self.file == place.file and within
+        return self.kind in (Kind.FUNCTION, Kind.LOOP) and self.file == place.file and within
 
 
 @dataclasses.dataclass

@@ -45,7 +45,7 @@ class Rule(typing.NamedTuple):
     requirements: id -> Requirement, of those that it stands for
     also: ids of other rules' requirements that it can report, too
     sure: the certainty of findings that don't give one, if it isn't that of the stage
-    begins: called with a case.Case before the first stage: starts a tool, which runs beside all else
+    begins: called with a case.Case before the first stage: starts a tool, which runs meanwhile
     only: CONTRACT if it compares with what a contract says, ANY if it is for packages without one
     """
 

@@ -166,13 +166,11 @@ class Model:
     complete: whether CMake went through all of it; if not, the rest is read as text
     output: what CMake and `make help` print
     made: all targets, those of ROS and of the messages, too; nothing if CMake failed
-    not_found: the names in DEPENDS that no find_package() has found
     project: (name, Call) or None
     components: ROS package -> Call, of find_package
     catkin: the Call of find_package(catkin ...), or None
     catkin_package: its Call, or None; late: the first executable before it, or None
-    depends: the packages in CATKIN_DEPENDS; include_dirs: the folders in INCLUDE_DIRS; libraries:
-        those in LIBRARIES
+    depends: the packages in CATKIN_DEPENDS; include_dirs: the folders in INCLUDE_DIRS
     targets: name -> Target; scripts: list of Script; message_files: name -> Call, of services and
         actions, too
     """
@@ -187,7 +185,6 @@ class Model:
         self.folder = pathlib.Path(folder)
         self.complete = complete
         self.made = set(re.findall(r"^\.\.\. (\S+)", output, re.MULTILINE))
-        self.not_found = re.findall(r"DEPENDS on '(\w+)'\s+but\s+neither", output)
         self.calls = list(calls)
         if not complete:
             self.calls += self._rest()
@@ -200,7 +197,6 @@ class Model:
         self.components: dict[str, Call] = {}
         self.depends: list[str] = []
         self.include_dirs: list[str] = []
-        self.libraries: list[str] = []
         self.targets: dict[str, Target] = {}
         self.scripts: list[Script] = []
         self.message_files: dict[str, Call] = {}
@@ -288,7 +284,6 @@ class Model:
         parts = sections(call.arguments, names)
         self.depends = parts.get("CATKIN_DEPENDS", [])
         self.include_dirs = parts.get("INCLUDE_DIRS", [])
-        self.libraries = parts.get("LIBRARIES", [])
 
     def _add_executable(self, call: Call, is_library: bool = False) -> None:
         name, *sources = call.arguments

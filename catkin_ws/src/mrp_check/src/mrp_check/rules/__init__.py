@@ -25,7 +25,6 @@ from mrp_check.rules.code import (
     slow_callback,
     spin,
     typed,
-    unbound,
 )
 from mrp_check.rules.contract import (
     console,
@@ -93,7 +92,6 @@ _FILES = (
     swapped_sources,
     node_start,
     typed,
-    unbound,
     spin,
     callbacks,
     lifetime,

@@ -31,7 +31,7 @@ class Launched:
 
     file: relative to the package; empty of one that the checker has made
     nodes: full name -> node of the spec
-    made_up: the full names that the nodes don't give themselves, nor a launch file: the checker does
+    made_up: the full names that neither the nodes nor a launch file give: the checker does
     """
 
     file: str

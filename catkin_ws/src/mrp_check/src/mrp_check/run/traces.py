@@ -24,6 +24,11 @@ ROS_TOPICS = {"/rosout", "/rosout_agg", "/clock", "/tf", "/tf_static", "/diagnos
 ROS_SERVICES = {"get_loggers", "set_logger_level", "tf2_frames"}
 
 
+def outside(topic: str) -> str:
+    """Return what a topic is called without the namespace that a node has when it runs by itself."""
+    return re.sub(r"^/check_\d+/", "/", topic)
+
+
 def ends(lines: Iterable[str]) -> dict[str, int]:
     """Return full name -> exit code of each node whose end roslaunch tells of in these lines: of
     one that was started again, the first."""

@@ -6,7 +6,7 @@ from __future__ import annotations
 import re
 
 from mrp_check.code import uses
-from mrp_check.contract.finding import ERROR, NOTE, SEEN, Finding
+from mrp_check.contract.finding import ERROR, NOTE, READ, SEEN, Finding
 
 # What keeps a node from running at all, or from being itself.
 _FATAL = set(
@@ -57,6 +57,9 @@ _FOLLOWS = {
     "starts": _WORK | {"type", "exit", "leftovers"},
 }
 
+# What Python says of it when it fails is seen under the same id.
+_OWN = {"python-names", "python-syntax"}
+
 _LATER = {"run", "stop"}
 
 # Files that are about the package as a whole.
@@ -101,6 +104,8 @@ def told_once(findings, facts=None, nodes=None, has_contract=True):
                 continue
             if cause is not finding and _causes(cause, finding, number < index, facts, nodes or {}):
                 finding.consequence_of = cause.consequence_of or cause.id
+                if finding.certainty == SEEN and cause.certainty == READ and cause.id not in _OWN:
+                    cause.certainty = SEEN
                 break
     return kept
 

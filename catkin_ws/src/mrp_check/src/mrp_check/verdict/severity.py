@@ -21,15 +21,11 @@ def severity(certainty: str, has_contract: bool) -> str:
 def weigh(findings: Iterable[Finding], has_contract: bool) -> None:
     """Set the severity of each finding, and drop consequences whose cause is no error."""
     findings = list(findings)
-    # What was only read is seen, too, if the same fails in the same file, or fails because of it.
-    seen = [finding for finding in findings if finding.certainty == SEEN]
-    confirmed: set[tuple[str | None, str | None]] = {(one.id, one.file) for one in seen}
-    confirmed |= {(one.consequence_of, None) for one in seen}
+    # What was only read is seen, too, if the same fails in the same file. verdict/causes.py says so
+    # of what was seen to fail because of it.
+    seen = {(one.id, one.file) for one in findings if one.certainty == SEEN}
     for finding in findings:
-        if (
-            finding.certainty == READ
-            and {(finding.id, finding.file), (finding.id, None)} & confirmed
-        ):
+        if finding.certainty == READ and (finding.id, finding.file) in seen:
             finding.certainty = SEEN
         finding.severity = severity(finding.certainty, has_contract)
     errors = {finding.id for finding in findings if finding.severity == ERROR}

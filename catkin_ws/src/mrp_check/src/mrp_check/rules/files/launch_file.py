@@ -10,9 +10,8 @@ from mrp_check.case import evidence
 from mrp_check.case.case import Case
 from mrp_check.contract.finding import CERTAIN, HABIT, HINT, Finding, Line
 from mrp_check.contract.requirements import Requirement, Rule
-from mrp_check.contract.words import last_part, line_of, nearest
+from mrp_check.contract.words import last_part, nearest
 from mrp_check.package.launch import Launch
-from mrp_check.package.package import Package
 from mrp_check.package.xml_file import Element, stray
 
 _TAGS = ("launch node group arg param rosparam remap include env machine test master").split()
@@ -21,43 +20,17 @@ _WITHIN = {"include": ["arg", "env"], "node": _OF_NODES, "test": _OF_NODES}
 _ATTRIBUTES = (
     "args clear_params cwd if launch-prefix name ns output pkg respawn type unless".split()
 )
-# https://wiki.ros.org/roslaunch/XML says what there is.
-_BRACES = re.compile(r"\$\{(?:anon|arg|dirname|env|eval|find|optenv)\b[^{}\n]*\}")
 
 
 def _findings(case: Case) -> Iterator[Finding]:
     yield from case.launch_file[1]
     for launch in case.launches:
         tags = launch.elements(case.package)
-        said = [*commands(case.package, tags)]
-        yield from said
         if launch.error:
-            error = _error(launch, tags, case.spec.is_contract)
-            if any((one.file, one.line) == (error.file, error.line) for one in said):
-                error.consequence_of = "launch-file"
-            yield error
+            yield _error(launch, tags, case.spec.is_contract)
         yield from _unknown(tags)
         yield from _no_attributes(launch, tags)
         yield from stray("launch-file", case.package, tags, ("rosparam",))
-    for file in case.package.of_kind("launch"):
-        for match in _BRACES.finditer(case.package.text(file)):
-            yield _in_braces(file, line_of(match), match[0])
-
-
-def _in_braces(file: str, line: int, written: str) -> Finding:
-    right = f"$({written[2:-1]})"
-    return Finding(
-        "launch-file",
-        f"roslaunch reads {written} as a text: what it puts something in for stands in round"
-        " brackets.",
-        file,
-        line,
-        HABIT,
-        expected=right,
-        seen=written,
-        fix=f"Write {right}.",
-        change=(written, right),
-    )
 
 
 def _unknown(tags: Sequence[tuple[str, Element]]) -> Iterator[Finding]:
@@ -78,28 +51,6 @@ def _unknown(tags: Sequence[tuple[str, Element]]) -> Iterator[Finding]:
                 seen=f"<{element.tag}>",
                 fix=f"Write <{near}>." if near else "Take it out.",
                 why="launch-unknown-tag",
-            )
-
-
-def commands(package: Package, tags: Sequence[tuple[str, Element]]) -> Iterator[Finding]:
-    """Yield an error for each parameter that is to be what a file says that cannot be run.
-
-    https://wiki.ros.org/roslaunch/XML/param
-    """
-    begin = re.compile(rf"['\"]?\$\(find {re.escape(package.name)}\)/([^\s'\"$]+)")
-    for file, element in tags:
-        match = begin.match(element.attributes.get("command", "").strip())
-        path = match[1] if match and element.tag == "param" else None
-        if path in package.files and not package.is_executable(str(path)):
-            yield Finding(
-                "launch-file",
-                f"roslaunch is to run {path}, which is not executable: it stops here.",
-                file,
-                element.line,
-                expected=f'textfile="$(find {package.name})/{path}", or a command that reads it',
-                seen=f'command="{element.attributes["command"]}"',
-                fix='Write textfile="..." for a file that is to be read as it is; for xacro, write'
-                ' command="xacro ...".',
             )
 
 

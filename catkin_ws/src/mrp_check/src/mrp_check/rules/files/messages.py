@@ -16,7 +16,7 @@ from mrp_check.case import evidence
 from mrp_check.case.case import Case
 from mrp_check.code import uses
 from mrp_check.contract import resources
-from mrp_check.contract.finding import CERTAIN, HABIT, READ, Finding, Line
+from mrp_check.contract.finding import CERTAIN, HABIT, READ, Finding
 from mrp_check.contract.requirements import Requirement, Rule
 from mrp_check.contract.spec import PACKAGE
 from mrp_check.contract.words import last_part, nearest, perhaps
@@ -25,10 +25,6 @@ from mrp_check.package.manifest import declared, first_dependency
 from mrp_check.package.package import Package
 
 FILE = "CMakeLists.txt"
-_GENERATION = "message_generation"
-# What of package.xml asks for it where nothing is built, too.
-_AFTER_BUILD = rf"^\s*<(?:exec_|run_|build_export_)?depend>\s*{_GENERATION}\s*<"
-_OF_MESSAGES = ("_msgs", "_srvs", "_msg", "_srv")  # how packages of messages are called
 # The commands that only message_generation brings.
 _BROUGHT = r"^\s*(add_(message|service|action)_files|generate_messages)\s*\("
 
@@ -44,7 +40,6 @@ def _findings(case: Case) -> Iterator[Finding]:
     files = [path for path in package.of_kind(*uses.DEFINITIONS) if path.count("/") <= 1]
     if not case.spec.is_contract:
         yield from definitions(case)
-        yield from _of_others(package, model)
     made = model.message_files or model.generate
     if not files and not made or not model.complete and model.catkin is None:
         return
@@ -52,35 +47,7 @@ def _findings(case: Case) -> Iterator[Finding]:
         yield from _in_cmake(case, files)
     if manifest and (files or model.message_files):
         yield from _in_manifest(package, manifest, _is_brought_along(model))
-        yield from () if case.spec.is_contract else _after_build(package, manifest, model)
     yield from _order(package, model)
-
-
-def _after_build(package: Package, manifest: Manifest, model: Model) -> Iterator[Finding]:
-    """Yield a warning for each place that asks for message_generation where nothing is built.
-
-    https://docs.ros.org/en/noetic/api/catkin/html/howto/format2/building_msgs.html
-    """
-    places: list[Line] = []
-    named, known = package.first_match(["package.xml"], _AFTER_BUILD), declared(manifest)
-    if named and _GENERATION in known["exec"] | known["export"]:
-        places.append(named)
-    if model.catkin_package and _GENERATION in model.depends:
-        call = model.catkin_package
-        places.append((call.file, call.line_of(package.lines(call.file), _GENERATION)))
-    for file, line in places:
-        yield Finding(
-            "dependencies",
-            f"{_GENERATION} is needed to build the package alone; who uses it needs"
-            " message_runtime.",
-            file,
-            line,
-            HABIT,
-            expected="message_runtime",
-            seen=package.line(file, line),
-            fix=f"Write message_runtime here, and <build_depend>{_GENERATION}</build_depend> in"
-            " package.xml.",
-        )
 
 
 def _in_cmake(case: Case, files: list[str]) -> Iterator[Finding]:
@@ -272,34 +239,6 @@ def _order(package: Package, model: Model) -> Iterator[Finding]:
             )
 
 
-def _of_others(package: Package, model: Model) -> Iterator[Finding]:
-    """Yield a warning for each target that does not wait for the messages of a package which can
-    only be made in the same workspace.
-
-    https://docs.ros.org/en/noetic/api/catkin/html/howto/format2/cpp_msg_dependencies.html
-    """
-    others = [one for one in model.components if one.endswith(_OF_MESSAGES)]
-    others = [one for one in others if one != package.name and not uses.exists(one)]
-    for target in model.targets.values() if _knows_what_waits(model) else ():
-        for name in others:
-            used = [one for one in _included(package, model, target) if f"/{name}/" in f"/{one[2]}"]
-            waits = (f"{name}_", "catkin_EXPORTED_TARGETS")
-            if used and not any(one in word for word in target.dependencies for one in waits):
-                file, line, header = used[0]
-                yield Finding(
-                    "messages",
-                    f"The target {target.name} does not wait until {header}, which {file} includes"
-                    f" in line {line}, has been made by {name}.",
-                    target.file,
-                    target.line,
-                    HABIT,
-                    expected=f"add_dependencies({target.name} ${{catkin_EXPORTED_TARGETS}})",
-                    seen="no such call",
-                    fix=f"Add add_dependencies({target.name} ${{catkin_EXPORTED_TARGETS}}) after"
-                    " its add_executable().",
-                )
-
-
 def _included(package: Package, model: Model, target: Target) -> list[tuple[str, int, str]]:
     """Return (file, line, header) of what a target's own files include."""
     files = [*target.sources, *_headers(package, model, target)]
@@ -336,15 +275,6 @@ def _headers(package: Package, model: Model, target: Target) -> list[str]:
 _BETWEEN = "---"  # a request and its response
 # Types of C++ and Python.
 _OF_LANGUAGES = {"int": "int32", "float": "float32", "double": "float64", "str": "string"}
-_WORDS_OF_CPP = set(
-    (
-        "auto bool break case catch char class const continue default delete do double else enum"
-        " explicit export extern false float for friend goto if inline int long namespace new"
-        " operator private protected public register return short signed sizeof static struct"
-        " switch template this throw true try typedef typename union unsigned using virtual void"
-        " volatile while"
-    ).split()
-)
 
 
 def definitions(case: Case) -> Iterator[Finding]:
@@ -364,8 +294,6 @@ def _of_line(
     except genmsg.InvalidMsgSpec as error:
         said, expected = f"{error}", "a type and a name, such as int32 count"
     else:
-        for field in _WORDS_OF_CPP.intersection(spec.names):
-            yield _word_of_cpp(path, line, text, field)
         unknown = next(filter(None, (_unknown(package, one) for one in spec.types)), None)
         if unknown is None:
             return
@@ -380,21 +308,6 @@ def _of_line(
         expected=expected,
         seen=text.strip(),
         fix="Write it as https://wiki.ros.org/msg says.",
-    )
-
-
-def _word_of_cpp(path: str, line: int, text: str, field: str) -> Finding:
-    """Return a warning about a field whose name is a word of C++ itself (C++17, 5.11)."""
-    return Finding(
-        "messages",
-        f"The field {field} has the name of a word of C++: no C++ program that includes the header"
-        " of this message can be compiled.",
-        path,
-        line,
-        HABIT,
-        expected="a name that is no word of C++ or Python",
-        seen=text.strip(),
-        fix="Give the field another name.",
     )
 
 

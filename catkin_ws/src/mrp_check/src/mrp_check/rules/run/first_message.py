@@ -7,6 +7,7 @@ So all messages are lost of a node that was seen to send them at that very momen
 
 from __future__ import annotations
 
+import functools
 from typing import Iterator
 
 from mrp_check.case.case import Case
@@ -16,10 +17,11 @@ from mrp_check.contract.finding import HABIT, SEEN, Finding
 from mrp_check.contract.requirements import ANY, Rule
 from mrp_check.run import logged
 from mrp_check.run.logged import Run
-from mrp_check.run.traces import ROS_TOPICS
+from mrp_check.run.traces import ROS_TOPICS, outside
 
 _MOMENT = 0.05  # seconds in which no subscriber connects
-_LATER = 1.0  # seconds for which it was watched after that
+_LATER = 3.0  # seconds for which it was watched after that
+_LATE = 0.1  # seconds: an observer that is so late may have missed what came next
 
 
 def _findings(case: Case) -> Iterator[Finding]:
@@ -39,7 +41,7 @@ def _findings(case: Case) -> Iterator[Finding]:
             call = "get_num_connections()" if case.spec.nodes[run.node].language == "python" else ""
             yield Finding(
                 "topic",
-                f"{run.node} publishes on {one.topic} at the very moment at which it has made its"
+                f"{run.node} publishes on {outside(one.topic)} at the very moment at which it has made its"
                 f" publisher, and never again, {run.where}: no subscriber is connected yet, and"
                 " nobody hears it.",
                 *case.places.of_topic(run.node, Kind.PUBLISHER, one.topic),
@@ -53,7 +55,10 @@ def _findings(case: Case) -> Iterator[Finding]:
 
 def _is_lost(case: Case, run: Run, one: Registration, times: list[float]) -> bool:
     """Return whether all messages of a publisher came at once, and it does not latch them."""
-    is_late = times[-1] > one.answered + _MOMENT
+    places = functools.partial(case.facts.of, run.node)
+    if any(loop.is_around(place) for loop in places(Kind.LOOP) for place in places(Kind.PUBLISH)):
+        return False  # it goes on
+    is_late = times[-1] > one.answered + _MOMENT or run.seen.lag > _LATE
     is_short = run.asked < one.answered + _LATER and run.ended is None
     latches = run.path in run.latched.get(one.topic, ())
     if run.ended is not None:  # then it could not be asked

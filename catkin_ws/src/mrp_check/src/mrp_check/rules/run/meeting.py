@@ -13,7 +13,7 @@ from mrp_check.confined.seen import Seen
 from mrp_check.contract.finding import HABIT, HINT, SEEN, Finding
 from mrp_check.contract.requirements import ANY, Rule
 from mrp_check.contract.words import last_part, nearest
-from mrp_check.run.traces import ROS_TOPICS
+from mrp_check.run.traces import ROS_TOPICS, outside
 
 _ALIKE = 0.85
 _TOGETHER = "When all nodes run together"
@@ -70,12 +70,8 @@ def _graphs(case: Case) -> Iterator[tuple[Graph, set[str]]]:
     if direct:
         alone = {one.name: key for key, one in direct.nodes.items() if one.name}
         # Each ran in a namespace of its own.
-        graph = _graph(_BY_ITSELF, direct.seen, alone, _outside)
+        graph = _graph(_BY_ITSELF, direct.seen, alone, outside)
         yield graph, {*alone.values()} - together
-
-
-def _outside(topic: str) -> str:
-    return re.sub(r"^/check_\d+/", "/", topic)
 
 
 def _graph(

@@ -97,6 +97,10 @@ _TABLE = {
         "This line computes a value, and does nothing with it.",
         "Call the function, write = for ==, or take the line out.",
     ),
+    "possibly-used-before-assignment": Row(
+        "The variable may have no value at this line: then Python ends with an error.",
+        "Give it a value before the condition or the loop; or leave the function in that case.",
+    ),
     "too-few-format-args": Row(
         "The text has more places than values: Python ends with a TypeError here.",
         "Give each place its value.",
@@ -131,6 +135,10 @@ _TABLE = {
         "This takes all names of a module, and hides other things of the same name.",
         "Import the names that you use.",
         HINT,
+    ),
+    "used-before-assignment": Row(
+        "The variable may have no value at this line: then Python ends with an error.",
+        "Give it a value before the condition or the loop; or leave the function in that case.",
     ),
     "using-constant-test": Row(
         "This condition never changes. Often the brackets of a call are missing.",
