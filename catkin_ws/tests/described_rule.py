@@ -5,11 +5,11 @@ from __future__ import annotations
 
 from typing import Iterator
 
-from mrp_check.case import evidence
-from mrp_check.case.case import Case
 from mrp_check.contract.finding import HABIT, Finding
 from mrp_check.contract.requirements import Requirement, Rule
 from mrp_check.package.manifest import FILE
+from mrp_check.run import evidence
+from mrp_check.run.case import Case
 
 
 def _findings(case: Case) -> Iterator[Finding]:

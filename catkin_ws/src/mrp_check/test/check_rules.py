@@ -6,8 +6,7 @@ import pathlib
 import types
 
 from mrp_check import sandbox
-from mrp_check.case import case
-from mrp_check.code import facts, node, python_facts, python_read, uses
+from mrp_check.code import facts, python_facts, python_read, source_node, uses
 from mrp_check.contract import spec
 from mrp_check.contract.requirements import Rule
 from mrp_check.package import cmake, manifest
@@ -25,6 +24,7 @@ from mrp_check.rules.code import (
     typed,
 )
 from mrp_check.rules.contract import counter, queue, swapped_sources
+from mrp_check.run import case
 from mrp_check.verdict.severity import severity
 
 MANIFEST = """<?xml version="1.0"?>
@@ -130,7 +130,7 @@ def of(rule, one, part=None):
 
 def node_findings(package, model, found):
     """Return what the rules say of the nodes of pub_sub whose sources say that (facts.Facts)."""
-    coded = node.nodes(package, PUB_SUB, model, None, found)
+    coded = source_node.nodes(package, PUB_SUB, model, None, found)
     one = types.SimpleNamespace(coded=coded, facts=facts.Facts(), package=package)
     rules = swapped_sources, node_start, spin, queue, lifetime, callbacks, counter
     return [finding for file in rules for finding in of(file.RULE, one)]

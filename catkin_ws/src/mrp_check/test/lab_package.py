@@ -86,13 +86,13 @@ def spec_of(publishers, subscribers):
         name, topics[key] = f"publisher_{key}", numbers(f"of_{key}")
         rule = spec.Values(1, 2, 2**32)
         role = spec.Publishes(topics[key], queue=10, period=0.5, tolerance=0.1, values=rule)
-        nodes[name] = spec.Node(name, "python", published=(role,), prints=prints(name))
+        nodes[name] = spec.NodeSpec(name, "python", published=(role,), prints=prints(name))
     for key in subscribers:
         name = f"subscriber_{key}"
         topics["to_" + key] = numbers(f"to_{key}")
         role = spec.Subscribes(topics["to_" + key], queue=10)
         lines = prints(name, r"\[{name}\] received {{value}}")
-        nodes[name] = spec.Node(name, "python", subscribed=(role,), prints=lines)
+        nodes[name] = spec.NodeSpec(name, "python", subscribed=(role,), prints=lines)
     shutdown = spec.Shutdown("SIGINT", 0, 10)
     return spec.Spec("test", topics, nodes, spec.Launch("all.launch", "lab"), shutdown)
 

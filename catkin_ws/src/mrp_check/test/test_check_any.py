@@ -14,9 +14,9 @@ import pytest
 from mrp_check.cli import check as command
 from mrp_check.code import executables
 from mrp_check.contract.finding import ERROR, NOTE, WARNING
-from mrp_check.contract.spec import Node
+from mrp_check.contract.spec import NodeSpec
 from mrp_check.package.package import Package
-from mrp_check.report import console, json_
+from mrp_check.report import json_, terminal
 from mrp_check.run import observing
 from mrp_check.verdict import check
 from mrp_testing import scratch
@@ -72,7 +72,7 @@ def test_what_beginners_write_has_no_error(tmp_path, report_schema):
     assert not [one for one in report.findings if one.severity == ERROR], shown(report.findings)
     assert report.verdict == check.MET, report.reason
     assert {"values", "rate", "queue"} <= {*report.left_out}
-    assert "Left out, as only a contract can say it: " in console.text(report, everything=True)
+    assert "Left out, as only a contract can say it: " in terminal.text(report, everything=True)
     jsonschema.validate(json.loads(json_.text(report)), report_schema)
 
 
@@ -266,7 +266,7 @@ def test_a_node_runs_though_its_message_was_made_too_late(tmp_path):
 def test_a_script_is_no_stand_in_for_a_cpp_node(language, is_taken, tmp_path):
     package = check_rules.make(tmp_path / "some_pkg", scripts__talks_DOT_py=NEEDS)
     place = types.SimpleNamespace(package=package, folder=tmp_path, package_folder=package.root)
-    node = Node("talks", language, executable="talks")
+    node = NodeSpec("talks", language, executable="talks")
     found = observing.executable_of(place, node, None, [])
     assert found == (package.root / "scripts" / "talks.py" if is_taken else None)
 

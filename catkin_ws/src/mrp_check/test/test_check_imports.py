@@ -18,7 +18,6 @@ LAYERS = (
     ("code",),
     ("build",),
     ("run",),
-    ("case",),
     ("rules",),
     ("report",),
     ("verdict",),

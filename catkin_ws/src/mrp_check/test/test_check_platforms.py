@@ -15,7 +15,7 @@ from mrp_check.cli import check as check_command
 from mrp_check.contract import spec
 from mrp_check.contract.finding import SEEN, Finding
 from mrp_check.contract.verdict import BROKEN, FINDINGS, MET, UNCHECKED, Report, public, unchecked
-from mrp_check.report import console, html, json_
+from mrp_check.report import html, json_, terminal
 
 pytestmark = pytest.mark.quick
 
@@ -142,7 +142,7 @@ def shown_by_gradescope(one):
 # What a student is shown of a report.
 SHOWN = {
     "gradescope": shown_by_gradescope,
-    "console": lambda one: console.text(public(one, CONTRACT.hidden)),
+    "console": lambda one: terminal.text(public(one, CONTRACT.hidden)),
     "page": lambda one: html.text(public(one, CONTRACT.hidden)),
     "json": lambda one: json_.text(public(one, CONTRACT.hidden)),
     # Without the line of the mark: what is hidden counts.
@@ -190,7 +190,7 @@ def test_public_leaves_hidden_requirements_out(tmp_path, monkeypatch, capsys):
 
 def test_without_hidden_requirements_nothing_is_left_out():
     assert public(report(SPIN), ()) == report(SPIN)
-    assert console.summary(public(report(), ())).startswith("All requirements are met")
+    assert terminal.summary(public(report(), ())).startswith("All requirements are met")
 
 
 @pytest.mark.parametrize(

@@ -7,7 +7,7 @@ import types
 import check_rules
 import pytest
 from check_rules import told
-from mrp_check.code import executables, facts, node, python_facts, python_read, uses
+from mrp_check.code import executables, facts, python_facts, python_read, source_node, uses
 from mrp_check.confined.places import Kind, Place
 from mrp_check.rules.run import starts
 
@@ -333,7 +333,7 @@ def test_only_a_client_of_a_service_needs_no_init_node(call, found, tmp_path):
     read, _ = python_read.read(package, "src/odd.py")
     known = facts.Facts(places=python_facts.places(read), sources={"odd.py": ["src/odd.py"]})
     spec = executables.spec(package, model)
-    (one,) = node.nodes(package, spec, model, None, known)
+    (one,) = source_node.nodes(package, spec, model, None, known)
     case = types.SimpleNamespace(coded=[one])
     assert [f.id for f in check_rules.node_start.RULE.findings(case)] == [id_ for id_, _ in found]
 

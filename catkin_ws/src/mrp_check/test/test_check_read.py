@@ -13,7 +13,7 @@ from mrp_check.confined.seen import LaunchResult, Seen
 from mrp_check.contract.finding import ERROR, NOTE, WARNING
 from mrp_check.package.cmake import Model
 from mrp_check.rules.files import messages
-from mrp_check.rules.run import launched
+from mrp_check.rules.run import exceptions
 
 pytestmark = pytest.mark.quick
 
@@ -101,5 +101,6 @@ def test_what_a_node_raises_under_roslaunch(line, kind, time, other, found, tmp_
         observed=types.SimpleNamespace(launches=launches),
     )
     assert [
-        one.severity for one in check_rules.of(launched.RULE, known, launched.under_launch_files)
+        one.severity
+        for one in check_rules.of(exceptions.RULE, known, exceptions.under_launch_files)
     ] == found

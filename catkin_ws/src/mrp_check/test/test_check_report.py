@@ -13,7 +13,7 @@ import jsonschema
 import pytest
 from mrp_check.cli import check as check_command
 from mrp_check.contract.finding import Finding
-from mrp_check.report import annotation, console, github, json_, junit, sarif
+from mrp_check.report import annotation, github, json_, junit, sarif, terminal
 from mrp_check.report import html as html_report
 from mrp_check.rules import REQUIREMENTS
 from mrp_check.verdict import check
@@ -146,8 +146,8 @@ def test_page_shows_what_a_package_says_as_text():
 
 
 def test_console_shows_verdicts_causes_first_and_pages(monkeypatch):
-    monkeypatch.setattr(console, "SITE", pathlib.Path("/nowhere"))
-    text = console.text(report(HINTED, RESULT, CAUSE), everything=True)
+    monkeypatch.setattr(terminal, "SITE", pathlib.Path("/nowhere"))
+    text = terminal.text(report(HINTED, RESULT, CAUSE), everything=True)
     assert "  [FAIL] Each node waits for callbacks (spin)" in text
     assert "  [--]   Publishers publish the right values (values)" in text
     assert text.index("src/a.py:3: error:") < text.index("src/a.py:9: error:")
@@ -160,28 +160,28 @@ def test_console_shows_verdicts_causes_first_and_pages(monkeypatch):
 def test_console_shows_one_cause_once_and_notes_on_request():
     others = [dataclasses.replace(CAUSE, file=f"src/{name}.py", severity="") for name in "bc"]
     one = report(CAUSE, *others, HINTED, RESULT)
-    text = console.text(one)
+    text = terminal.text(one)
     assert text.count("It never spins.") == 1
     assert "  also at:  src/b.py:3, src/c.py:3\n" in text
     assert "It is not kept." not in text and "No value came." not in text
     one.left_out = ["values"]
-    assert "[OK]" not in console.text(one)
-    assert console.text(one).endswith("Errors: 3; warnings: 0 (--all shows 2 more).")
-    assert "[OK]" in console.text(one, everything=True)
+    assert "[OK]" not in terminal.text(one)
+    assert terminal.text(one).endswith("Errors: 3; warnings: 0 (--all shows 2 more).")
+    assert "[OK]" in terminal.text(one, everything=True)
 
 
 def test_console_and_page_name_the_text_that_a_tool_prints(monkeypatch):
     monkeypatch.setenv("MRP_PAGES", "https://a.example/mrp/")
     one = report(Finding("text", "It.", "a.py", 1, why="script-crlf"))
     address = "https://a.example/mrp/pages/why.html#script-crlf"
-    assert f"\n  why:      {address}\n" in console.text(one)
+    assert f"\n  why:      {address}\n" in terminal.text(one)
     assert "pages/why.html#script-crlf" in Reader(html_report.text(one)).text
 
 
 def test_console_has_colours_only_where_asked():
-    assert "\x1b" not in console.text(report(CAUSE))
-    assert "\x1b[31m" in console.text(report(CAUSE), colours=True)
-    assert "\x1b" not in console.text(report(Finding("console", "It printed \x1b[2J.")))
+    assert "\x1b" not in terminal.text(report(CAUSE))
+    assert "\x1b[31m" in terminal.text(report(CAUSE), colours=True)
+    assert "\x1b" not in terminal.text(report(Finding("console", "It printed \x1b[2J.")))
 
 
 @pytest.fixture
@@ -261,8 +261,8 @@ def test_a_reader_s_paths_begin_at(git, working, base, repository, tmp_path, mon
 def test_what_is_suppressed_is_shown_with_its_reason():
     one = REPORTS[0]
     line = "src/a.py:4: suppressed (lifetime): It is kept elsewhere."
-    assert line in console.text(one) and line in Reader(html_report.text(one)).text
-    assert console.text(one).endswith("; suppressed: 1.")
+    assert line in terminal.text(one) and line in Reader(html_report.text(one)).text
+    assert terminal.text(one).endswith("; suppressed: 1.")
     assert f"<system-out>{line}</system-out>" in junit.text(one)
     (shown,) = json.loads(json_.text(one))["suppressed"]
     assert (shown["id"], shown["reason"]) == ("lifetime", "It is kept elsewhere.")
@@ -281,7 +281,7 @@ def test_progress_is_one_line_of_a_terminal_and_whole_in_a_log(monkeypatch):
     for is_terminal, said in ((True, "\r\x1b[Kcheck: 0123456789ab"), (False, f"check: {DIGITS}\n")):
         stream = io.StringIO()
         monkeypatch.setattr(stream, "isatty", lambda answer=is_terminal: answer)
-        console.Progress(stream).show(DIGITS)
+        terminal.Progress(stream).show(DIGITS)
         assert stream.getvalue() == said
 
 
@@ -291,5 +291,5 @@ def test_progress_of_a_class_is_a_bar_on_a_terminal_and_a_number_in_a_log(encodi
         file = io.BytesIO()
         stream = io.TextIOWrapper(file, encoding=encoding)
         stream.isatty = lambda answer=is_terminal: answer
-        console.Progress(stream).show("anna: met", 3, 6)
+        terminal.Progress(stream).show("anna: met", 3, 6)
         assert f"check: {said} anna: met" in file.getvalue().decode(encoding)

@@ -8,14 +8,14 @@ import re
 import check_rules
 import jsonschema
 import pytest
-from mrp_check.case.case import Case
 from mrp_check.classroom import class_table
 from mrp_check.contract.errors import CannotCheck
 from mrp_check.contract.finding import SEEN, Finding
 from mrp_check.contract.requirements import Rule
-from mrp_check.report import console, json_, junit
 from mrp_check.report import html as html_report
+from mrp_check.report import json_, junit, terminal
 from mrp_check.rules import RULES
+from mrp_check.run.case import Case
 from mrp_check.verdict import check, suppression
 from mrp_check.verdict.severity import weigh
 
@@ -71,7 +71,7 @@ def test_a_rule_that_fails_costs_its_own_requirements_alone(
     assert [finding.message for finding in one.findings] == ["It is wrong."]
     assert re.search(says, one.reason) and re.search(says, one.unseen["text"])
     jsonschema.validate(json.loads(json_.text(one)), report_schema)
-    for text in (console.text(one), junit.text(one), html_report.text(one)):
+    for text in (terminal.text(one), junit.text(one), html_report.text(one)):
         assert str(fails) in text
 
 
@@ -120,7 +120,7 @@ def test_what_was_never_seen_is_neither_met_nor_paid(tmp_path, monkeypatch):
     never = {"dependencies", "python-syntax", "node-start", "spin", "lifetime", "queue"}
     assert {id_ for id_ in never if one.requirements[id_] != check.UNCHECKED} == set()
     assert one.unseen["spin"] == "no source of publisher_cpp_node was found"
-    assert "[--]   Each node waits for callbacks (spin): no source of" in console.text(one)
+    assert "[--]   Each node waits for callbacks (spin): no source of" in terminal.text(one)
     assert "no source of publisher_cpp_node" in html_report.text(one)
     assert "no source of publisher_cpp_node" in junit.text(one)
     assert json.loads(json_.text(one))["unseen"] == one.unseen

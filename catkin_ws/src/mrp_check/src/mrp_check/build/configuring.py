@@ -12,7 +12,7 @@ from mrp_check.build.stubs import ALIKE, NOT_FOUND, PACKAGES
 from mrp_check.code import uses
 from mrp_check.contract import resources
 from mrp_check.contract.finding import Finding
-from mrp_check.contract.words import nearest, perhaps
+from mrp_check.contract.names import nearest, perhaps
 from mrp_check.package.cmake import Model, relative
 from mrp_check.package.package import Package
 

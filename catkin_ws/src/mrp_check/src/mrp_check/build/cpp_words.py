@@ -9,7 +9,7 @@ from typing import Callable, Sequence
 
 from mrp_check.code import uses
 from mrp_check.contract.finding import Change
-from mrp_check.contract.words import last_part, nearest, perhaps
+from mrp_check.contract.names import last_part, nearest, perhaps
 from mrp_check.package.package import Package
 
 _MESSAGES = (

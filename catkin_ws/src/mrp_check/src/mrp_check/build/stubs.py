@@ -8,7 +8,7 @@ import pathlib
 import re
 import shutil
 
-from mrp_check.contract.words import nearest
+from mrp_check.contract.names import nearest
 from mrp_check.package.package import Package
 
 PACKAGES = ["roscpp", "rospy", "std_msgs", "catkin", "message_generation", "roslib"]

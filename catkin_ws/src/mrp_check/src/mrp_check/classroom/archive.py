@@ -25,7 +25,7 @@ from typing import Any, Callable, Iterable, Iterator
 from mrp_check.classroom import formats
 from mrp_check.classroom.formats import FILE, LINK, LONGEST, MEGABYTE, OTHER, SAME, Entry
 from mrp_check.contract.errors import PackageError
-from mrp_check.contract.words import last_part
+from mrp_check.contract.names import last_part
 from mrp_check.package.package import BUILT, MAX_BYTES, is_of_tools
 
 _MOST_PACKED = 2000 * MEGABYTE  # of one archive

@@ -11,7 +11,7 @@ import pathlib
 from mrp_check.classroom.by_hand import ByHand
 from mrp_check.contract.finding import ERROR
 from mrp_check.contract.verdict import BROKEN, MET, UNCHECKED, public
-from mrp_check.report import console, html, json_
+from mrp_check.report import html, json_, terminal
 from mrp_check.rules import OF_CONTRACT
 
 _MOST_CAUSES = 5  # in one line of the CSV
@@ -94,7 +94,7 @@ def most(spec):
 
 
 def _one_line(finding):
-    place = console.place(finding["file"], finding["line"])
+    place = terminal.place(finding["file"], finding["line"])
     return ": ".join(part for part in (place, finding["message"]) if part).replace("\n", " ")
 
 
@@ -127,7 +127,7 @@ def csv_text(submissions, spec):
 
 def cell(text):
     """Return a text that steers no terminal, and that a spreadsheet does not take for a formula."""
-    return "'" * text.startswith(("=", "+", "-", "@", "\t")) + console.plain(text)
+    return "'" * text.startswith(("=", "+", "-", "@", "\t")) + terminal.plain(text)
 
 
 def broken_in(submissions):
@@ -181,7 +181,7 @@ def text(submissions, spec):
     lines += [f"{one.name}: {one.moved}" for one in submissions if one.moved]
     lines += [f"{one.name}: {one.progress(spec)}" for one in submissions if one.before]
     lines += filter(None, [since(submissions, spec), *isolations(submissions)])
-    return console.plain("\n".join(lines))
+    return terminal.plain("\n".join(lines))
 
 
 def isolations(submissions):

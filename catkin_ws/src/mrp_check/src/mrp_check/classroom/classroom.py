@@ -21,8 +21,8 @@ from mrp_check.classroom import marking, submissions
 from mrp_check.classroom.class_table import Submission
 from mrp_check.contract import spec
 from mrp_check.contract.errors import CannotCheck, ClusterError, PackageError
+from mrp_check.contract.names import printable
 from mrp_check.contract.verdict import UNCHECKED, unchecked
-from mrp_check.contract.words import printable
 from mrp_check.package.package import Package
 from mrp_check.report import json_
 from mrp_check.sandbox import confine

@@ -9,14 +9,14 @@ from __future__ import annotations
 import json
 
 from mrp_check.contract.verdict import MET, UNCHECKED, public
-from mrp_check.report import console
+from mrp_check.report import terminal
 from mrp_check.rules import REQUIREMENTS
 
 
 def text(report, spec):
     """Return the results; what could not be checked at all has a score of 0, and says why."""
     if not report.requirements:
-        result = {"score": 0, "output": console.plain(report.reason), "output_format": "text"}
+        result = {"score": 0, "output": terminal.plain(report.reason), "output_format": "text"}
     else:
         result = _result(report, spec)
     return json.dumps(result, indent=2, ensure_ascii=False) + "\n"
@@ -24,9 +24,9 @@ def text(report, spec):
 
 def _result(report, spec):
     shown = public(report, spec.hidden)
-    said = [console.summary(shown), report.reason, report.isolation]
+    said = [terminal.summary(shown), report.reason, report.isolation]
     return {
-        "output": console.plain("\n".join(filter(None, said))),
+        "output": terminal.plain("\n".join(filter(None, said))),
         "output_format": "text",
         "test_output_format": "text",
         "tests": [
@@ -37,14 +37,14 @@ def _result(report, spec):
 
 def _test(id_, report, spec):
     verdict = report.requirements[id_]
-    said = ["\n".join(console.finding_lines(f, report)) for f in report.findings if f.id == id_]
+    said = ["\n".join(terminal.finding_lines(f, report)) for f in report.findings if f.id == id_]
     if verdict == UNCHECKED:
-        said.insert(0, f"It could not be checked{console.why_not(report, id_)}")
+        said.insert(0, f"It could not be checked{terminal.why_not(report, id_)}")
     return {
         "name": f"{REQUIREMENTS[id_].title} ({id_})",
         "score": spec.points_of(id_) if verdict == MET else 0,
         "max_score": spec.points_of(id_),
         "status": "passed" if verdict == MET else "failed",
-        "output": console.plain("\n\n".join(said)),
+        "output": terminal.plain("\n\n".join(said)),
         "visibility": "hidden" if id_ in spec.hidden else "visible",
     }

@@ -4,17 +4,17 @@
 from __future__ import annotations
 
 from mrp_check.classroom import class_table
-from mrp_check.report import console, html, json_
+from mrp_check.report import html, json_, terminal
 
 
 def text(one, spec):
     """Return the text for the student of one submission."""
     report = one.shown(spec)
-    said = console.text(report) if report.requirements else console.summary(report)
+    said = terminal.text(report) if report.requirements else terminal.summary(report)
     mark = f"{one.name}: {class_table.said_of_mark(one, spec)}"
     progress = one.progress(spec, spec.hidden)
     since = [f"Since the earlier hand-in: {progress}"] if progress else []
-    return console.plain("\n".join([spec.title, mark, *since, report.reason, said])) + "\n"
+    return terminal.plain("\n".join([spec.title, mark, *since, report.reason, said])) + "\n"
 
 
 def write(folder, submissions, spec):
@@ -33,5 +33,5 @@ def write(folder, submissions, spec):
             try:
                 file.write_text(said, encoding="utf-8", errors="replace")
             except OSError as error:
-                failed.append(f"{console.plain(str(file))} cannot be written: {error.strerror}.")
+                failed.append(f"{terminal.plain(str(file))} cannot be written: {error.strerror}.")
     return failed

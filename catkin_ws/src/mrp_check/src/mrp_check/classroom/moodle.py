@@ -18,8 +18,8 @@ import zipfile
 
 from mrp_check.classroom import class_table
 from mrp_check.contract.finding import ERROR
-from mrp_check.report import console
 from mrp_check.report import html as page
+from mrp_check.report import terminal
 
 _COLUMNS = "Identifier,Full name,Grade,Maximum Grade,Last modified (grade),Feedback comments"
 DOWNLOADED = re.compile(r"([^_]+)_(\d+)_assignsubmission_file(_.*)?", re.DOTALL)
@@ -65,7 +65,9 @@ def _comment(one, spec):
     """Return the HTML of what a person has set, and of what is wrong, a line for each cause."""
     report = one.shown(spec)
     causes = [f for f in report.findings if f.severity == ERROR and not f.consequence_of]
-    said = [f"{console.where(f, report)}: {f.message}" for f in causes]
+    said = [f"{terminal.where(f, report)}: {f.message}" for f in causes]
     by_hand = class_table.said_of_mark(one, spec) if str(one.by_hand) else ""
-    lines = filter(None, [console.summary(report), report.reason, by_hand, *said, report.isolation])
-    return "<br>".join(html.escape(console.plain(line)) for line in lines)
+    lines = filter(
+        None, [terminal.summary(report), report.reason, by_hand, *said, report.isolation]
+    )
+    return "<br>".join(html.escape(terminal.plain(line)) for line in lines)

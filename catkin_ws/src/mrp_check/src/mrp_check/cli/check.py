@@ -26,11 +26,11 @@ from mrp_check.classroom import (
 from mrp_check.contract import spec
 from mrp_check.contract.errors import CannotCheck, ClusterError, PackageError, SpecError
 from mrp_check.contract.finding import ERROR
+from mrp_check.contract.names import printable
 from mrp_check.contract.verdict import FINDINGS, MET, UNCHECKED, public, unchecked
-from mrp_check.contract.words import printable
 from mrp_check.package import siblings
 from mrp_check.package.package import Package
-from mrp_check.report import console, github, html, json_, junit, sarif
+from mrp_check.report import github, html, json_, junit, sarif, terminal
 from mrp_check.rules import REQUIREMENTS
 from mrp_check.sandbox.scratch import kept_folder, scratch_folder
 from mrp_check.verdict import check
@@ -183,7 +183,7 @@ def run_class(options):
     """
     spec_file = spec.find(options.spec)
     contract = spec.read(spec_file, REQUIREMENTS)
-    progress = console.Progress(sys.stderr)
+    progress = terminal.Progress(sys.stderr)
     room = classroom.Classroom(
         options.class_, spec_file, options.jobs, options.timeout, progress.show, options.package
     )
@@ -220,7 +220,7 @@ def write_pages(worksheet, checked, contract):
     moodle.write_pages(pathlib.Path(worksheet).with_suffix(".zip"), checked, contract)
     for name in moodle.left_out(checked):
         print(
-            f"check: {console.plain(name)} is not in {worksheet}: its name has no number of a"
+            f"check: {terminal.plain(name)} is not in {worksheet}: its name has no number of a"
             " participant of its own, as 'Full Name_12345_assignsubmission_file_' has.",
             file=sys.stderr,
         )
@@ -247,7 +247,7 @@ def run_packages(options):
         return run_package(options)
     verdicts = []
     for number, one in enumerate(paths):
-        print("\n" * bool(number) + f"{console.plain(str(one))}:")
+        print("\n" * bool(number) + f"{terminal.plain(str(one))}:")
         files = {name: getattr(options, name) for name in OF_PACKAGE}
         named = {name: _with_name(file, one.name) for name, file in files.items() if file}
         verdicts.append(run_package(argparse.Namespace(**{**vars(options), **named, "path": one})))
@@ -262,7 +262,7 @@ def _with_name(file, name):
 
 def run_package(options):
     """Check a package, write its reports, and return its verdict. Raises CannotCheck."""
-    progress = console.Progress(sys.stderr, time.monotonic() if options.timing else None)
+    progress = terminal.Progress(sys.stderr, time.monotonic() if options.timing else None)
     contract = None
     try:
         contract = None if options.any else spec.read(spec.find(options.spec), REQUIREMENTS)
@@ -297,7 +297,7 @@ def run_package(options):
     for name, (_, text) in OF_PACKAGE.items():
         write(getattr(options, name), text, report, contract)
     if report.requirements:
-        shown = console.text(report, console.has_colours(sys.stdout), options.all)
+        shown = terminal.text(report, terminal.has_colours(sys.stdout), options.all)
         print(github.stopped(shown) if options.github else shown)
     if options.github:
         print(github.text(report))
@@ -308,7 +308,7 @@ def run_package(options):
 
 def write_contract(options):
     """Write a contract of what a package does, and return MET. Raises CannotCheck, PackageError."""
-    progress = console.Progress(sys.stderr)
+    progress = terminal.Progress(sys.stderr)
     texts: list[str] = []
     try:
         with scratch_folder() as scratch:

@@ -8,8 +8,8 @@ from typing import Iterator
 
 from mrp_check.code import uses
 from mrp_check.contract import spec as specs
+from mrp_check.contract.names import last_part
 from mrp_check.contract.spec import Spec
-from mrp_check.contract.words import last_part
 from mrp_check.package.cmake import Model
 from mrp_check.package.package import Package
 
@@ -56,16 +56,16 @@ def _is_imported(package: Package, path: str) -> bool:
     return any(imports.search(package.text(o)) for o in package.of_kind("python") if o != path)
 
 
-def _python(package: Package, model: Model) -> Iterator[specs.Node]:
+def _python(package: Package, model: Model) -> Iterator[specs.NodeSpec]:
     for path in package.of_kind("python"):
         if is_script(package, path):
             name = last_part(path)
-            yield specs.Node(name, "python", file=path, executable=name)
+            yield specs.NodeSpec(name, "python", file=path, executable=name)
 
 
-def _cpp(package: Package, model: Model) -> Iterator[specs.Node]:
+def _cpp(package: Package, model: Model) -> Iterator[specs.NodeSpec]:
     for name, target in model.executables().items():
         sources = [file for file in model.all_sources(target) if file in package.files]
         is_node = any(_ROSCPP.search(package.text(file)) for file in sources)
         if is_node and not all(map(uses.is_test, sources)):
-            yield specs.Node(name, "cpp", executable=name)
+            yield specs.NodeSpec(name, "cpp", executable=name)

@@ -9,7 +9,7 @@ from typing import Callable, Sequence
 
 from mrp_check.code.python_source import Source
 from mrp_check.contract.finding import Finding
-from mrp_check.contract.words import line_of
+from mrp_check.contract.names import line_of
 from mrp_check.package.package import Package
 
 # What Python says -> what it means.

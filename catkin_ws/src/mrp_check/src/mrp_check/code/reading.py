@@ -7,8 +7,8 @@ from mrp_check.code import python_facts, python_read, roles, uses
 from mrp_check.code.cpp_read import CppReader
 from mrp_check.code.facts import Facts
 from mrp_check.confined.places import Kind, Said
+from mrp_check.contract.names import last_part
 from mrp_check.contract.spec import Spec
-from mrp_check.contract.words import last_part
 from mrp_check.package.cmake import Model
 from mrp_check.package.launch import Launch
 from mrp_check.package.package import Package

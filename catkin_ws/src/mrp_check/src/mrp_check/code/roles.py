@@ -10,8 +10,8 @@ from typing import Iterable, Iterator, Mapping
 from mrp_check.code import uses
 from mrp_check.code.python_source import Source
 from mrp_check.contract import spec as specs
+from mrp_check.contract.names import last_part
 from mrp_check.contract.spec import Spec
-from mrp_check.contract.words import last_part
 from mrp_check.package.cmake import Model
 from mrp_check.package.launch import Launch
 from mrp_check.package.package import Package
@@ -48,7 +48,7 @@ def of_executable(package: Package, model: Model, executable: str) -> list[str]:
     return [path for path in scripts if path in package.files][:1]
 
 
-def _by_name(package: Package, model: Model, node: specs.Node) -> list[str]:
+def _by_name(package: Package, model: Model, node: specs.NodeSpec) -> list[str]:
     if node.language != "python":
         for name, target in model.executables().items():
             if name == node.name:

@@ -12,8 +12,8 @@ import sys
 import typing
 from typing import Callable, Iterator
 
+from mrp_check.contract.names import last_part, line_of, nearest
 from mrp_check.contract.resources import SHARES
-from mrp_check.contract.words import last_part, line_of, nearest
 from mrp_check.package.cmake import Model
 from mrp_check.package.package import Package
 

@@ -61,7 +61,8 @@ class Place:
     line: from 1
     text: the constant text, such as a topic's or a node's name, or a line that is logged with {}
         for each value in it; of others the name of what is called, or of a variable or its type
-    end: the last line of a function or a loop; unused: whether nothing names it; usr: clang's name for it
+    end: the last line of a function or a loop; unused: whether nothing names it; usr: clang's name
+        for it
     queue, queue_line: its length, and where that stands
     period: seconds of a timer, or of all turns of a loop that does not ask whether the node is to
         end; oneshot: whether a timer fires once, or a server starts when it is made

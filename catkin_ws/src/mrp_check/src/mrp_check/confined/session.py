@@ -15,7 +15,7 @@ import sys
 import tempfile
 import time
 
-from mrp_check.confined import alone, apart, crossing, launched, variables, warden
+from mrp_check.confined import alone, apart, crossing, roslaunch, variables, warden
 from mrp_check.confined.activity import TICK
 from mrp_check.confined.observe import Observer
 from mrp_check.confined.plans import DirectPlan, LaunchPlan
@@ -48,7 +48,7 @@ def main() -> None:
             if not plan:
                 os._exit(0)
             if kind == LaunchPlan.__name__:
-                result = launched.run(crossing.from_json(LaunchPlan, plan), observer, starter)
+                result = roslaunch.run(crossing.from_json(LaunchPlan, plan), observer, starter)
             else:
                 result = alone.run(crossing.from_json(DirectPlan, plan), observer, starter)
             answer.write(crossing.to_json(result))

@@ -3,7 +3,7 @@
 
 This is the program that confine.py starts: see there. Within namespaces it is their process 1.
 
-Usage: warden.py TASK REPORT    (file descriptors: a Task is read there, a Report is written)
+Usage: warden.py TASK REPORT    (file descriptors: a Task is read there, an Outcome is written)
 
 When its standard input ends, whatever runs is ended.
 """
@@ -90,7 +90,7 @@ class Task:
 
 
 @dataclasses.dataclass
-class Report:
+class Outcome:
     """How it ended, as a confine.Result says; all_dead: whether all that it started has ended."""
 
     code: Optional[int]
@@ -248,7 +248,7 @@ def _broken_limit(limits: Limits) -> Optional[str]:
     return "memory" if sum(m.rss for m in memory if m) > limits.memory else None
 
 
-def _watch(task: Task) -> Report:
+def _watch(task: Task) -> Outcome:
     """Run the command to its end, or to the first limit that it breaks; return the report."""
     limits, began = task.limits, time.monotonic()
     folders = [task.scratch, *(["/tmp"] if task.namespaces else [])]
@@ -277,7 +277,7 @@ def _watch(task: Task) -> Report:
         _reap(codes)
     seconds = time.monotonic() - began
     left = [] if ended_by else [p for p in descendants() if p.pid != main]
-    return Report(
+    return Outcome(
         code=codes.get(main),
         ended_by=ended_by,
         seconds=seconds,

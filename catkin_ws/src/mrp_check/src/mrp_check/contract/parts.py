@@ -147,7 +147,7 @@ class Example:
 
 
 @dataclasses.dataclass(frozen=True)
-class Node:
+class NodeSpec:
     name: str
     language: str = default("language", "node")  # cpp, python or any
     anonymous: bool = default("anonymous", "node")

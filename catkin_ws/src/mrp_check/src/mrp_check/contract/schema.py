@@ -8,7 +8,7 @@ from typing import Any, Hashable, Iterable, Mapping
 
 import yaml
 
-from mrp_check.contract.words import nearest
+from mrp_check.contract.names import nearest
 
 if typing.TYPE_CHECKING:
     import jsonschema  # the site, which shows words(), is built without it

@@ -21,7 +21,7 @@ from mrp_check.contract.parts import Example as Example
 from mrp_check.contract.parts import Late as Late
 from mrp_check.contract.parts import Launch as Launch
 from mrp_check.contract.parts import Message as Message
-from mrp_check.contract.parts import Node as Node
+from mrp_check.contract.parts import NodeSpec as NodeSpec
 from mrp_check.contract.parts import Publishes as Publishes
 from mrp_check.contract.parts import Relays as Relays
 from mrp_check.contract.parts import Service as Service
@@ -40,7 +40,7 @@ _PAGE = "What can be said: pages/contract.html, which is made of"
 class Spec:
     title: str
     topics: dict[str, Topic]
-    nodes: dict[str, Node]
+    nodes: dict[str, NodeSpec]
     launch: Launch = Launch()
     shutdown: Shutdown = Shutdown()
     messages: dict[str, dict[str, str]] = dataclasses.field(default_factory=dict)
@@ -179,7 +179,7 @@ class _Reader:
                 self.requirement([key, index], id_)
         return spec
 
-    def numbers(self, node: Node) -> None:
+    def numbers(self, node: NodeSpec) -> None:
         """See that a node can publish numbers, if it is to."""
         place = ["nodes", node.name]
         for index, role in enumerate(node.published):
@@ -280,7 +280,7 @@ class _Reader:
 
     def node(
         self, name: str, entry: Entry, topics: dict[str, Topic], services: dict[str, Service]
-    ) -> Node:
+    ) -> NodeSpec:
         place: list[str | int] = ["nodes", name]
 
         def topic(entry: Entry, *keys: str | int) -> Topic:
@@ -316,7 +316,7 @@ class _Reader:
         )
         plain = ("language", "anonymous", "executable", "ends", "parameters")
         rest = {key: entry[key] for key in plain if key in entry}
-        return Node(name, prints=self.prints(name, entry.get("prints", ())), **roles, **rest)
+        return NodeSpec(name, prints=self.prints(name, entry.get("prints", ())), **roles, **rest)
 
     def example(self, entry: Entry, topics: dict[str, Topic], place: Place) -> Example:
         def topic(name: str, *above: str | int) -> Topic:

@@ -18,7 +18,7 @@ from mrp_check.contract import defects, packages, spec
 from mrp_check.contract.finding import NOTE, Finding
 from mrp_check.contract.verdict import Report
 from mrp_check.learning import opening
-from mrp_check.report import console
+from mrp_check.report import terminal
 
 
 class Exercise(NamedTuple):
@@ -163,9 +163,9 @@ def lines_of(findings: Sequence[Finding], report: Report | None) -> list[str]:
     and not how to fix it."""
     lines = []
     for finding in findings:
-        lines += ["", f"{console.where(finding, report)}: {console.plain(finding.message)}"]
-        lines += console.detail_lines(finding, ("expected", "seen"))
-        for name, address in console.pages(finding):
+        lines += ["", f"{terminal.where(finding, report)}: {terminal.plain(finding.message)}"]
+        lines += terminal.detail_lines(finding, ("expected", "seen"))
+        for name, address in terminal.pages(finding):
             page, _, anchor = address.removeprefix("pages/").partition(".html")
             lines.append(f"  {name + ':':<10}file://{opening.page(page)}{anchor}")
     return lines

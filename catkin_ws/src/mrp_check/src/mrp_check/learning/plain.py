@@ -10,7 +10,7 @@ import time
 from mrp_check.contract.errors import CannotCheck
 from mrp_check.learning import exercise as exercises
 from mrp_check.learning.watch import INTERVAL, Check, Watched
-from mrp_check.report import console
+from mrp_check.report import terminal
 
 PASSED, NOT_YET = 0, 1
 
@@ -62,7 +62,7 @@ def run_once(folder: pathlib.Path, hint: bool = False, reset: bool = False) -> i
     elif hint:
         say(exercise.defect.hint)
     else:
-        shown = console.Progress(sys.stderr)
+        shown = terminal.Progress(sys.stderr)
         check = Check(exercise, say=shown.show)
         check.run()
         shown.clear()

@@ -13,7 +13,7 @@ import traceback
 from typing import Iterable, Iterator
 
 from mrp_check.contract.verdict import Report
-from mrp_check.report import console
+from mrp_check.report import terminal
 
 _MOST = 12  # lines: of the first error, not of what follows from it
 # Colours, and the window's title that roslaunch sets.
@@ -45,7 +45,7 @@ def lines_of(report: Report, place: pathlib.Path) -> list[str]:
     if not found:
         plain = (ESCAPES.sub("", line) for line in report.console)
         found = list(_without_wrapper(_from_first(_RUN_ERROR, plain)))
-    return [console.plain(_COPY.sub(f"{place}/", line)) for line in found[:_MOST]]
+    return [terminal.plain(_COPY.sub(f"{place}/", line)) for line in found[:_MOST]]
 
 
 def _from_first(pattern: re.Pattern[str], lines: Iterable[str]) -> Iterator[str]:

@@ -10,7 +10,7 @@ from typing import Iterator, Sequence, Tuple
 from mrp_check.learning import exercise as exercises
 from mrp_check.learning import opening, tool_output
 from mrp_check.learning.watch import Check, Watched
-from mrp_check.report import console
+from mrp_check.report import terminal
 
 Line = Tuple[str, str]  # its style, or LINK and the address that it leads to; its text
 
@@ -95,7 +95,7 @@ def _findings(check: Check | None, explains: bool, width: int) -> Iterator[Line]
     """Yield what the tools say; or, if it is asked for, what we say."""
     if check and check.done and check.error:
         yield "", ""
-        yield from _wrapped(console.plain(check.error), width)
+        yield from _wrapped(terminal.plain(check.error), width)
         return
     if not check or not check.findings:
         return
@@ -134,7 +134,7 @@ def nodes(watched: Watched, width: int) -> Iterator[Line]:
     report = watched.check.report if watched.check else None
     if report and report.console:
         for line in report.console:
-            yield from _wrapped(console.plain(tool_output.ESCAPES.sub("", line)), width)
+            yield from _wrapped(terminal.plain(tool_output.ESCAPES.sub("", line)), width)
     elif watched.check and watched.check.done:
         yield from _wrapped("The nodes did not run: see what is wrong.", width)
     else:

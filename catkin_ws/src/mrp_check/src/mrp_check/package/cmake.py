@@ -16,7 +16,7 @@ import typing
 from typing import Collection, Iterable, Mapping, Sequence
 
 from mrp_check.confined import written
-from mrp_check.contract.words import line_of
+from mrp_check.contract.names import line_of
 
 _CALLED = re.compile(r"^\s*\w+\s*\(")  # where a call begins
 

@@ -15,8 +15,8 @@ from mrp_check.confined import crossing, variables
 from mrp_check.confined.launch_dump import Dump, Started
 from mrp_check.contract.errors import CannotCheck
 from mrp_check.contract.finding import Finding
+from mrp_check.contract.names import last_part, nearest
 from mrp_check.contract.spec import Spec
-from mrp_check.contract.words import last_part, nearest
 from mrp_check.package.cmake import relative
 from mrp_check.package.package import Package
 from mrp_check.package.workspace import Workspace

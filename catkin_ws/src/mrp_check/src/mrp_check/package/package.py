@@ -14,7 +14,7 @@ import xml.etree.ElementTree as ElementTree
 from typing import Iterable, overload
 
 from mrp_check.contract.errors import PackageError
-from mrp_check.contract.words import last_part, printable
+from mrp_check.contract.names import last_part, printable
 
 # What is built or kept by tools, and no part of a package.
 NOT_SOURCES = {".git", ".svn", ".vscode", ".idea", "__pycache__", ".pytest_cache", "CMakeFiles"}

@@ -20,8 +20,8 @@ import shutil
 from typing import Callable, Mapping, Sequence, Tuple, TypeVar
 
 from mrp_check.confined import variables, written
+from mrp_check.contract.names import printable
 from mrp_check.contract.resources import SHARES
-from mrp_check.contract.words import printable
 from mrp_check.package.package import Package
 from mrp_check.sandbox import confine
 

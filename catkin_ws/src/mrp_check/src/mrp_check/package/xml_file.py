@@ -9,7 +9,7 @@ import xml.parsers.expat
 from typing import Iterable, Iterator, Sequence
 
 from mrp_check.contract.finding import HABIT, Finding
-from mrp_check.contract.words import line_of
+from mrp_check.contract.names import line_of
 from mrp_check.package.package import Package, declared_entity
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import pathlib
 
-from mrp_check.report import console
+from mrp_check.report import terminal
 
 
 def base_of(folder: pathlib.Path) -> pathlib.Path:
@@ -27,4 +27,4 @@ def path_of(finding, report):
 
 def says_of(finding):
     """Return the lines of a finding, without its place: the message, and what to do."""
-    return [finding.message, *console.detail_lines(finding, ("expected", "seen", "fix"))]
+    return [finding.message, *terminal.detail_lines(finding, ("expected", "seen", "fix"))]

@@ -9,7 +9,7 @@ from __future__ import annotations
 import secrets
 
 from mrp_check.contract.finding import ERROR, NOTE, WARNING
-from mrp_check.report import console
+from mrp_check.report import terminal
 from mrp_check.report.annotation import path_of, says_of
 
 _COMMANDS = {ERROR: "error", WARNING: "warning", NOTE: "notice"}
@@ -41,7 +41,7 @@ def _command(name, properties, message):
 
 
 def _escaped(text, escapes):
-    return console.plain(text).translate(str.maketrans(escapes))
+    return terminal.plain(text).translate(str.maketrans(escapes))
 
 
 def stopped(text):

@@ -7,7 +7,7 @@ import jinja2
 
 from mrp_check.contract import resources
 from mrp_check.contract.verdict import WORDS
-from mrp_check.report import console
+from mrp_check.report import terminal
 from mrp_check.rules import REQUIREMENTS
 
 _TEMPLATES = jinja2.Environment(
@@ -23,7 +23,7 @@ _TEMPLATES = jinja2.Environment(
 def render(template, **values):
     """Return the page that one of the templates makes of these values."""
     page = _TEMPLATES.get_template(template).render(values, requirements=REQUIREMENTS, words=WORDS)
-    return console.plain(page)
+    return terminal.plain(page)
 
 
 def text(report, has_links=True, progress=""):
@@ -36,18 +36,18 @@ def text(report, has_links=True, progress=""):
         "package.html",
         report=report,
         progress=progress,
-        summary=console.summary(report),
-        groups=console.with_consequences(report.findings),
-        stages=console.by_stage(report),
-        where=console.where,
-        why_not=console.why_not,
-        pages=console.pages,
-        suppressed_line=console.suppressed_line,
+        summary=terminal.summary(report),
+        groups=terminal.with_consequences(report.findings),
+        stages=terminal.by_stage(report),
+        where=terminal.where,
+        why_not=terminal.why_not,
+        pages=terminal.pages,
+        suppressed_line=terminal.suppressed_line,
         address_of=address_of if has_links else lambda page: "",
     )
 
 
 def address_of(page):
     """Return where a page of the tutorial can be opened, or "" if it cannot."""
-    address = console.address_of(page)
+    address = terminal.address_of(page)
     return address if "://" in address else ""

@@ -7,7 +7,7 @@ import xml.etree.ElementTree as ElementTree
 
 from mrp_check.contract.finding import ERROR
 from mrp_check.contract.verdict import BROKEN, UNCHECKED
-from mrp_check.report import console
+from mrp_check.report import terminal
 from mrp_check.rules import REQUIREMENTS
 
 # What the suite counts -> the element of a case that is counted.
@@ -15,15 +15,15 @@ _COUNTED = {"tests": "testcase", "failures": "failure", "errors": "error", "skip
 
 
 def text(report):
-    name = console.plain(f"mrp_check.{report.package or 'check'}")
+    name = terminal.plain(f"mrp_check.{report.package or 'check'}")
     suite = ElementTree.Element("testsuite", name=name)
     if report.isolation:
         _add(_add(suite, "properties"), "property", name="isolation", value=report.isolation)
     for id_, verdict in report.requirements.items():
         case = _case(suite, f"mrp_check.{REQUIREMENTS[id_].stage}", id_)
         findings = [finding for finding in report.findings if finding.id == id_]
-        said = ["\n".join(console.finding_lines(f, report)) for f in findings]
-        said += [console.suppressed_line(f, report) for f in report.suppressed if f.id == id_]
+        said = ["\n".join(terminal.finding_lines(f, report)) for f in findings]
+        said += [terminal.suppressed_line(f, report) for f in report.suppressed if f.id == id_]
         lines = "\n\n".join(said)
         if verdict == BROKEN:
             errors = [f for f in findings if f.severity == ERROR and not f.consequence_of]
@@ -46,7 +46,7 @@ def _case(suite, class_name, name):
 
 def _add(parent, tag, text=None, **attributes):
     """Add an element, without the characters that XML cannot hold; return it."""
-    fit = {name: console.plain(value) for name, value in attributes.items()}
+    fit = {name: terminal.plain(value) for name, value in attributes.items()}
     element = ElementTree.SubElement(parent, tag, fit)
-    element.text = text and console.plain(text)
+    element.text = text and terminal.plain(text)
     return element

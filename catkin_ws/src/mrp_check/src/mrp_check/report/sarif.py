@@ -8,7 +8,7 @@ import urllib.parse
 
 from mrp_check.contract.finding import NOTE
 from mrp_check.contract.verdict import UNCHECKED
-from mrp_check.report import console
+from mrp_check.report import terminal
 from mrp_check.report.annotation import base_of, path_of, says_of
 from mrp_check.rules import REQUIREMENTS
 
@@ -50,7 +50,7 @@ def _invocation(report):
     """Return whether all could be checked, why not, and under which isolation."""
     said = [("error", report.reason), (NOTE, report.isolation)]
     notifications = [
-        {"level": level, "message": {"text": console.plain(text)}} for level, text in said if text
+        {"level": level, "message": {"text": terminal.plain(text)}} for level, text in said if text
     ]
     return {
         "executionSuccessful": report.verdict != UNCHECKED,
@@ -62,13 +62,13 @@ def _result(finding, report, rules):
     says = says_of(finding)
     if finding.consequence_of:
         says.append(f"This follows from {finding.consequence_of}.")
-    reason = {"kind": "inSource", "justification": console.plain(finding.suppressed)}
+    reason = {"kind": "inSource", "justification": terminal.plain(finding.suppressed)}
     result = {
         "ruleId": finding.id,
         "ruleIndex": rules.index(finding.id),
         # A consequence of another error is not counted as an error.
         "level": NOTE if finding.consequence_of else finding.severity,
-        "message": {"text": console.plain("\n".join(says))},
+        "message": {"text": terminal.plain("\n".join(says))},
         "suppressions": [reason] if finding.suppressed else [],
     }
     if finding.file:

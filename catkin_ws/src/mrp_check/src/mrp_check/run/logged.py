@@ -9,7 +9,7 @@ import re
 from typing import Iterator, NamedTuple
 
 from mrp_check.confined.seen import DirectResult, Line, Log, Seen
-from mrp_check.contract.words import last_part
+from mrp_check.contract.names import last_part
 from mrp_check.package.package import Package
 from mrp_check.run.observing import Observed
 from mrp_check.run.traces import ends

@@ -16,9 +16,9 @@ from mrp_check.code.facts import Facts
 from mrp_check.confined import messages
 from mrp_check.confined.launch_dump import Started
 from mrp_check.confined.seen import Alone, DirectResult, LaunchResult
+from mrp_check.contract.names import last_part
 from mrp_check.contract.resources import SHARES
-from mrp_check.contract.spec import Node, Spec
-from mrp_check.contract.words import last_part
+from mrp_check.contract.spec import NodeSpec, Spec
 from mrp_check.package.launch import Launch
 from mrp_check.package.workspace import Workspace
 from mrp_check.run.planning import Planner
@@ -121,7 +121,7 @@ def planner_of(
 
 
 def executable_of(
-    workspace: Workspace, node: Node, started: Started | None, files: list[str]
+    workspace: Workspace, node: NodeSpec, started: Started | None, files: list[str]
 ) -> pathlib.Path | None:
     """Return the path of a node's executable as rosrun finds it, or None.
 

@@ -12,7 +12,7 @@ from mrp_check.code.facts import Facts
 from mrp_check.confined.places import Kind
 from mrp_check.confined.seen import Event, Log, Number
 from mrp_check.contract.finding import Line, Where
-from mrp_check.contract.words import last_part
+from mrp_check.contract.names import last_part
 from mrp_check.package.workspace import Workspace
 from mrp_check.run.observing import Observed
 from mrp_check.run.planning import WRAP

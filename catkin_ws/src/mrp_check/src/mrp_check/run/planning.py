@@ -113,7 +113,7 @@ class Planner:
             enough=enough,
         )
 
-    def _launch_node(self, node: specs.Node, senders: list[str]) -> plans.LaunchNode:
+    def _launch_node(self, node: specs.NodeSpec, senders: list[str]) -> plans.LaunchNode:
         started, topic = self.started.get(node.name), next(iter(node.subscribing), None)
         path = started.path if started else self.spec.node_path(node.name)
         return plans.LaunchNode(
@@ -196,7 +196,7 @@ class Planner:
         return plans.DirectPlan(common, nodes, number)
 
     def _direct_node(
-        self, node: specs.Node, path: pathlib.Path, namespace: str, hook: plans.Hook | None
+        self, node: specs.NodeSpec, path: pathlib.Path, namespace: str, hook: plans.Hook | None
     ) -> plans.DirectNode:
         started, topic = self.started.get(node.name), next(iter(node.subscribing), None)
         # Examples say what a node is sent, where it logs no value.
@@ -236,7 +236,7 @@ class Planner:
         return plans.Service(resolved(service, f"{namespace}/~"), kind, calls)
 
     def _example(
-        self, one: plans.DirectNode, node: specs.Node, example: specs.Example, namespace: str
+        self, one: plans.DirectNode, node: specs.NodeSpec, example: specs.Example, namespace: str
     ) -> plans.DirectNode:
         """Return the node as it is run for one of its examples: with no other parameters."""
         package, path = self.workspace.package.name, f"{namespace}/~"
@@ -292,6 +292,6 @@ def resolved(topic: specs.Topic | specs.Service, path: str) -> str:
     return start + topic.name
 
 
-def _received(node: specs.Node) -> str | None:
+def _received(node: specs.NodeSpec) -> str | None:
     """Return the regular expression of the line that a node logs on receiving, or None."""
     return node.pattern(node.received_line).pattern if node.received_line else None

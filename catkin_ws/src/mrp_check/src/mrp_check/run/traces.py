@@ -25,7 +25,7 @@ ROS_SERVICES = {"get_loggers", "set_logger_level", "tf2_frames"}
 
 
 def outside(topic: str) -> str:
-    """Return what a topic is called without the namespace that a node has when it runs by itself."""
+    """Return a topic's name without the namespace that a node has when it runs by itself."""
     return re.sub(r"^/check_\d+/", "/", topic)
 
 
@@ -47,7 +47,7 @@ class Traces:
     direct, wrap: what came of it by itself, and near the end of its numbers; or None
     """
 
-    def __init__(self, wanted: specs.Node, spec: specs.Spec, places: Places) -> None:
+    def __init__(self, wanted: specs.NodeSpec, spec: specs.Spec, places: Places) -> None:
         self.wanted, self.name, self.spec, self.places = wanted, wanted.name, spec, places
         self.package, observed = places.package, places.observed
         self.started = observed.started.get(self.name)

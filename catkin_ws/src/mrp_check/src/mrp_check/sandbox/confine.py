@@ -209,7 +209,7 @@ def _start(
 
 def _result(reader: _Reader, flood: bool) -> Result:
     try:
-        report = crossing.from_json(warden.Report, reader.text("report"))
+        report = crossing.from_json(warden.Outcome, reader.text("report"))
     except crossing.CrossingError:
         said = reader.text("errors").strip().splitlines()
         raise ConfineError(

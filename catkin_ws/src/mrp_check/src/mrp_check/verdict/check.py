@@ -13,9 +13,6 @@ import typing
 
 from mrp_check import sandbox
 from mrp_check.build.catkin import missing_tool
-from mrp_check.case import new_contract
-from mrp_check.case.any_case import AnyCase
-from mrp_check.case.case import Case
 from mrp_check.code import python_modules, uses
 from mrp_check.contract.errors import CannotCheck, NotHere
 from mrp_check.contract.finding import ERROR, Finding
@@ -24,6 +21,9 @@ from mrp_check.contract.spec import MORE, Spec
 from mrp_check.contract.verdict import BROKEN, FINDINGS, MET, UNCHECKED, Report
 from mrp_check.package.package import Package
 from mrp_check.rules import REQUIREMENTS, RULES
+from mrp_check.run import new_contract
+from mrp_check.run.any_case import AnyCase
+from mrp_check.run.case import Case
 from mrp_check.run.planning import ENOUGH
 from mrp_check.sandbox import confine
 from mrp_check.sandbox.scratch import scratch_folder

@@ -6,16 +6,16 @@ from __future__ import annotations
 import ast
 from typing import Any, Iterator
 
-from mrp_check.case import evidence
-from mrp_check.code.node import Node, each_node
 from mrp_check.code.python_rule import PythonRule, arguments_of, ast_text, of_sources
 from mrp_check.code.python_source import Defined, Variable
+from mrp_check.code.source_node import SourceNode, each_node
 from mrp_check.confined.places import Kind, Place
 from mrp_check.contract.finding import HABIT, Finding
 from mrp_check.contract.requirements import Requirement, Rule
+from mrp_check.run import evidence
 
 
-def _of(node: Node) -> Iterator[Finding]:
+def _of(node: SourceNode) -> Iterator[Finding]:
     said = set()
     for kind, id_, does in (
         (Kind.INIT, "node-start", "starts the node"),
@@ -39,7 +39,7 @@ def _of(node: Node) -> Iterator[Finding]:
         )
 
 
-def _unused_around(node: Node, place: Place) -> Place | None:
+def _unused_around(node: SourceNode, place: Place) -> Place | None:
     around = [f for f in node.places(Kind.FUNCTION) if f.is_around(place) and f.unused]
     return around[0] if around else None
 

@@ -9,12 +9,12 @@ from __future__ import annotations
 import ast
 from typing import Iterator
 
-from mrp_check.case.case import Case
 from mrp_check.code.python_facts import argument
 from mrp_check.code.python_source import Source
 from mrp_check.confined.places import Kind
 from mrp_check.contract.finding import HABIT, Finding
 from mrp_check.contract.requirements import ANY, Rule
+from mrp_check.run.case import Case
 
 _ASKS = {"is_preempt_requested", "set_preempted"}
 _LASTING = {"sleep", "publish_feedback"}

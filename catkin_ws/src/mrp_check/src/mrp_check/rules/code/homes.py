@@ -7,13 +7,13 @@ import ast
 import re
 from typing import Iterable, Iterator
 
-from mrp_check.case.case import Case
 from mrp_check.code import uses
 from mrp_check.code.python_source import Source
 from mrp_check.confined.cpp_habits import HOME
 from mrp_check.confined.places import Kind
 from mrp_check.contract.finding import HABIT, Finding
 from mrp_check.contract.requirements import ANY, Rule
+from mrp_check.run.case import Case
 
 _PARAMETERS = (".yaml", ".yml", ".ini")
 _COMMENT = re.compile(r"(?m)(?:^|[ \t])#.*$")

@@ -5,14 +5,14 @@ from __future__ import annotations
 
 from typing import Iterator
 
-from mrp_check.case import evidence
-from mrp_check.code.node import Node, each_node
+from mrp_check.code.source_node import SourceNode, each_node
 from mrp_check.confined.places import Kind
 from mrp_check.contract.finding import CERTAIN, READ, Finding
 from mrp_check.contract.requirements import Requirement, Rule
+from mrp_check.run import evidence
 
 
-def _of(node: Node) -> Iterator[Finding]:
+def _of(node: SourceNode) -> Iterator[Finding]:
     topics = {"subscribe": node.wanted.subscribing, "advertise": node.wanted.publishing}
     kinds = {"subscribe": Kind.SUBSCRIBER, "advertise": Kind.PUBLISHER}
     for place in node.places(Kind.DISCARDED, Kind.LOCAL):

@@ -5,14 +5,14 @@ from __future__ import annotations
 
 from typing import Iterator
 
-from mrp_check.case import evidence
-from mrp_check.code.node import Node, each_node
+from mrp_check.code.source_node import SourceNode, each_node
 from mrp_check.confined.places import Kind, Place
 from mrp_check.contract.finding import Finding
 from mrp_check.contract.requirements import Requirement, Rule
+from mrp_check.run import evidence
 
 
-def _of(node: Node) -> Iterator[Finding]:
+def _of(node: SourceNode) -> Iterator[Finding]:
     inits = node.places(Kind.INIT)
     if not inits:
         yield from () if _only_asks(node) else (_no_init(node),)
@@ -22,13 +22,13 @@ def _of(node: Node) -> Iterator[Finding]:
         yield from _too_early(node, inits[0])
 
 
-def _only_asks(node: Node) -> bool:
+def _only_asks(node: SourceNode) -> bool:
     """Return whether a program is a client of a service, and no node: rospy lets it ask."""
     is_node = node.spec.is_contract or node.places(Kind.PUBLISHER, Kind.SUBSCRIBER, Kind.TIMER)
     return not is_node and bool(node.places(Kind.ASKS))
 
 
-def _no_init(node: Node) -> Finding:
+def _no_init(node: SourceNode) -> Finding:
     call = "rospy.init_node(...)" if node.is_python else "ros::init(...)"
     where = [p for p in node.places(Kind.FUNCTION) if p.text == "main"] or node.places(
         Kind.PUBLISHER, Kind.SUBSCRIBER, Kind.TIMER
@@ -45,7 +45,7 @@ def _no_init(node: Node) -> Finding:
     )
 
 
-def _at_file_scope(node: Node) -> Iterator[Finding]:
+def _at_file_scope(node: SourceNode) -> Iterator[Finding]:
     for place in node.places(Kind.GLOBAL):
         if "ros::NodeHandle" in (place.text, *place.holds):
             yield node.finding(
@@ -59,7 +59,7 @@ def _at_file_scope(node: Node) -> Iterator[Finding]:
             )
 
 
-def _too_early(node: Node, init: Place) -> Iterator[Finding]:
+def _too_early(node: SourceNode, init: Place) -> Iterator[Finding]:
     early = [
         p
         for p in node.places(Kind.HANDLE)

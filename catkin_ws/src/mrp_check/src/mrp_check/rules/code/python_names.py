@@ -12,8 +12,6 @@ from typing import Collection, Iterator, Sequence
 from pyflakes import checker, messages
 
 from mrp_check import releases
-from mrp_check.case import evidence
-from mrp_check.case.case import Case
 from mrp_check.code import uses
 from mrp_check.code.python_facts import last_line
 from mrp_check.code.python_modules import (
@@ -28,9 +26,11 @@ from mrp_check.code.python_modules import (
 from mrp_check.code.python_rule import PythonRule, of_sources
 from mrp_check.code.python_source import Source
 from mrp_check.contract.finding import CERTAIN, HABIT, READ, Change, Finding
+from mrp_check.contract.names import last_part, nearest, perhaps
 from mrp_check.contract.requirements import Requirement, Rule
-from mrp_check.contract.words import last_part, nearest, perhaps
 from mrp_check.package.package import Package
+from mrp_check.run import evidence
+from mrp_check.run.case import Case
 
 # Names of Python 2 -> what Python 3 has for them.
 _PYTHON2 = {

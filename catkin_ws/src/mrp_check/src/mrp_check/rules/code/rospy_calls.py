@@ -14,8 +14,8 @@ from mrp_check.code.python_rule import HasFacts, MessageClass, PythonRule, ast_t
 from mrp_check.code.python_source import Function, Variable
 from mrp_check.code.python_text import UNKNOWN
 from mrp_check.contract.finding import CERTAIN, Finding
+from mrp_check.contract.names import nearest, perhaps
 from mrp_check.contract.requirements import Rule
-from mrp_check.contract.words import nearest, perhaps
 
 
 class Calls(PythonRule):

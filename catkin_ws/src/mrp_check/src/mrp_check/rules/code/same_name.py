@@ -8,10 +8,10 @@ from __future__ import annotations
 
 from typing import Iterator
 
-from mrp_check.case.case import Case
 from mrp_check.confined.places import Kind, Place
 from mrp_check.contract.finding import HABIT, HINT, Finding
 from mrp_check.contract.requirements import ANY, Rule
+from mrp_check.run.case import Case
 
 
 def _findings(case: Case) -> Iterator[Finding]:

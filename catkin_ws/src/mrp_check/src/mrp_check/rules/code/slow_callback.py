@@ -9,13 +9,13 @@ from __future__ import annotations
 import ast
 from typing import Iterator
 
-from mrp_check.case.case import Case
 from mrp_check.code.python_facts import callbacks
 from mrp_check.code.python_source import Source
 from mrp_check.confined.cpp_habits import SHORT
 from mrp_check.confined.places import Kind
 from mrp_check.contract.finding import HABIT, Finding
 from mrp_check.contract.requirements import ANY, Rule
+from mrp_check.run.case import Case
 
 
 def _findings(case: Case) -> Iterator[Finding]:

@@ -6,14 +6,14 @@ from __future__ import annotations
 import re
 from typing import Iterator, Sequence
 
-from mrp_check.case import evidence
-from mrp_check.code.node import Node, each_node
+from mrp_check.code.source_node import SourceNode, each_node
 from mrp_check.confined.places import Kind, Place
 from mrp_check.contract.finding import CERTAIN, READ, Finding
 from mrp_check.contract.requirements import Requirement, Rule
+from mrp_check.run import evidence
 
 
-def _of(node: Node) -> Iterator[Finding]:
+def _of(node: SourceNode) -> Iterator[Finding]:
     waits, spins = node.places(Kind.LOOP, Kind.SLEEP), node.places(Kind.SPIN)
     if spins and {place.text for place in spins} == {"spinOnce"}:
         if not waits:
@@ -37,11 +37,11 @@ def _of(node: Node) -> Iterator[Finding]:
 
 
 # rospy calls back in threads of its own; of roscpp, only a spinner calls.
-def _sure(node: Node) -> str:
+def _sure(node: SourceNode) -> str:
     return READ if node.is_python else CERTAIN
 
 
-def _only_once(node: Node, spin: Place) -> Finding:
+def _only_once(node: SourceNode, spin: Place) -> Finding:
     return node.finding(
         "spin",
         "ros::spinOnce() calls the callbacks of what has arrived, and returns at once:"
@@ -54,7 +54,7 @@ def _only_once(node: Node, spin: Place) -> Finding:
     )
 
 
-def _never(node: Node, loops: bool) -> Finding:
+def _never(node: SourceNode, loops: bool) -> Finding:
     call = "rospy.spin()" if node.is_python else "ros::spin()"
     return node.finding(
         "spin",
@@ -68,13 +68,13 @@ def _never(node: Node, loops: bool) -> Finding:
     )
 
 
-def _last_line(node: Node) -> int:
+def _last_line(node: SourceNode) -> int:
     """Return the last line of the main source in which something stands."""
     lines = node.package.lines(node.main)
     return max((n for n, text in enumerate(lines, 1) if text.strip()), default=1)
 
 
-def _made_too_late(node: Node, spins: Sequence[Place]) -> Iterator[Finding]:
+def _made_too_late(node: SourceNode, spins: Sequence[Place]) -> Iterator[Finding]:
     """Yield a finding if the node's parts are made below a spin() of the same function."""
     classes = {p.text for p in node.places(Kind.FUNCTION) if (p.text or "")[:1].isupper()}
     handles = {(p.file, p.line) for p in node.places(Kind.HANDLE)}
@@ -100,7 +100,7 @@ def _made_too_late(node: Node, spins: Sequence[Place]) -> Iterator[Finding]:
                 return
 
 
-def _is_rate(node: Node, place: Place) -> bool:
+def _is_rate(node: SourceNode, place: Place) -> bool:
     return "Rate" in node.package.line(place.file, place.line)
 
 

@@ -7,12 +7,12 @@ import difflib
 import re
 from typing import Iterator, Sequence
 
-from mrp_check.case import evidence
 from mrp_check.confined.places import Kind
 from mrp_check.confined.seen import Log
 from mrp_check.contract.finding import Finding
 from mrp_check.contract.requirements import CONTRACT, Requirement, Rule
-from mrp_check.run.lines import not_logged, other_words, sample
+from mrp_check.run import evidence
+from mrp_check.run.console_lines import not_logged, other_words, sample
 from mrp_check.run.node import Node, each_node
 from mrp_check.run.words import PREFIX
 

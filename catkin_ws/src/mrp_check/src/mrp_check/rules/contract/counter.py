@@ -5,13 +5,13 @@ from __future__ import annotations
 
 from typing import Collection, Iterator
 
-from mrp_check.code.node import Node, each_node
+from mrp_check.code.source_node import SourceNode, each_node
 from mrp_check.confined.places import Kind, Place
 from mrp_check.contract.finding import HABIT, READ, Finding
 from mrp_check.contract.requirements import CONTRACT, Rule
 
 
-def _of(node: Node) -> Iterator[Finding]:
+def _of(node: SourceNode) -> Iterator[Finding]:
     values = node.wanted.publishes.values if node.wanted.publishes else None
     if node.is_python or values is None or not values.modulus:
         return
@@ -48,7 +48,7 @@ def _of(node: Node) -> Iterator[Finding]:
         )
 
 
-def _resets(node: Node, used: Collection[str], step: int, modulus: int) -> Iterator[Finding]:
+def _resets(node: SourceNode, used: Collection[str], step: int, modulus: int) -> Iterator[Finding]:
     for place in node.places(Kind.RESET):
         limit, value = place.limit, place.value
         # Within the last two steps of the range whoever begins anew does no harm.
@@ -63,7 +63,7 @@ def _resets(node: Node, used: Collection[str], step: int, modulus: int) -> Itera
             )
 
 
-def _declared(node: Node, place: Place) -> Place:
+def _declared(node: SourceNode, place: Place) -> Place:
     same = [p for p in node.places(Kind.COUNTER) if p.text == place.text]
     return same[0] if same else place
 

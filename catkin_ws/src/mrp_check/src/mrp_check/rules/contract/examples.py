@@ -5,16 +5,16 @@ from __future__ import annotations
 
 from typing import Iterator, Mapping, Sequence
 
-from mrp_check.case import evidence
-from mrp_check.case.case import Case
 from mrp_check.code import asked
 from mrp_check.confined import fitting
 from mrp_check.confined.places import Kind
 from mrp_check.confined.seen import Alone
 from mrp_check.contract.finding import Finding, Where
+from mrp_check.contract.names import nearest
 from mrp_check.contract.requirements import CONTRACT, Requirement, Rule
 from mrp_check.contract.spec import Example, Message
-from mrp_check.contract.words import nearest
+from mrp_check.run import evidence
+from mrp_check.run.case import Case
 from mrp_check.run.node import Node, each_node
 from mrp_check.run.planning import resolved
 

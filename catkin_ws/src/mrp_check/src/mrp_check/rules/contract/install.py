@@ -5,10 +5,10 @@ from __future__ import annotations
 
 from typing import Iterator
 
-from mrp_check.case import evidence
-from mrp_check.case.case import Case
 from mrp_check.contract.finding import Finding
 from mrp_check.contract.requirements import CONTRACT, Requirement, Rule
+from mrp_check.run import evidence
+from mrp_check.run.case import Case
 
 
 def _findings(case: Case) -> Iterator[Finding]:

@@ -6,14 +6,14 @@ from __future__ import annotations
 import re
 from typing import Iterator, Sequence
 
-from mrp_check.case import evidence
-from mrp_check.case.case import Case
 from mrp_check.confined.launch_dump import Started
 from mrp_check.contract.finding import HABIT, Finding
 from mrp_check.contract.requirements import CONTRACT, Requirement, Rule
 from mrp_check.contract.spec import Spec
 from mrp_check.package.package import Package
 from mrp_check.package.xml_file import Element, elements
+from mrp_check.run import evidence
+from mrp_check.run.case import Case
 
 
 def _findings(case: Case) -> Iterator[Finding]:

@@ -5,9 +5,9 @@ from __future__ import annotations
 
 from typing import Iterator
 
-from mrp_check.case.case import Case
 from mrp_check.contract.finding import Finding
 from mrp_check.contract.requirements import CONTRACT, Rule
+from mrp_check.run.case import Case
 
 
 def findings(case: Case) -> Iterator[Finding]:

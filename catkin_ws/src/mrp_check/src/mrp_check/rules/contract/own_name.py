@@ -6,11 +6,11 @@ from __future__ import annotations
 import re
 from typing import Iterator
 
-from mrp_check.case import evidence
 from mrp_check.confined.places import Kind
 from mrp_check.contract.finding import HABIT, Finding
+from mrp_check.contract.names import last_part
 from mrp_check.contract.requirements import CONTRACT, Requirement, Rule
-from mrp_check.contract.words import last_part
+from mrp_check.run import evidence
 from mrp_check.run.node import Node, each_node
 
 

@@ -5,11 +5,11 @@ from __future__ import annotations
 
 from typing import Iterator
 
-from mrp_check.case import evidence
-from mrp_check.code.node import Node, each_node
+from mrp_check.code.source_node import SourceNode, each_node
 from mrp_check.confined.places import Kind, Place
 from mrp_check.contract.finding import HABIT, READ, Finding
 from mrp_check.contract.requirements import CONTRACT, Requirement, Rule
+from mrp_check.run import evidence
 
 NO_QUEUE = (
     "rospy.Publisher() is given no queue_size: it then sends each message before it returns, and"
@@ -17,7 +17,7 @@ NO_QUEUE = (
 )
 
 
-def _of(node: Node) -> Iterator[Finding]:
+def _of(node: SourceNode) -> Iterator[Finding]:
     wanted = node.wanted
     relays = [wanted.relays] if wanted.relays else []
     for kind, topic, asked in (
@@ -39,7 +39,7 @@ def _of(node: Node) -> Iterator[Finding]:
 _REFUSED = (True, Kind.SUBSCRIBER, 0)
 
 
-def _other_queue(node: Node, place: Place, kind: Kind, queue: int, asked: int) -> Finding:
+def _other_queue(node: SourceNode, place: Place, kind: Kind, queue: int, asked: int) -> Finding:
     words = {
         _REFUSED: "rospy.Subscriber() takes no queue_size of 0: it raises an error.",
         (True, Kind.SUBSCRIBER, 1): "The subscriber's queue has room for one message. In rospy"
@@ -66,7 +66,7 @@ def _other_queue(node: Node, place: Place, kind: Kind, queue: int, asked: int) -
     )
 
 
-def no_queue(node: Node, place: Place, id_: str, expected: str, size: int) -> Finding:
+def no_queue(node: SourceNode, place: Place, id_: str, expected: str, size: int) -> Finding:
     """Return the Finding about a rospy.Publisher() without queue_size; size: what to give it"""
     return node.finding(
         id_,
@@ -79,7 +79,7 @@ def no_queue(node: Node, place: Place, id_: str, expected: str, size: int) -> Fi
     )
 
 
-def says_none(node: Node, place: Place) -> bool:
+def says_none(node: SourceNode, place: Place) -> bool:
     """Return whether a call that begins in a line has no queue_size in its lines."""
     lines = node.package.lines(place.file)[place.line - 1 : place.line + 6]
     text, depth = "", 0

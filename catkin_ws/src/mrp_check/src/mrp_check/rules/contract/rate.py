@@ -6,11 +6,11 @@ from __future__ import annotations
 import statistics
 from typing import Iterator, NamedTuple, Sequence
 
-from mrp_check.case import evidence
 from mrp_check.confined.places import Kind
 from mrp_check.contract.finding import Finding, Where
 from mrp_check.contract.requirements import CONTRACT, Requirement, Rule
 from mrp_check.contract.spec import Publishes
+from mrp_check.run import evidence
 from mrp_check.run.node import Node, each_node
 
 

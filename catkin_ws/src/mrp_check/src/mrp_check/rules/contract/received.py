@@ -6,13 +6,13 @@ from __future__ import annotations
 import re
 from typing import Collection, Iterator, Sequence
 
-from mrp_check.case import evidence
 from mrp_check.confined.places import Kind
 from mrp_check.confined.seen import Log
 from mrp_check.contract.finding import HABIT, SEEN, Finding, Where
 from mrp_check.contract.requirements import CONTRACT, Requirement, Rule
 from mrp_check.contract.spec import Subscribes
-from mrp_check.run.lines import not_logged, other_words, received_pattern, sample
+from mrp_check.run import evidence
+from mrp_check.run.console_lines import not_logged, other_words, received_pattern, sample
 from mrp_check.run.node import Node, each_node
 from mrp_check.run.planning import BURST, PACED
 from mrp_check.run.words import PREFIX, few

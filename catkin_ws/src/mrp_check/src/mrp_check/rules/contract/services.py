@@ -5,14 +5,14 @@ from __future__ import annotations
 
 from typing import Iterator, Mapping, Sequence
 
-from mrp_check.case import evidence
 from mrp_check.confined import fitting
 from mrp_check.confined.places import Kind
 from mrp_check.confined.seen import Answer
 from mrp_check.contract.finding import Finding, Where
+from mrp_check.contract.names import last_part, nearest
 from mrp_check.contract.requirements import CONTRACT, Requirement, Rule
 from mrp_check.contract.spec import Message, Service
-from mrp_check.contract.words import last_part, nearest
+from mrp_check.run import evidence
 from mrp_check.run.node import Node, each_node
 from mrp_check.run.planning import resolved
 from mrp_check.run.traces import ROS_SERVICES

@@ -5,11 +5,11 @@ from __future__ import annotations
 
 from typing import Iterator
 
-from mrp_check.case.case import Case
-from mrp_check.code.node import Node
+from mrp_check.code.source_node import SourceNode
 from mrp_check.contract import spec as specs
 from mrp_check.contract.finding import Finding, Line
 from mrp_check.contract.requirements import CONTRACT, Rule
+from mrp_check.run.case import Case
 
 
 def findings(case: Case) -> Iterator[Finding]:
@@ -21,7 +21,7 @@ def findings(case: Case) -> Iterator[Finding]:
             yield _launch(node, other, (node.started.file, node.started.line or 1))
 
 
-def _target(node: Node, other: specs.Node) -> Finding:
+def _target(node: SourceNode, other: specs.NodeSpec) -> Finding:
     target, own = node.model.executables()[node.executable], node.own_source()
     return node.finding(
         "targets",
@@ -33,7 +33,7 @@ def _target(node: Node, other: specs.Node) -> Finding:
     )
 
 
-def _launch(node: Node, other: specs.Node, place: Line) -> Finding:
+def _launch(node: SourceNode, other: specs.NodeSpec, place: Line) -> Finding:
     return node.finding(
         "launch-nodes",
         f"The launch file starts {node.executable} under the name {node.name}; it is the"

@@ -6,12 +6,12 @@ from __future__ import annotations
 import difflib
 from typing import Iterator, Mapping
 
-from mrp_check.case import evidence
 from mrp_check.confined.places import Kind
 from mrp_check.contract.finding import Finding, Where
+from mrp_check.contract.names import last_part
 from mrp_check.contract.requirements import CONTRACT, Requirement, Rule
 from mrp_check.contract.spec import Topic
-from mrp_check.contract.words import last_part
+from mrp_check.run import evidence
 from mrp_check.run.node import Node, each_node
 from mrp_check.run.planning import resolved
 

@@ -5,14 +5,14 @@ from __future__ import annotations
 
 from typing import Iterator, Sequence
 
-from mrp_check.case import evidence
-from mrp_check.case.case import Case
 from mrp_check.confined.places import Kind
 from mrp_check.confined.plans import TOLD
 from mrp_check.confined.seen import Message, Number
 from mrp_check.contract.finding import HINT, Finding, Where
 from mrp_check.contract.requirements import CONTRACT, Requirement, Rule
 from mrp_check.contract.spec import Publishes, Topic, Values
+from mrp_check.run import evidence
+from mrp_check.run.case import Case
 from mrp_check.run.node import Node, each_node
 from mrp_check.run.planning import resolved
 from mrp_check.run.words import few

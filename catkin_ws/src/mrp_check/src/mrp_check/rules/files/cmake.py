@@ -7,12 +7,12 @@ import re
 from typing import Iterator
 
 from mrp_check import releases
-from mrp_check.case import evidence
-from mrp_check.case.case import Case
 from mrp_check.contract.finding import CERTAIN, HABIT, HINT, Finding
 from mrp_check.contract.requirements import Requirement, Rule
 from mrp_check.package.cmake import Model
 from mrp_check.package.package import Package
+from mrp_check.run import evidence
+from mrp_check.run.case import Case
 
 FILE = "CMakeLists.txt"
 _LOST = ", and its executables are put where roslaunch and rosrun do not look"

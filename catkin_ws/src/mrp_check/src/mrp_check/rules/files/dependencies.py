@@ -9,17 +9,17 @@ from typing import Collection, Iterable, Iterator
 
 from catkin_pkg.package import Package as Manifest
 
-from mrp_check.case import evidence
-from mrp_check.case.case import Case
 from mrp_check.code import uses
 from mrp_check.code.python_modules import is_ros
 from mrp_check.code.uses import Use
 from mrp_check.contract.finding import HABIT, HINT, READ, Finding
+from mrp_check.contract.names import nearest
 from mrp_check.contract.requirements import Requirement, Rule
-from mrp_check.contract.words import nearest
 from mrp_check.package.cmake import Call, Model
 from mrp_check.package.manifest import FILE, declared, first_dependency, named
 from mrp_check.package.package import Package
+from mrp_check.run import evidence
+from mrp_check.run.case import Case
 
 # Of these, a node in C++ needs more than the headers: a library, or what shows a message.
 _RUNS = re.compile(r"^(?:roscpp|tf|tf2_ros|actionlib|rosbag)$|_msgs$|_srvs$")

@@ -6,13 +6,13 @@ from __future__ import annotations
 import re
 from typing import Callable, Iterator, Optional, Sequence, Tuple
 
-from mrp_check.case import evidence
-from mrp_check.case.case import Case
 from mrp_check.contract.finding import CERTAIN, HABIT, HINT, Finding, Line
+from mrp_check.contract.names import last_part, nearest
 from mrp_check.contract.requirements import Requirement, Rule
-from mrp_check.contract.words import last_part, nearest
 from mrp_check.package.launch import Launch
 from mrp_check.package.xml_file import Element, stray
+from mrp_check.run import evidence
+from mrp_check.run.case import Case
 
 _TAGS = ("launch node group arg param rosparam remap include env machine test master").split()
 _OF_NODES = "env param remap rosparam".split()

@@ -8,17 +8,17 @@ import os
 import re
 from typing import Iterator
 
-from mrp_check.case import evidence
-from mrp_check.case.case import Case
 from mrp_check.code import uses
 from mrp_check.confined.launch_dump import Started
 from mrp_check.contract.finding import CERTAIN, HABIT, Finding
+from mrp_check.contract.names import last_part, line_of, nearest
 from mrp_check.contract.requirements import Requirement, Rule
-from mrp_check.contract.words import last_part, line_of, nearest
 from mrp_check.package.cmake import Model
 from mrp_check.package.launch import Launch
 from mrp_check.package.package import Package
 from mrp_check.package.xml_file import elements
+from mrp_check.run import evidence
+from mrp_check.run.case import Case
 
 
 def _findings(case: Case) -> Iterator[Finding]:

@@ -5,12 +5,12 @@ from __future__ import annotations
 
 from typing import Iterator
 
-from mrp_check.case import evidence
-from mrp_check.case.case import Case
 from mrp_check.contract.finding import HABIT, HINT, Finding
 from mrp_check.contract.requirements import Requirement, Rule
 from mrp_check.package.manifest import FILE
 from mrp_check.package.xml_file import elements, stray
+from mrp_check.run import evidence
+from mrp_check.run.case import Case
 
 _ROS_2 = ("ament_", "rclcpp", "rclpy", "rosidl_")
 

@@ -12,17 +12,17 @@ from catkin_pkg.package import Package as Manifest
 from genmsg.msg_loader import load_msg_from_string
 from genmsg.msgs import BUILTIN_TYPES, bare_msg_type
 
-from mrp_check.case import evidence
-from mrp_check.case.case import Case
 from mrp_check.code import uses
 from mrp_check.contract import resources
 from mrp_check.contract.finding import CERTAIN, HABIT, READ, Finding
+from mrp_check.contract.names import last_part, nearest, perhaps
 from mrp_check.contract.requirements import Requirement, Rule
 from mrp_check.contract.spec import PACKAGE
-from mrp_check.contract.words import last_part, nearest, perhaps
 from mrp_check.package.cmake import Model, Target
 from mrp_check.package.manifest import declared, first_dependency
 from mrp_check.package.package import Package
+from mrp_check.run import evidence
+from mrp_check.run.case import Case
 
 FILE = "CMakeLists.txt"
 # The commands that only message_generation brings.

@@ -7,12 +7,12 @@ import collections
 import re
 from typing import Iterator
 
-from mrp_check.case import evidence
-from mrp_check.case.case import Case
 from mrp_check.code import uses
 from mrp_check.contract.finding import HABIT, Finding
 from mrp_check.contract.requirements import Requirement, Rule
 from mrp_check.package.package import Package
+from mrp_check.run import evidence
+from mrp_check.run.case import Case
 
 # https://www.ros.org/reps/rep-0144.html
 _USUAL = re.compile(r"[a-z][a-z0-9_-]*")

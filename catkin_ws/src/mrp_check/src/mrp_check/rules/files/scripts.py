@@ -11,15 +11,15 @@ import shutil
 from typing import Iterator
 
 from mrp_check.build.catkin import search_path
-from mrp_check.case import evidence
-from mrp_check.case.case import Case
 from mrp_check.code import executables, python_modules, uses
 from mrp_check.code.uses import is_test
 from mrp_check.contract.finding import CERTAIN, HABIT, HINT, Finding
+from mrp_check.contract.names import last_part, nearest, perhaps
 from mrp_check.contract.requirements import Requirement, Rule
-from mrp_check.contract.words import last_part, nearest, perhaps
 from mrp_check.package.cmake import Model, Script
 from mrp_check.package.package import Package
+from mrp_check.run import evidence
+from mrp_check.run.case import Case
 
 _MARKS = (codecs.BOM_UTF8, codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)
 PYTHON = "python"  # what catkin_install_python replaces in the first line

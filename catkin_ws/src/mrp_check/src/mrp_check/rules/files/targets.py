@@ -6,14 +6,14 @@ from __future__ import annotations
 import re
 from typing import Iterator
 
-from mrp_check.case import evidence
-from mrp_check.case.case import Case
 from mrp_check.code import uses
 from mrp_check.contract.finding import HABIT, Finding
+from mrp_check.contract.names import last_part, nearest, perhaps
 from mrp_check.contract.requirements import Requirement, Rule
-from mrp_check.contract.words import last_part, nearest, perhaps
 from mrp_check.package.cmake import Call, Model, parsed
 from mrp_check.package.package import Package
+from mrp_check.run import evidence
+from mrp_check.run.case import Case
 
 _MAIN = re.compile(r"\bint\s+main\s*\(")
 

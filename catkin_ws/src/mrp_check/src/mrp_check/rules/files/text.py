@@ -7,12 +7,12 @@ import codecs
 import re
 from typing import Iterator
 
-from mrp_check.case import evidence
-from mrp_check.case.case import Case
 from mrp_check.contract.finding import CERTAIN, HABIT, HINT, Finding
+from mrp_check.contract.names import printable
 from mrp_check.contract.requirements import Requirement, Rule
-from mrp_check.contract.words import printable
 from mrp_check.package.package import MAX_BYTES, Package
+from mrp_check.run import evidence
+from mrp_check.run.case import Case
 
 _TEXT = ("python", "cpp", "header", "launch", "message", "cmake")
 _CODING = re.compile(rb"^[ \t\f]*#.*?coding[:=][ \t]*([-\w.]+)")

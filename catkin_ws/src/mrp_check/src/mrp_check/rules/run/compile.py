@@ -7,13 +7,13 @@ import os
 from typing import Iterator
 
 from mrp_check.build import compiler, configuring, linker
-from mrp_check.case import evidence
-from mrp_check.case.case import Case
 from mrp_check.code import uses
 from mrp_check.contract.errors import NotHere
 from mrp_check.contract.finding import Finding
+from mrp_check.contract.names import last_part
 from mrp_check.contract.requirements import Requirement, Rule
-from mrp_check.contract.words import last_part
+from mrp_check.run import evidence
+from mrp_check.run.case import Case
 
 
 def findings(case: Case) -> Iterator[Finding]:

@@ -7,12 +7,12 @@ from typing import Iterator
 
 from mrp_check.build import configuring, stubs
 from mrp_check.build.catkin import WANTS_TESTS
-from mrp_check.case import evidence
-from mrp_check.case.case import Case
 from mrp_check.code import uses
 from mrp_check.contract.errors import NotHere
 from mrp_check.contract.finding import HABIT, Finding
 from mrp_check.contract.requirements import Requirement, Rule
+from mrp_check.run import evidence
+from mrp_check.run.case import Case
 
 
 def findings(case: Case) -> Iterator[Finding]:

@@ -8,15 +8,15 @@ import re
 import signal
 from typing import Iterator, Sequence
 
-from mrp_check.case import evidence
-from mrp_check.case.case import Case
 from mrp_check.confined.places import Kind
 from mrp_check.confined.seen import Alone, LaunchResult
 from mrp_check.contract.finding import HABIT, Finding, Where
+from mrp_check.contract.names import last_part
 from mrp_check.contract.requirements import Requirement, Rule
 from mrp_check.contract.spec import Shutdown
-from mrp_check.contract.words import last_part
 from mrp_check.package.package import Package
+from mrp_check.run import evidence
+from mrp_check.run.case import Case
 from mrp_check.run.node import Node
 from mrp_check.run.places import Places, Traceback
 from mrp_check.run.words import code_text, last_words

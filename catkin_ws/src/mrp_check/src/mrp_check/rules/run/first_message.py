@@ -10,12 +10,12 @@ from __future__ import annotations
 import functools
 from typing import Iterator
 
-from mrp_check.case.case import Case
 from mrp_check.confined.places import Kind
 from mrp_check.confined.seen import Registration
 from mrp_check.contract.finding import HABIT, SEEN, Finding
 from mrp_check.contract.requirements import ANY, Rule
 from mrp_check.run import logged
+from mrp_check.run.case import Case
 from mrp_check.run.logged import Run
 from mrp_check.run.traces import ROS_TOPICS, outside
 
@@ -41,9 +41,9 @@ def _findings(case: Case) -> Iterator[Finding]:
             call = "get_num_connections()" if case.spec.nodes[run.node].language == "python" else ""
             yield Finding(
                 "topic",
-                f"{run.node} publishes on {outside(one.topic)} at the very moment at which it has made its"
-                f" publisher, and never again, {run.where}: no subscriber is connected yet, and"
-                " nobody hears it.",
+                f"{run.node} publishes on {outside(one.topic)} at the very moment at which it has"
+                f" made its publisher, and never again, {run.where}: no subscriber is connected"
+                " yet, and nobody hears it.",
                 *case.places.of_topic(run.node, Kind.PUBLISHER, one.topic),
                 certainty=SEEN if heard else HABIT,
                 expected="a wait until somebody is connected; or latch",

@@ -7,12 +7,12 @@ import re
 import typing
 from typing import Iterable, Iterator
 
-from mrp_check.case.case import Case
 from mrp_check.confined.places import Kind
 from mrp_check.confined.seen import Seen
 from mrp_check.contract.finding import HABIT, HINT, SEEN, Finding
+from mrp_check.contract.names import last_part, nearest
 from mrp_check.contract.requirements import ANY, Rule
-from mrp_check.contract.words import last_part, nearest
+from mrp_check.run.case import Case
 from mrp_check.run.traces import ROS_TOPICS, outside
 
 _ALIKE = 0.85

@@ -6,15 +6,15 @@ from __future__ import annotations
 import re
 from typing import Iterator
 
-from mrp_check.case import evidence
-from mrp_check.case.case import Case
 from mrp_check.code import asked, uses
 from mrp_check.confined.launch_dump import Started
 from mrp_check.contract.finding import HABIT, HINT, Finding, Line, Where
+from mrp_check.contract.names import last_part
 from mrp_check.contract.requirements import Requirement, Rule
 from mrp_check.contract.spec import Spec
-from mrp_check.contract.words import last_part
 from mrp_check.package.package import Package
+from mrp_check.run import evidence
+from mrp_check.run.case import Case
 from mrp_check.run.node import Node
 from mrp_check.run.observing import Observed
 from mrp_check.run.traces import ends

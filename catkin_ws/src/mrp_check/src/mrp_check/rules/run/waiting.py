@@ -5,12 +5,12 @@ from __future__ import annotations
 
 from typing import Iterator, NamedTuple
 
-from mrp_check.case.case import Case
 from mrp_check.code import asked, uses
 from mrp_check.confined.places import Kind, Place
 from mrp_check.contract.finding import HABIT, HINT, Finding
+from mrp_check.contract.names import nearest
 from mrp_check.contract.requirements import ANY, Rule
-from mrp_check.contract.words import nearest
+from mrp_check.run.case import Case
 
 _ALIKE = 0.8
 _OF_ROSCORE = {"rosdistro", "rosversion", "run_id"}

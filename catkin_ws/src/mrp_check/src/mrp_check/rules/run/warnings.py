@@ -9,13 +9,12 @@ from __future__ import annotations
 import re
 from typing import Iterator, NamedTuple
 
-from mrp_check.case import evidence
-from mrp_check.case.case import Case
 from mrp_check.confined.places import Kind
 from mrp_check.confined.seen import Log
 from mrp_check.contract.finding import HABIT, HINT, SEEN, Finding, Where
 from mrp_check.contract.requirements import Requirement, Rule
-from mrp_check.run import logged
+from mrp_check.run import evidence, logged
+from mrp_check.run.case import Case
 from mrp_check.run.logged import Run
 from mrp_check.run.node import Node
 

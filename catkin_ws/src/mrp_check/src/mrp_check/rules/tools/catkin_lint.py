@@ -13,12 +13,12 @@ from typing import Iterator
 
 from mrp_check.build.catkin import search_path
 from mrp_check.build.row import Row
-from mrp_check.case import evidence
-from mrp_check.case.case import Case
 from mrp_check.contract.errors import CannotCheck, NotHere
 from mrp_check.contract.finding import HINT, Finding
 from mrp_check.contract.requirements import ANY, Requirement, Rule
 from mrp_check.contract.resources import SHARES
+from mrp_check.run import evidence
+from mrp_check.run.case import Case
 from mrp_check.sandbox.confine import Result
 
 _AGREE = "Let package.xml, find_package() and catkin_package() name the same packages."

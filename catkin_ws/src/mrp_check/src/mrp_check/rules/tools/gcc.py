@@ -11,9 +11,9 @@ from typing import Iterator
 
 from mrp_check.build import compiler
 from mrp_check.build.row import Row
-from mrp_check.case.case import Case
 from mrp_check.contract.finding import Finding
 from mrp_check.contract.requirements import ANY, Rule
+from mrp_check.run.case import Case
 
 _FORMAT = "Let each place of the text fit its value, such as %d for an int."
 _VALUE = "Give the variable a value where it is declared."

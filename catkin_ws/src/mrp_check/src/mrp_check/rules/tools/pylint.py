@@ -12,12 +12,12 @@ from concurrent.futures import Future
 from typing import Iterator
 
 from mrp_check.build.row import Row
-from mrp_check.case import evidence
-from mrp_check.case.case import Case
 from mrp_check.code import reading
 from mrp_check.contract.errors import CannotCheck, NotHere
 from mrp_check.contract.finding import HABIT, HINT, READ, Finding
 from mrp_check.contract.requirements import ANY, Requirement, Rule
+from mrp_check.run import evidence
+from mrp_check.run.case import Case
 from mrp_check.sandbox.confine import Result
 
 _COMMAND = (

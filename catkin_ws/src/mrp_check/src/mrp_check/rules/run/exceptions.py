@@ -5,11 +5,11 @@ from __future__ import annotations
 
 from typing import Iterator
 
-from mrp_check.case.case import Case
 from mrp_check.code import asked
 from mrp_check.confined.places import Kind
 from mrp_check.contract.finding import HABIT, HINT, Finding, Where
 from mrp_check.contract.requirements import Rule
+from mrp_check.run.case import Case
 from mrp_check.run.node import Node, each_node
 from mrp_check.run.observing import Launched
 from mrp_check.run.places import Traceback

@@ -11,15 +11,14 @@ from typing import Callable
 from catkin_pkg.package import Package as Manifest
 
 from mrp_check.build.catkin import Catkin, Step
-from mrp_check.code import node as sources_node
-from mrp_check.code import reading, uses
+from mrp_check.code import reading, source_node, uses
 from mrp_check.code.cpp_read import CppReader
 from mrp_check.code.facts import Facts
 from mrp_check.confined import cpp_headers
 from mrp_check.confined.launch_dump import Started
 from mrp_check.contract.finding import Finding
+from mrp_check.contract.names import last_part
 from mrp_check.contract.spec import Spec
-from mrp_check.contract.words import last_part
 from mrp_check.package import launch as launching
 from mrp_check.package import manifest
 from mrp_check.package.cmake import Model
@@ -127,9 +126,9 @@ class Case(Workspace):
         return reading.read(reader, self.spec, self.model, self.launch)
 
     @functools.cached_property
-    def coded(self) -> list[sources_node.Node]:
+    def coded(self) -> list[source_node.SourceNode]:
         """The nodes of the spec as their sources tell them."""
-        return sources_node.nodes(self.package, self.spec, self.model, self.launch, self.facts)
+        return source_node.nodes(self.package, self.spec, self.model, self.launch, self.facts)
 
     @functools.cached_property
     def built(self) -> Step | None:

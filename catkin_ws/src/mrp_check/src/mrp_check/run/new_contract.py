@@ -10,14 +10,14 @@ from typing import Any, Callable, Iterator, Sequence
 import genmsg
 import yaml
 
-from mrp_check.case.any_case import AnyCase
 from mrp_check.confined.launch_dump import Started
 from mrp_check.confined.places import Kind
 from mrp_check.confined.seen import LaunchResult
 from mrp_check.contract.errors import CannotCheck
 from mrp_check.contract.kinds import PACKAGE
+from mrp_check.contract.names import last_part
 from mrp_check.contract.spec import Topic
-from mrp_check.contract.words import last_part
+from mrp_check.run.any_case import AnyCase
 from mrp_check.run.behaviour import Behaviour, Entry, shaped
 
 _WORD = re.compile(r"[A-Za-z]\w*")  # what a contract can call a node or a topic

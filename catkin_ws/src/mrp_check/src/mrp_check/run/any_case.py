@@ -12,7 +12,6 @@ from concurrent.futures import Future
 from typing import Any
 
 from mrp_check.build import compiler
-from mrp_check.case.case import Case
 from mrp_check.code import executables, uses
 from mrp_check.contract.finding import Finding
 from mrp_check.contract.spec import Spec
@@ -20,6 +19,7 @@ from mrp_check.package import launch as launching
 from mrp_check.package.launch import Launch
 from mrp_check.package.package import Package
 from mrp_check.run import observing, unasked
+from mrp_check.run.case import Case
 
 # A folder that catkin_package() names.
 _INCLUDED = r"(?m)^[^#\n]*\bINCLUDE_DIRS\s+(\w+)\b(?!/)"

@@ -12,8 +12,8 @@ from mrp_check.confined.launch_dump import Started
 from mrp_check.confined.places import Kind, Place
 from mrp_check.contract import spec as specs
 from mrp_check.contract.finding import Finding, Line
+from mrp_check.contract.names import last_part
 from mrp_check.contract.spec import Spec, Topic
-from mrp_check.contract.words import last_part
 from mrp_check.package.cmake import Model
 from mrp_check.package.launch import Launch
 from mrp_check.package.package import Package
@@ -21,18 +21,18 @@ from mrp_check.package.package import Package
 
 def nodes(
     package: Package, spec: Spec, model: Model, launch: Launch | None, facts: Facts
-) -> list[Node]:
+) -> list[SourceNode]:
     """Return the Nodes of the spec whose sources could all be read."""
     started = {node.name: node for node in (launch.nodes if launch else [])}
     files = {name: facts.sources.get(name, []) for name in spec.nodes}
     return [
-        Node(package, spec, model, node, started.get(name), facts)
+        SourceNode(package, spec, model, node, started.get(name), facts)
         for name, node in spec.nodes.items()
         if files[name] and not facts.unread & {*files[name]}
     ]
 
 
-class Node:
+class SourceNode:
     """See above.
 
     wanted: what the spec says of it
@@ -45,7 +45,7 @@ class Node:
         package: Package,
         spec: Spec,
         model: Model,
-        wanted: specs.Node,
+        wanted: specs.NodeSpec,
         started: Started | None,
         facts: Facts,
     ) -> None:
@@ -77,7 +77,7 @@ class Node:
         return self.started.type if self.started else self.name
 
     @functools.cached_property
-    def mistaken_for(self) -> specs.Node | None:
+    def mistaken_for(self) -> specs.NodeSpec | None:
         """The node of the spec whose sources these are in truth, or None."""
         if not self.spec.is_contract:
             return None
@@ -89,7 +89,7 @@ class Node:
         own = self._has_role() and not self._is_called(self.main, other.name)
         return None if own or not self.mistaken_in(other) else other
 
-    def mistaken_in(self, other: specs.Node) -> str | None:
+    def mistaken_in(self, other: specs.NodeSpec) -> str | None:
         """Return what gives the node the sources of another: targets, launch-nodes, or None."""
         stem, belongs = os.path.splitext(self.executable)[0], self._belongs(other)
         is_target = self.executable in self.model.executables()
@@ -108,7 +108,7 @@ class Node:
     def _is_called(file: str, name: str) -> bool:
         return os.path.splitext(last_part(file))[0] == name
 
-    def _belongs(self, other: specs.Node) -> bool:
+    def _belongs(self, other: specs.NodeSpec) -> bool:
         """Return whether the main source is another node's: it is called so, or is used so, or the
         other's says that it is this one's."""
         return (
@@ -137,13 +137,13 @@ class HasCoded(Protocol):
     """A case.Case, as far as each_node() needs one."""
 
     @property
-    def coded(self) -> Iterable[Node]: ...
+    def coded(self) -> Iterable[SourceNode]: ...
 
 
 def each_node(
-    findings: Callable[[Node], Iterable[Finding]],
+    findings: Callable[[SourceNode], Iterable[Finding]],
 ) -> Callable[[HasCoded], Iterator[Finding]]:
-    """Return the function of a case.Case that asks this of each Node that is made of its own
+    """Return the function of a case.Case that asks this of each SourceNode that is made of its own
     sources: whatever those of another say is said of that one."""
 
     def of_all(case: HasCoded) -> Iterator[Finding]:

@@ -8,9 +8,9 @@ from __future__ import annotations
 
 from typing import Callable, Optional
 
-from mrp_check.case.case import Case
 from mrp_check.contract import spec as specs
 from mrp_check.contract.spec import Publishes
+from mrp_check.run.case import Case
 from mrp_check.run.node import Node
 
 Seen = Callable[[Case], Optional[str]]
@@ -93,7 +93,7 @@ def compiled(case: Case) -> str | None:
 def when(
     is_seen: Callable[[Node], object],
     what: str,
-    role: Callable[[specs.Node], object] = lambda node: True,
+    role: Callable[[specs.NodeSpec], object] = lambda node: True,
 ) -> Seen:
     """Return the test of nodes that came up, and of which something more must have been seen.
 
