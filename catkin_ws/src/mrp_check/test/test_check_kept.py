@@ -33,19 +33,20 @@ def checked(tmp_path, programs):
     place = tmp_path / "package"
     check_sets.lay_out("mrp", place)
 
-    def once():
+    def once(static=False):
         programs.clear()
         with kept_folder("this version") as kept:
-            report = check.check(
-                Package(place), spec.read(spec.find("pub_sub")), ("compile",), kept=kept
-            )
+            contract, ids = spec.read(spec.find("pub_sub")), () if static else ("compile",)
+            report = check.check(Package(place), contract, ids, kept=kept, static=static)
         return [one.id for one in report.findings], "catkin_make" in programs
 
     return once
 
 
 def test_second_check_builds_only_what_has_changed(checked, tmp_path):
-    assert checked() == ([], True)
+    assert checked(static=True) == ([], True)
+    assert checked(static=True) == ([], False)
+    assert checked() == ([], False)
     assert checked() == ([], False)
     source = tmp_path / "package" / "src" / "publisher_cpp_node.cpp"
     source.write_text(source.read_text() + "not C++\n")

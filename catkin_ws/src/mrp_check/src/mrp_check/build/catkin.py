@@ -197,6 +197,7 @@ class Catkin:
         if first:
             result = self._run(*make, *first)
         if workspace.static:
+            workspace.keep(self.configured, None)
             return self._step(result) if first else Step(True, "")
         result = self._run(*make)
         step = self._step(result)

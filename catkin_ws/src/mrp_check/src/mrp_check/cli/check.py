@@ -274,8 +274,7 @@ def run_package(options):
                 print(f"check: builds {one.name} with {package.name}.", file=sys.stderr)
             say_how_apart()
             kept = None
-            # What was unpacked is not there again, and a static check builds too little to keep.
-            if scratch not in package.root.parents and not options.static:
+            if scratch not in package.root.parents:  # what was unpacked is not there again
                 kept = stack.enter_context(kept_folder(marking.checker()))
             report = check.check(
                 package,

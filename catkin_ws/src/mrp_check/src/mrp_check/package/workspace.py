@@ -117,7 +117,7 @@ class Workspace:
         shutil.copy(source, target)
         return True
 
-    def _take_kept(self) -> dict[str, Done] | None:
+    def _take_kept(self) -> dict[str, Done | None] | None:
         """Return what keep() was given, if it fits the package. It holds once: what is built from
         now on may be cut short."""
         if not self._kept.exists():
@@ -131,8 +131,8 @@ class Workspace:
                 confine.remove(folder)
         return kept
 
-    def keep(self, configured: Done, made: Done) -> None:
-        """Let the next check go on with what is built now."""
+    def keep(self, configured: Done, made: Done | None) -> None:
+        """Let the next check go on with what is built now; made: None if only the messages are."""
         kept = {"of": self._read_by_cmake, "configured": configured, "made": made}
         self._kept.write_text(json.dumps(kept))
 
