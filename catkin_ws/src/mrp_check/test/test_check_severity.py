@@ -80,6 +80,17 @@ def test_only_what_fails_because_of_it_confirms_what_was_read(cause, severity):
     assert [one.severity for one in read] == [severity, "warning"]
 
 
+def test_what_was_seen_is_the_cause_before_what_was_only_read():
+    read = Finding("messages", "It says so.", "CMakeLists.txt", 1, READ, stage="files")
+    seen = Finding("compile", "It stops.", "a.cpp", 3, SEEN, stage="build")
+    failed = Finding("starts", "There is no executable.", None, None, SEEN, stage="run", node="a")
+    for one in (read, seen, failed):
+        one.severity = "error"
+    facts = Facts(sources={"a": ["a.cpp"]})
+    weigh(causes.told_once([read, seen, failed], facts, {}, False), has_contract=False)
+    assert (failed.consequence_of, read.severity) == ("compile", "warning")
+
+
 @pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
 def test_a_rule_sets_no_severity_and_imports_no_rule(path):
     tree = ast.parse(path.read_text())

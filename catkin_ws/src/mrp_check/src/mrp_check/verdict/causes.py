@@ -93,11 +93,15 @@ def told_once(findings, facts=None, nodes=None, has_contract=True):
     for index, finding in enumerate(kept):
         if finding.consequence_of or finding.severity == NOTE:
             continue
-        # Of several causes, the one that stands where it fails is not there by chance. What is not
-        # declared may be found all the same.
+        # Of several causes, the one that stands where it fails is not there by chance. What was only
+        # read may do no harm, and what is not declared may be found all the same.
         ordered = sorted(
             enumerate(kept),
-            key=lambda one: (not _is_beside(one[1], finding), one[1].id == "dependencies"),
+            key=lambda one: (
+                not _is_beside(one[1], finding),
+                not has_contract and one[1].certainty == READ,
+                one[1].id == "dependencies",
+            ),
         )
         for number, cause in ordered:
             if not has_contract and cause.id == "scripts" and finding.id != "configure":

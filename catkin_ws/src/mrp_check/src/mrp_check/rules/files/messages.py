@@ -40,23 +40,27 @@ def _findings(case: Case) -> Iterator[Finding]:
     files = [path for path in package.of_kind(*uses.DEFINITIONS) if path.count("/") <= 1]
     if not case.spec.is_contract:
         yield from definitions(case)
+    asked = [path for path in files if path in model.message_files or _is_used(case, path)]
     made = model.message_files or model.generate
     if not files and not made or not model.complete and model.catkin is None:
         return
     if not model.finds_all:
-        yield from _in_cmake(case, files)
-    if manifest and (files or model.message_files):
+        yield from _in_cmake(case, files, bool(asked))
+    if manifest and (asked or model.message_files):
         yield from _in_manifest(package, manifest, _is_brought_along(model))
     yield from _order(package, model)
 
 
-def _in_cmake(case: Case, files: list[str]) -> Iterator[Finding]:
-    """Yield a finding for each call of CMakeLists.txt that lacks, or lacks something."""
+def _in_cmake(case: Case, files: list[str], are_asked: bool) -> Iterator[Finding]:
+    """Yield a finding for each call of CMakeLists.txt that lacks, or lacks something.
+
+    are_asked: whether code is to be made of one of the files
+    """
     model = case.model
     own = {*case.spec.messages, *(s.type.split("/")[1] for s in case.spec.services.values())}
     catkin_line, call = model.catkin.line if model.catkin else 1, model.add_message_files
     brings = {"message_generation", "genmsg"}  # the first is all of it; the second builds, too
-    asks = files or model.generate
+    asks = are_asked or model.generate
     if asks and model.catkin and not brings & {*model.components}:
         brought = case.package.first_match([FILE], _BROUGHT)
         yield _message_finding(
@@ -97,11 +101,11 @@ def _is_used(case: Case, path: str) -> bool:
     what is made of a definition; with a contract, each one is used."""
     package, targets = case.package, case.model.targets.values()
     built = {file for one in targets for file in one.sources if file in package.files}
+    built = built if targets else {*package.of_kind("cpp")}
     others = package.of_kind("header", "python", *uses.DEFINITIONS)
     files = {*built, *others} - {path}
     names = rf"\b(?:{'|'.join(map(re.escape, uses.generated(path)))})\b"
-    is_asked = case.spec.is_contract or not targets
-    return is_asked or any(re.search(names, uses.code(package, file)) for file in files)
+    return case.spec.is_contract or any(re.search(names, uses.code(package, file)) for file in files)
 
 
 def _is_of_action(path: str, model: Model) -> bool:
