@@ -101,6 +101,13 @@ def test_missing_dependency_in_the_manifest(tmp_path):
     assert "rospy" in finding.message
 
 
+def test_all_that_is_missing_is_one_finding(tmp_path):
+    text_ = re.sub(r"  <depend>(rospy|std_msgs)</depend>\n", "", MANIFEST)
+    (finding,) = dependency_findings(tmp_path, text_)
+    assert "rospy (used in src/odd.py:2) and std_msgs (used in src/odd.py:3)." in finding.message
+    assert finding.change[1].endswith("<depend>rospy</depend>\n  <depend>std_msgs</depend>")
+
+
 def test_missing_dependency_that_is_not_here_either(tmp_path):
     files = {"src__b_DOT_py": f"from some_other_msgs.msg import Odd\n{NODE}"}
     package = check_rules.make(tmp_path, src__a_DOT_cpp="", **files)

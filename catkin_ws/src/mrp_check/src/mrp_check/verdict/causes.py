@@ -93,8 +93,8 @@ def told_once(findings, facts=None, nodes=None, has_contract=True):
     for index, finding in enumerate(kept):
         if finding.consequence_of or finding.severity == NOTE:
             continue
-        # Of several causes, the one that stands where it fails is not there by chance. What was only
-        # read may do no harm, and what is not declared may be found all the same.
+        # Of several causes, the one that stands where it fails is not there by chance. What was
+        # only read may do no harm, and what is not declared may be found all the same.
         ordered = sorted(
             enumerate(kept),
             key=lambda one: (

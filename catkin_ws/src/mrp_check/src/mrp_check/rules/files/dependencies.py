@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import re
 import sys
-from typing import Collection, Iterable, Iterator
+from typing import Collection, Iterable, Iterator, Mapping
 
 from catkin_pkg.package import Package as Manifest
 
@@ -34,6 +34,8 @@ def _findings(case: Case) -> Iterator[Finding]:
     own = {"roscpp", "rospy"} | {topic.type.split("/")[0] for topic in case.spec.topics.values()}
     if not case.spec.is_contract:
         own.update(used)
+    # Where the same line lacks them -> package -> its use.
+    lacking: dict[tuple[str, bool], dict[str, Use]] = {}
     for name, use in sorted(used.items()):
         in_manifest = manifest is None or name in named(manifest, tests=not use.firm)
         is_open = model.catkin is None or model.finds_all or use.language == "launch"
@@ -44,10 +46,23 @@ def _findings(case: Case) -> Iterator[Finding]:
             yield _foreign(package, name, use)
             continue
         if not in_manifest:
-            yield _not_in_manifest(package, name, use, manifest, used)
+            near = _misspelt(name, named(manifest), used)
+            if near:
+                yield _misspelt_in_manifest(package, name, use, near)
+            else:
+                lacking.setdefault((FILE, use.firm), {})[name] = use
         # Python finds it all the same.
         if not in_cmake and model.catkin and use.language == "cpp":
-            yield _not_in_cmake(name, use, model, model.catkin)
+            near = _misspelt(name, model.components, ())
+            if near:
+                yield _misspelt_in_cmake(name, use, near, model.catkin)
+            else:
+                lacking.setdefault((model.catkin.file, use.firm), {})[name] = use
+    for (file, firm), uses_ in lacking.items():
+        if file == FILE:
+            yield _not_in_manifest(package, uses_, manifest, firm)
+        elif model.catkin:
+            yield _not_in_cmake(uses_, model, model.catkin, firm)
 
 
 def _foreign(package: Package, name: str, use: Use) -> Finding:
@@ -93,44 +108,82 @@ def _misspelt(name: str, names: Iterable[str], used: Collection[str]) -> str | N
     return nearest(name, others, 0.8)
 
 
-def _not_in_manifest(
-    package: Package, name: str, use: Use, manifest: Manifest, used: Collection[str]
-) -> Finding:
-    near = _misspelt(name, named(manifest), used)
-    line = (near and package.find_line(FILE, f">{near}<")) or first_dependency(package)
-    text = package.lines(FILE)[line - 1]  # with its indent
-    tags = f"<depend>{name}</depend>"
-    if manifest is not None and manifest.package_format < 2:  # which knows no <depend>
-        tags = f"<build_depend>{name}</build_depend> <run_depend>{name}</run_depend>"
-    added = f"{text}\n{text[: len(text) - len(text.lstrip())]}{tags}"
+def _misspelt_in_manifest(package: Package, name: str, use: Use, near: str) -> Finding:
     return Finding(
         "dependencies",
-        f"package.xml does not name {name}, which {use.file} uses in line {use.line}."
-        + (f" It names {near}, and there is no such package." if near else ""),
+        f"package.xml does not name {_used_in({name: use})}. It names {near}, and there is no such"
+        " package.",
         FILE,
-        line,
+        package.find_line(FILE, f">{near}<") or first_dependency(package),
         certainty=READ if use.firm else HABIT,
-        expected=tags,
-        seen=f"<depend>{near}</depend>" if near else f"no dependency on {name}",
-        fix=f"Write {name} for {near}." if near else f"Add the line {tags}.",
-        change=(f">{near}<", f">{name}<") if near else (text, added) if "depend>" in text else None,
+        expected=f"<depend>{name}</depend>",
+        seen=f"<depend>{near}</depend>",
+        fix=f"Write {name} for {near}.",
+        change=(f">{near}<", f">{name}<"),
     )
 
 
-def _not_in_cmake(name: str, use: Use, model: Model, call: Call) -> Finding:
-    near = _misspelt(name, model.components, ())
+def _not_in_manifest(
+    package: Package, found: Mapping[str, Use], manifest: Manifest | None, firm: bool
+) -> Finding:
+    line = first_dependency(package)
+    text = package.lines(FILE)[line - 1]  # with its indent
+    tags = [f"<depend>{name}</depend>" for name in found]
+    if manifest is not None and manifest.package_format < 2:  # which knows no <depend>
+        tags = [
+            f"<{tag}>{name}</{tag}>" for name in found for tag in ("build_depend", "run_depend")
+        ]
+    indent = text[: len(text) - len(text.lstrip())]
+    added = "\n".join([text, *(indent + tag for tag in tags)])
     return Finding(
         "dependencies",
-        f"find_package(catkin ...) does not name {name}, which {use.file} uses in line {use.line}."
-        " Its headers and libraries may then not be found."
-        + (f" It names {near}, and there is no such package." if near else ""),
+        f"package.xml does not name {_used_in(found)}.",
+        FILE,
+        line,
+        certainty=READ if firm else HABIT,
+        expected=" ".join(tags),
+        seen=f"no dependency on {', '.join(found)}",
+        fix=f"Add {' '.join(tags)}.",
+        change=(text, added) if "depend>" in text else None,
+    )
+
+
+def _used_in(found: Mapping[str, Use]) -> str:
+    """Return packages as a part of a sentence, each with a place that uses it."""
+    if len(found) == 1:
+        ((name, use),) = found.items()
+        return f"{name}, which {use.file} uses in line {use.line}"
+    *rest, last = [f"{name} (used in {use.file}:{use.line})" for name, use in found.items()]
+    return f"{', '.join(rest)} and {last}"
+
+
+def _misspelt_in_cmake(name: str, use: Use, near: str, call: Call) -> Finding:
+    return Finding(
+        "dependencies",
+        f"find_package(catkin ...) does not name {_used_in({name: use})}. It names {near}, and"
+        " there is no such package.",
         call.file,
         call.line,
         certainty=READ if use.firm else HINT,
         expected=f"find_package(catkin REQUIRED COMPONENTS ... {name} ...)",
+        seen=near,
+        fix=f"Write {name} for {near}.",
+        change=(near, name),
+    )
+
+
+def _not_in_cmake(found: Mapping[str, Use], model: Model, call: Call, firm: bool) -> Finding:
+    names = " ".join(found)
+    return Finding(
+        "dependencies",
+        f"find_package(catkin ...) does not name {_used_in(found)}. Headers and libraries may then"
+        " not be found.",
+        call.file,
+        call.line,
+        certainty=READ if firm else HINT,
+        expected=f"find_package(catkin REQUIRED COMPONENTS ... {names} ...)",
         seen=", ".join(model.components) or "no COMPONENTS",
-        fix=f"Write {name} for {near}." if near else f"Add {name} to COMPONENTS.",
-        change=(near, name) if near else None,
+        fix=f"Add {names} to COMPONENTS.",
     )
 
 

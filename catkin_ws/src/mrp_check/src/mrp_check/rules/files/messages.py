@@ -105,7 +105,9 @@ def _is_used(case: Case, path: str) -> bool:
     others = package.of_kind("header", "python", *uses.DEFINITIONS)
     files = {*built, *others} - {path}
     names = rf"\b(?:{'|'.join(map(re.escape, uses.generated(path)))})\b"
-    return case.spec.is_contract or any(re.search(names, uses.code(package, file)) for file in files)
+    return case.spec.is_contract or any(
+        re.search(names, uses.code(package, file)) for file in files
+    )
 
 
 def _is_of_action(path: str, model: Model) -> bool:
