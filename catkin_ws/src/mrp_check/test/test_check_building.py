@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What CMake and the compiler print, in plain words, and the line that is to blame."""
+"""What CMake, the compiler and the linker print, in plain words, and the line that is to blame."""
 
 import subprocess
 import types
@@ -7,7 +7,8 @@ import types
 import check_rules
 import pytest
 from check_rules import CMAKE, MANIFEST
-from mrp_check.build import compiler, configuring, cpp_words, stubs
+from mrp_check.build import compiler, configuring, cpp_words, linker, stubs
+from mrp_check.package import cmake
 from mrp_check.package.package import Package
 from mrp_check.rules.files import cmake as cmake_rule
 from mrp_check.rules.run import compile as compile_rule
@@ -263,3 +264,27 @@ def test_a_package_of_which_debian_keeps_the_headers_apart_is_not_here(tmp_path,
     (tmp_path / "include" / "far_srvs" / "Trigger.h").touch()
     assert compiler.absent(package, [problem]) == {}
     compiler.uses.is_installed.cache_clear()
+
+
+TWO_TARGETS = """
+add_executable(one src/one.cpp)
+add_executable(other src/other.cpp)
+"""
+LINKED = """
+[ 50%] Building CXX object relay/CMakeFiles/other.dir/src/other.cpp.o
+/usr/bin/ld: /usr/lib/x86_64-linux-gnu/Scrt1.o: in function `_start':
+(.text+0x17): undefined reference to `main'
+collect2: error: ld returned 1 exit status
+make[2]: *** [relay/CMakeFiles/one.dir/build.make:146: /tmp/devel/lib/relay/one] Error 1
+make[1]: *** [CMakeFiles/Makefile2:200: relay/CMakeFiles/one.dir/all] Error 2
+"""
+
+
+def test_main_is_missing_in_the_target_that_failed(tmp_path):
+    (tmp_path / "package.xml").write_text(MANIFEST)
+    (tmp_path / "CMakeLists.txt").write_text(TWO_TARGETS)
+    package = Package(tmp_path)
+    calls = cmake.parsed(TWO_TARGETS, "CMakeLists.txt")
+    (found,) = linker.findings(package, LINKED, cmake.Model(tmp_path, calls, complete=True))
+    assert found.message.startswith("The target one has no function main")
+    assert found.line == 2

@@ -1,0 +1,317 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The rules about Python sources: what beginners write, and what only looks like it."""
+
+import check_rules
+import pytest
+from check_rules import told
+from mrp_check.code import python_read
+from mrp_check.contract.finding import NOTE
+from mrp_check.package.cmake import parsed
+from mrp_check.rules.code import (
+    arguments,
+    callbacks,
+    goals,
+    ignored,
+    not_called,
+    python_names,
+    responses,
+    rospy_calls,
+    typed,
+)
+from mrp_check.rules.files import scripts, targets
+from one_source import case, lines_of
+
+pytestmark = pytest.mark.quick
+
+START = "rospy.init_node('a')"
+SERVER = "s = actionlib.SimpleActionServer('a', A, work, auto_start=False)\ns.start()"
+WORK = "def work(goal):\n    for i in range(9):\n        "
+
+
+@pytest.mark.parametrize(
+    ("rule", "ending", "lines", "found"),
+    [
+        (arguments, "py", "a = sys.argv[1]", [4]),
+        (arguments, "py", "if len(sys.argv) > 1:\n    a = sys.argv[1]", []),
+        (arguments, "py", "try:\n    a = sys.argv[1]\nexcept IndexError:\n    a = 1", []),
+        (arguments, "py", "a = sys.argv[0]", []),
+        (not_called, "py", f"def ask():\n    rospy.wait_for_service('a')\n{START}\nask()", []),
+        (not_called, "py", f"def ask():\n    return 1\n{START}", []),
+        (not_called, "py", f"def f():\n    {START}\nif __name__ == '__main__':\n    f()", []),
+        (not_called, "py", f"def ask():\n    rospy.spin()\n{START}\nrospy.spin()", []),
+        (rospy_calls, "py", "rospy.loginfo('a', 1)", [4]),
+        (rospy_calls, "py", "rospy.logwarn('%s %d%%', 'a')", [4]),
+        (rospy_calls, "py", "rospy.loginfo('%s %5.2f%%', 'a', 1)", []),
+        (rospy_calls, "py", "rospy.loginfo('100%')", []),
+        (rospy_calls, "py", "rospy.loginfo('%(a)s', {'a': 1})", []),
+        (rospy_calls, "py", "rospy.loginfo_throttle(1, '%*d', 9, 1)", []),
+        (rospy_calls, "py", "rospy.loginfo_throttle(1, 'a', 1)", [4]),
+        (typed, "py", "a = input()\nb = a * 0.5", [4]),
+        (typed, "py", "a = input()\nb = a * 2", []),
+        (typed, "py", "if sys.argv[1] > 3:\n    pass", [4]),
+        (goals, "py", f"{WORK}rospy.sleep(1)\n{SERVER}", [5]),
+        (goals, "py", f"{WORK}rospy.sleep(s.is_preempt_requested())\n{SERVER}", []),
+        (goals, "py", f"{WORK}print(i)\n{SERVER}", []),
+        (goals, "py", f"def work(goal):\n    rospy.sleep(0.1)\n{SERVER}", []),
+        (goals, "py", "s = actionlib.SimpleActionServer('a', A, work)", [4]),
+        (goals, "py", "s = actionlib.SimpleActionServer('a', A, work, False)\ns.start()", []),
+        (goals, "py", f"{SERVER.replace(', work', '')}", []),
+    ],
+    ids=range(25),
+)
+def test_what_beginners_are_used_to(rule, ending, lines, found, tmp_path):
+    assert lines_of(rule, case(tmp_path, ending, lines)) == found
+
+
+def test_a_first_line_without_its_slash(tmp_path):
+    assert scripts.names_no_program("#!usr/bin/env python3") == "usr/bin/env"
+    assert scripts.names_no_program("#!/usr/bin/env python3") is None
+
+
+def test_where_a_word_of_a_call_stands(tmp_path):
+    lines = ["find_package(catkin REQUIRED", "  roscpp  # tf", "  tf", ")", "project(std_msgs)"]
+    (call, _) = parsed("\n".join(lines), "CMakeLists.txt")
+    assert [call.line_of(lines, word) for word in ("tf", "roscpp", "std_msgs")] == [3, 2, 1]
+
+
+def test_tabs_among_spaces(tmp_path):
+    lines = "def f():\n\ta = 1\n    b = 2\n    c = 3\n    print a\nf()\n"
+    package = check_rules.make(tmp_path / "some_pkg", src__a_DOT_py=lines)
+    _, finding = python_read.read(package, "src/a.py")
+    assert finding.line == 3 and "Lines with tabs: 2." in finding.message
+    # Behind them it reads on, with as many spaces for a tab as the author saw.
+    source, further = python_read.further(package, "src/a.py")
+    assert source is not None and [one.line for one in further] == [5]
+
+
+WAITS = "c.wait_for_server(rospy.Duration(5))"
+RESULT = "c.wait_for_result(rospy.Duration(5))"
+HEAR = "def hear(m):\n    "
+HEARD = "rospy.Subscriber('a', String, hear)"
+TWIST = "from geometry_msgs.msg import Twist\nt = Twist()\n"
+SERVES = "import time\ns = actionlib.SimpleActionServer('a', A, f, False)"
+EMPTY = "from std_srvs.srv import Empty, EmptyResponse\n"
+OFFER = "rospy.Service('a', Empty, f)"
+OF_TWO = """class A:
+    def __init__(self):
+        self.s = rospy.Subscriber('a', String, self.hear)
+        self.b = 0
+    def hear(self, m):
+        {}print(self.b)
+    def {}(self, m):
+        self.b = 1
+a = A()
+rospy.Subscriber('b', String, a.see)
+"""
+
+
+@pytest.mark.parametrize(
+    ("rule", "ending", "lines", "found"),
+    [
+        (ignored, "py", WAITS, [4]),
+        (ignored, "py", "c.wait_for_server()", []),
+        (ignored, "py", f"if not {WAITS}:\n    sys.exit(1)", []),
+        (ignored, "py", RESULT, [4]),
+        (ignored, "py", f"{RESULT}\nc.get_state()", []),
+        (
+            arguments,
+            "py",
+            "n = len(sys.argv)\ntry:\n    int(sys.argv[1])\nexcept ValueError: a()",
+            [],
+        ),
+        (arguments, "py", "try:\n    a = int(input())\nexcept ValueError: b()", []),
+        (callbacks, "py", OF_TWO.format("", "see"), [6]),
+        (callbacks, "py", OF_TWO.format("self.b = 2; ", "see"), []),
+        (callbacks, "py", OF_TWO.format("", "look"), []),
+        (rospy_calls, "py", f"{HEAR}rospy.loginfo('%.2f', m)\n{HEARD}", [5]),
+        (rospy_calls, "py", f"{HEAR}rospy.loginfo('%s', m)\n{HEARD}", []),
+        (rospy_calls, "py", f"{HEAR}m = m.data; rospy.loginfo('%d', m)\n{HEARD}", []),
+        (rospy_calls, "py", f"{HEAR}rospy.loginfo('%d', m)", []),
+        (typed, "py", f"{TWIST}t.linear.x += input()", [6]),
+        (typed, "py", f"{TWIST}t.linear.x = input()", [6]),
+        (typed, "py", f"{TWIST}t.linear.x = float(input())", []),
+        (typed, "py", f"{TWIST}t.frame += input()", []),
+        (typed, "py", "n = 0\nn += input()", [5]),
+        (typed, "py", "n = ''\nn += input()", []),
+        (typed, "py", "a = input()\nn = a * 2\nwhile n < 3:\n    pass", [4]),
+        (arguments, "py", "a = rospy.myargv()[-1]", []),
+        (arguments, "py", "import other as sys\na = sys.argv[1]", []),
+        (goals, "py", f"{SERVES}", [5]),
+        (goals, "py", f"{SERVES}\ns.start()", []),
+        (responses, "py", f"{EMPTY}def f(r):\n    return EmptyResponse\n{OFFER}", [6]),
+        (responses, "py", f"{EMPTY}def f(r):\n    return EmptyResponse()\n{OFFER}", []),
+        (python_names, "py", "import numpy as np\na = np.int(3)", [5]),
+        (python_names, "py", "import numpy as np\na = np.int64(3), np.linalg.norm", []),
+        (python_names, "py", "import time\na = time.clock()", [5]),
+    ],
+    ids=range(30),
+)
+def test_what_may_be_missing_is_looked_at(rule, ending, lines, found, tmp_path):
+    assert lines_of(rule, case(tmp_path, ending, lines)) == found
+
+
+def test_where_what_was_typed_is_computed_with_is_a_note(tmp_path):
+    assert lines_of(typed, case(tmp_path, "py", "a = input()\nb()\nc = a - 1"), NOTE) == [6]
+
+
+TARGET = "add_executable(b src/b.cpp)\n"
+
+
+@pytest.mark.parametrize(
+    ("more", "name", "found"),
+    [
+        ("", "b", [1]),
+        (TARGET, "b", []),
+        (f"if(OFF)\n{TARGET}endif()\n", "b", []),
+        (f"# {TARGET}", "b", [1]),
+    ],
+    ids=range(4),
+)
+def test_a_program_that_no_target_is_made_of(more, name, found, tmp_path):
+    text = "int main(int argc, char** argv)\n{\n  ros::init(argc, argv, a);\n}\n"
+    files = {"CMakeLists_DOT_txt": check_rules.CMAKE + more, f"src__{name}_DOT_cpp": text}
+    known = case(tmp_path, "py", "", **files)
+    assert lines_of(targets, known) == found
+
+
+@pytest.mark.parametrize(
+    ("body", "severities"),
+    [
+        ("    pass", ["error"]),
+        ("    if request.data:\n        return None", ["error"]),
+        ("    if request.data:\n        return [True, '']", ["warning"]),
+        ("    while True:\n        if request.data:\n            return [True, '']", []),
+        ("    raise rospy.ServiceException('no')", []),
+        ("    if request.data:\n        return [True, '']\n    return [False, '']", []),
+        ("    try:\n        return [True, '']\n    except ValueError:\n        raise", []),
+    ],
+    ids=range(7),
+)
+def test_what_answers_a_service_returns_a_response(body, severities, tmp_path):
+    head = "import rospy\nfrom std_srvs.srv import SetBool\n\n\n"
+    service = "\n\n\nrospy.init_node('a')\nrospy.Service('switch', SetBool, switch)\nrospy.spin()\n"
+    text = f"{head}def switch(request):\n{body}{service}"
+    found = check_rules.python_findings(tmp_path, text)
+    assert [one.severity for one in found if one.id == "callbacks"] == severities
+
+
+MOVE = "def move(far):\n    gone = 0\n    while gone < far:\n        gone += 0.1\n"
+
+
+@pytest.mark.parametrize(
+    ("code", "found"),
+    [
+        ("far = input()\nwhile 0 < far:\n    pass", [("error", 1)]),
+        ("print(1 / input())", [("error", 1)]),
+        ("print(-input())", [("error", 1)]),
+        ("a = input()\nprint(abs(a))\nprint(abs(a))", [("error", 1)]),
+        ("rospy.Rate(input())", [("error", 1)]),
+        (f"{MOVE}move(input())", [("error", 5)]),
+        ("a = input()\nif a == 1:\n    pass", [("warning", 1)]),
+        (f"{MOVE}move(input())\nmove(1)", []),
+        (f"{MOVE}move(float(input()))", []),
+        ("a = input()\nif a == '1':\n    pass", []),
+        ("a = input()\na = int(a)\nprint(a - 1)", []),
+        ("print(input() + 'a', input() * 2)", []),
+        ("print('%s' % input())", []),
+        ("try:\n    print(1 - input())\nexcept TypeError:\n    pass", []),
+        ("def input():\n    return 1\nprint(1 - input())", []),
+        ("if input() < input():\n    pass", []),
+    ],
+    ids=range(16),
+)
+def test_what_is_typed_is_a_text(code, found, tmp_path):
+    said = check_rules.python_findings(tmp_path, f"import rospy\n{code}\n")
+    assert [(one.severity, one.line - 1) for one in said if one.severity != "note"] == found
+
+
+@pytest.mark.parametrize(
+    ("module", "others", "found"),
+    [
+        ("msg", {}, [("python-names", 1)]),
+        ("srv", {"msg__A_DOT_msg": ""}, [("python-names", 1)]),
+        ("msg", {"msg__A_DOT_msg": ""}, []),
+        ("msg", {"action__A_DOT_action": "---\n---\n"}, []),
+        ("msg", {"src__some_pkg__msg_DOT_py": ""}, []),
+        ("nodes", {"src__some_pkg__nodes_DOT_py": ""}, []),
+    ],
+    ids=range(6),
+)
+def test_messages_of_a_package_that_has_none(module, others, found, tmp_path):
+    text = f"from some_pkg.{module} import *\n"
+    assert told(check_rules.python_findings(tmp_path, text, **others)) == found
+
+
+@pytest.mark.parametrize(
+    ("function", "found"),
+    [("def run(self, goal):", [("callbacks", 5)]), ("def run(goal):", []), ("def run(*a):", [])],
+    ids=range(3),
+)
+def test_what_an_action_server_calls_takes_the_goal(function, found, tmp_path):
+    head = "import rospy\nimport actionlib  # not everywhere\n\n\n"
+    server = "actionlib.SimpleActionServer('a', None, execute_cb=run, auto_start=False)"
+    text = f"{head}{function}\n    pass\n\n\nserver = {server}\n"
+    assert told(check_rules.python_findings(tmp_path, text)) == found
+
+
+OF_CLASS = """import rospy
+from std_msgs.msg import String
+
+
+class Node{bases}:
+    {own}
+
+    def __init__(self):
+        {first}
+        {second}
+
+    def hear(self, message):
+        {use}
+
+
+rospy.init_node('a')
+node = Node()
+rospy.spin()
+"""
+HEARS = "self.subscriber = rospy.Subscriber('b', String, self.hear)"
+MADE = "self.publisher = rospy.Publisher('a', String, queue_size=1)"
+
+
+@pytest.mark.parametrize(
+    ("changed", "found"),
+    [
+        ({}, [("callbacks", 9)]),
+        ({"first": MADE, "second": HEARS}, []),
+        ({"first": f"self.publisher = None\n        {HEARS}"}, []),
+        ({"own": "publisher = None"}, []),
+        ({"bases": "(Other)"}, []),
+        ({"use": "self.other = message"}, []),
+        (
+            {"own": "def say(self):\n        self.publisher.publish('x')", "use": "self.say()"},
+            [("callbacks", 10)],
+        ),
+        ({"first": HEARS.replace("hear)", "hear, queue_size=1)")}, [("callbacks", 9)]),
+        ({"first": HEARS.replace("self.hear", "callback=self.hear")}, [("callbacks", 9)]),
+    ],
+    ids=range(9),
+)
+def test_what_a_callback_uses_is_there_before_it_can_be_called(changed, found, tmp_path):
+    parts = {"bases": "", "own": "count = 0", "first": HEARS, "second": MADE}
+    text = OF_CLASS.format(**{**parts, "use": "self.publisher.publish('x')", **changed})
+    seen = check_rules.python_findings(tmp_path, text)
+    assert told(seen, "warning") == found
+
+
+@pytest.mark.parametrize(
+    ("order", "found"), [("sp", [("callbacks", 9)]), ("ps", [])], ids=["early", "late"]
+)
+def test_what_a_function_uses_is_there_before_it_can_be_called(order, found, tmp_path):
+    parts = {
+        "s": "rospy.Subscriber('b', String, hear)\n",
+        "p": "p = rospy.Publisher('a', String, queue_size=1)\n",
+    }
+    head = "import rospy\nfrom std_msgs.msg import String\n\n\ndef hear(message):\n"
+    main = "".join(parts[one] for one in order)
+    text = f"{head}    p.publish('x')\n\nrospy.init_node('a')\n{main}rospy.spin()\n"
+    seen = check_rules.python_findings(tmp_path, text)
+    assert told(seen, "warning") == found
