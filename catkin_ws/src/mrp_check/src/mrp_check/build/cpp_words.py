@@ -365,7 +365,7 @@ def unbalanced_brace(lines: Sequence[str]) -> tuple[int, str] | None:
         if match.group() == "{":
             stack.append((number + 1, indent))
         elif not stack:
-            goes_on = any(one.strip() and one[0] in " \t" for one in lines[closed:number])
+            goes_on = any(line.strip() and line[0] in " \t" for line in lines[closed:number])
             return (closed if closed and goes_on else number + 1), "{"
         else:
             opened, opened_indent = stack.pop()

@@ -133,7 +133,10 @@ def cell(text):
 def broken_in(submissions):
     """Return (id, names of the submissions) for each requirement that is not met, most first."""
     found = [
-        (id_, [one.name for one in submissions if one.verdict_on(id_) == BROKEN])
+        (
+            id_,
+            [submission.name for submission in submissions if submission.verdict_on(id_) == BROKEN],
+        )
         for id_ in OF_CONTRACT
     ]
     return sorted([entry for entry in found if entry[1]], key=lambda entry: -len(entry[1]))
@@ -159,8 +162,8 @@ def html_text(submissions, spec, pages):
         page_of=page_of,
         broken=broken_in(submissions),
         address_of=html.address_of,
-        has_marks=any(str(one.by_hand) for one in submissions),
-        has_moved=any(one.moved for one in submissions),
+        has_marks=any(str(submission.by_hand) for submission in submissions),
+        has_moved=any(submission.moved for submission in submissions),
         since=since(submissions, spec),
         isolations=isolations(submissions),
     )
@@ -168,7 +171,7 @@ def html_text(submissions, spec, pages):
 
 def text(submissions, spec):
     """Return the table for the console."""
-    width = max(len(one.name) for one in submissions)
+    width = max(len(submission.name) for submission in submissions)
     lines = []
     for one in submissions:
         broken = [id_ for id_ in OF_CONTRACT if one.verdict_on(id_) == BROKEN]
@@ -186,12 +189,22 @@ def text(submissions, spec):
 
 def isolations(submissions):
     """Return how far the packages were kept apart as they ran: most often one sentence for all."""
-    return sorted({one.report["isolation"] for one in submissions if "isolation" in one.report})
+    return sorted(
+        {
+            submission.report["isolation"]
+            for submission in submissions
+            if "isolation" in submission.report
+        }
+    )
 
 
 def since(submissions, spec):
     """Return how many have more or fewer points than in the earlier hand-in; empty without one."""
-    gains = [one.mark(spec) - one.before["mark"] for one in submissions if one.before]
+    gains = [
+        submission.mark(spec) - submission.before["mark"]
+        for submission in submissions
+        if submission.before
+    ]
     if not gains:
         return ""
     more, fewer = sum(gain > 0 for gain in gains), sum(gain < 0 for gain in gains)

@@ -50,12 +50,12 @@ def write_pages(path, submissions, spec):
 def left_out(submissions):
     """Return the names of the submissions that are neither in the worksheet nor in the zip."""
     there = {one.name for one, _, _ in _numbered(submissions)}
-    return [one.name for one in submissions if one.name not in there]
+    return [submission.name for submission in submissions if submission.name not in there]
 
 
 def _numbered(submissions):
     """Return (submission, student's name, number) of those whose number is in one name alone."""
-    found = [(one, DOWNLOADED.fullmatch(one.name)) for one in submissions]
+    found = [(submission, DOWNLOADED.fullmatch(submission.name)) for submission in submissions]
     named = [(one, match[1], match[2]) for one, match in found if match]
     counts = collections.Counter(number for _, _, number in named)
     return [entry for entry in named if counts[entry[2]] == 1]

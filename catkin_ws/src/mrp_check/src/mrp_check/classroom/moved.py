@@ -46,7 +46,10 @@ def before(folder):
 
 def since(marks, submissions):
     """Give each submission, as its `before`, what the same student had in an earlier hand-in."""
-    earlier, now = _by_student(marks["students"]), _by_student(one.name for one in submissions)
+    earlier, now = (
+        _by_student(marks["students"]),
+        _by_student(submission.name for submission in submissions),
+    )
     most = sum(marks["points"].values())
     for one in submissions:
         name = earlier.get(_student(one.name))
@@ -71,14 +74,14 @@ def _student(name):
 
 def _marks(submissions, spec):
     students = {
-        one.name: {
-            "verdicts": one.report["requirements"],
-            "mark": one.mark(spec),
-            "by_hand": str(one.by_hand),
-            "reason": one.report.get("reason", ""),
-            "depends_on": one.depends_on,
+        submission.name: {
+            "verdicts": submission.report["requirements"],
+            "mark": submission.mark(spec),
+            "by_hand": str(submission.by_hand),
+            "reason": submission.report.get("reason", ""),
+            "depends_on": submission.depends_on,
         }
-        for one in submissions
+        for submission in submissions
     }
     return {"points": {id_: spec.points_of(id_) for id_ in OF_CONTRACT}, "students": students}
 

@@ -148,8 +148,8 @@ def _listed(folder: pathlib.Path) -> tuple[list[str], list[str]]:
             found = sorted(scanned, key=lambda one: one.name)
     except OSError:
         return [], []
-    folders = [one.name for one in found if one.is_dir(follow_symlinks=False)]
-    files = [one.name for one in found if one.is_file(follow_symlinks=False)]
+    folders = [entry.name for entry in found if entry.is_dir(follow_symlinks=False)]
+    files = [entry.name for entry in found if entry.is_file(follow_symlinks=False)]
     return [name for name in folders if not _is_hidden(name)], files
 
 

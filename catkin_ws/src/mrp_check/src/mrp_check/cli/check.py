@@ -211,7 +211,7 @@ def run_class(options):
     if options.moodle:
         write_pages(options.moodle, checked, contract)
     print(class_table.text(checked, contract))
-    all_met = all(one.report["verdict"] == MET for one in checked)
+    all_met = all(submission.report["verdict"] == MET for submission in checked)
     return MET if all_met else FINDINGS
 
 
@@ -324,7 +324,7 @@ def write_contract(options):
     finally:
         progress.clear()
     if not texts:
-        errors = [one for one in report.findings if one.severity == ERROR]
+        errors = [finding for finding in report.findings if finding.severity == ERROR]
         why = report.reason or f"{errors[0].message} Fix what check --any {options.path} reports."
         raise CannotCheck(f"no contract is written, as {package.name} is not correct: {why}")
     with open(path, "x", encoding="utf-8") as file:

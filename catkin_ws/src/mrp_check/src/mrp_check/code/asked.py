@@ -15,13 +15,17 @@ _ASKED = {
 
 def of(facts: Facts, files: Container[str]) -> list[Place]:
     """Return where these sources name one."""
-    return [one for one in facts.places if one.kind in _ASKED and one.file in files and one.base]
+    return [
+        place
+        for place in facts.places
+        if place.kind in _ASKED and place.file in files and place.base
+    ]
 
 
 def unwaited(facts: Facts, files: Container[str]) -> Place | None:
     """Return where these sources call a service, if they never wait for any."""
-    places = [one for one in facts.places if one.file in files]
-    if any(one.kind is Kind.WAITS for one in places):
+    places = [place for place in facts.places if place.file in files]
+    if any(place.kind is Kind.WAITS for place in places):
         return None
-    calls = [one for kind in (Kind.CALLS, Kind.ASKS) for one in places if one.kind is kind]
+    calls = [place for kind in (Kind.CALLS, Kind.ASKS) for place in places if place.kind is kind]
     return calls[0] if calls else None

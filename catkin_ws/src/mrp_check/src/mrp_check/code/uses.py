@@ -175,7 +175,7 @@ def _has_headers(folder: str) -> bool:
 def is_header(header: str) -> bool:
     """Return whether a package of this machine has a header, as written after #include."""
     folders = ("", header.split("/")[0])
-    return any((place / one / header).is_file() for place in _includes() for one in folders)
+    return any((place / folder / header).is_file() for place in _includes() for folder in folders)
 
 
 def without_comments(text: str) -> str:

@@ -133,7 +133,11 @@ class _Node:
         name = self.name()
         if self.sent or not self.plan.values or name is None:
             return
-        own = [one for one in self.observer.seen.subscriptions if one.node == name]
+        own = [
+            registration
+            for registration in self.observer.seen.subscriptions
+            if registration.node == name
+        ]
         topics = [one for one in own if one.topic not in _OF_ROS]
         # Of several, the one of the contract's type first, and of these that of its name.
         topics.sort(key=lambda one: not one.topic.endswith(f"/{self.plan.topic}"))

@@ -73,14 +73,14 @@ class Habits(Unit):
         parameters = [*main.get_arguments()]
         if len(parameters) < 2 or of is None or not self.names(self.peel(of), parameters[1]):
             return
-        if not any(self.is_counted(one, parameters) for one in main.walk_preorder()):
+        if not any(self.is_counted(node, parameters) for node in main.walk_preorder()):
             self.add(item, Kind.ARGUMENT, value=number)
 
     def is_counted(self, cursor: Cursor, parameters: Sequence[Cursor]) -> bool:
         """Return whether argc is named there, but for ros::init(), or argv is asked for."""
         if cursor.kind == self.kinds.IF_STMT:
             asked = next(cursor.get_children(), cursor)
-            return any(self.names(one, parameters[1]) for one in asked.walk_preorder())
+            return any(self.names(node, parameters[1]) for node in asked.walk_preorder())
         is_named = cursor.kind == self.kinds.DECL_REF_EXPR and self.names(cursor, parameters[0])
         around = (one for one in self.above(cursor) if one.kind == self.kinds.CALL_EXPR)
         return is_named and not any(one.spelling == "init" for one in around)
@@ -92,7 +92,9 @@ class Habits(Unit):
         is_statement = parent is not None and parent.kind == self.kinds.COMPOUND_STMT
         is_seen = call.spelling == "waitForResult" and "getState" in self.all_calls
         if is_statement and not is_seen:
-            given = [one for one in arguments if next(one.get_tokens(), None) is not None]
+            given = [
+                argument for argument in arguments if next(argument.get_tokens(), None) is not None
+            ]
             least = 1 if call.spelling == "waitForService" else 0
             self.add(call, kind, call.spelling, value=int(len(given) > least))
 

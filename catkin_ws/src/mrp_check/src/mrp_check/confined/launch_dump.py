@@ -111,7 +111,7 @@ def _load(path: str, given: List[str]) -> Dump:
         error = f"{type(problem).__name__}: {problem}"
     return Dump(
         error,
-        [_started(one) for one in config.nodes],
+        [_started(node) for node in config.nodes],
         [os.path.realpath(name) for name in config.roslaunch_files],
         {name: one.value for name, one in config.params.items() if _is_plain(one.value)},
         config.config_errors,

@@ -274,7 +274,7 @@ class Model:
 
     def _catkin_package(self, call: Call) -> None:
         if not self.catkin_package:  # a later call moves no executable
-            made = (one for one in self.targets.values() if not one.is_library)
+            made = (target for target in self.targets.values() if not target.is_library)
             self.late = next(made, None)
         self.catkin_package = self.catkin_package or call
         names = {

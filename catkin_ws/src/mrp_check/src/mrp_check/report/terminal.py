@@ -239,7 +239,7 @@ def summary(report):
     if not report.requirements:
         return "Nothing could be checked."
     verdicts = list(report.requirements.values())
-    causes_ = [one for one in report.findings if not one.consequence_of]
+    causes_ = [finding for finding in report.findings if not finding.consequence_of]
     warnings = sum(one.severity == WARNING for one in causes_)
     suppressed = f"; suppressed: {len(report.suppressed)}" if report.suppressed else ""
     if report.left_out:

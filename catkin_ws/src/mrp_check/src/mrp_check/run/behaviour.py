@@ -41,7 +41,9 @@ class Run:
 
     def messages(self, topic: Topic, of_all: bool = False) -> list[Message]:
         """Return what the node sent on a topic, or what all nodes did."""
-        sent = [one for one in self.seen.messages if one.topic == resolved(topic, self.path)]
+        sent = [
+            message for message in self.seen.messages if message.topic == resolved(topic, self.path)
+        ]
         return [one for one in sent if of_all or one.node == self.path]
 
     def numbers(self, topic: Topic, of_all: bool = False) -> list[Number]:
@@ -51,8 +53,8 @@ class Run:
 
     def lines(self) -> list[str]:
         """Return what the node logged, each line as an expression with {name} in it."""
-        logs = [one for one in self.seen.logs if one.node == self.path and one.level == "INFO"]
-        texts = [one.text for one in logs if one.time < self.asked and "\n" not in one.text]
+        logs = [log for log in self.seen.logs if log.node == self.path and log.level == "INFO"]
+        texts = [log.text for log in logs if log.time < self.asked and "\n" not in log.text]
         plain = [_EXPRESSION.sub(r"\\\g<0>", text) for text in texts]
         return [text.replace(self.path, "{name}") for text in plain]
 
@@ -107,7 +109,7 @@ class Behaviour:
         if run is None:
             return []
         found = run.own(records(run.seen)).items()
-        named = [_named(*one, run.path) for one in found if one[0] not in ROS_TOPICS]
+        named = [_named(*entry, run.path) for entry in found if entry[0] not in ROS_TOPICS]
         return [one for one in named if one.name not in ROS_SERVICES]
 
     def series(self, topic: Topic) -> list[list[Message]]:
@@ -172,16 +174,16 @@ def shaped(topic: Topic, series: Sequence[Sequence[Message]]) -> Topic:
 
     series: what each node sent on it in a run
     """
-    fields = [[one.fields or {} for one in messages] for messages in series]
-    first = next((one for messages in fields for one in messages), {})
+    fields = [[message.fields or {} for message in messages] for messages in series]
+    first = next((message for messages in fields for message in messages), {})
     if isinstance(first.get("data"), str):
-        text = _text([str(one.get("data")) for messages in fields for one in messages])
+        text = _text([str(message.get("data")) for messages in fields for message in messages])
         return dataclasses.replace(topic, kind="string", text=text)
     numbers = [path for path, value in first.items() if type(value) in (int, float)]
     # What ROS counts by itself says nothing of the node.
     numbers = [path for path in numbers if not re.search(r"\b(seq|stamp)\b", path)]
     for path in numbers:
-        rows = [[one.get(path) for one in messages] for messages in fields]
+        rows = [[message.get(path) for message in messages] for messages in fields]
         if all(isinstance(v, (int, float)) for row in rows for v in row):
             if all(a != b for row in rows for a, b in zip(row, row[1:])):
                 return dataclasses.replace(topic, field=path, kind="number")

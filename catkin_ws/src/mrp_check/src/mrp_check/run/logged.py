@@ -60,7 +60,7 @@ def runs(observed: Observed) -> Iterator[Run]:
         before = [line for line in launch.lines if line[0] < launch.asked]
         codes = ends(text for _, _, text in before)
         for path, node in paths.items():
-            logs = [one for one in launch.seen.logs if one.node == path and one.time < launch.asked]
+            logs = [log for log in launch.seen.logs if log.node == path and log.time < launch.asked]
             said = where if where != "under " else "together with the other nodes"
             rest = launch.seen, launch.asked, codes.get(path), launch.latched
             yield Run(node, said, path, logs, before, *rest)
@@ -68,7 +68,7 @@ def runs(observed: Observed) -> Iterator[Run]:
     for node, alone in direct.nodes.items():
         if alone.name:
             path, asked = alone.name, alone.asked or alone.ended_after or 0.0
-            logs = [one for one in direct.seen.logs if one.node == path and one.time < asked]
+            logs = [log for log in direct.seen.logs if log.node == path and log.time < asked]
             before = [line for line in alone.lines if line[0] < asked]
             ended = alone.code if alone.ended_after is not None else None
             rest = direct.seen, asked, ended, direct.latched

@@ -74,11 +74,11 @@ class _Writer:
         types = [name for name, _ in wanted]
         for name, started in wanted or [(name, None) for name in self.case.spec.nodes]:
             runs: list[tuple[str, LaunchResult]] = [
-                (path, one.seen)
-                for one in seen.launches
-                for path, executable in one.nodes.items()
+                (path, launch.seen)
+                for launch in seen.launches
+                for path, executable in launch.nodes.items()
                 if executable == name
-                and (not started or (one.file, path) == (self.file, started.path))
+                and (not started or (launch.file, path) == (self.file, started.path))
             ]
             # Of several that one executable makes, the run by itself shows only one.
             node = Behaviour(name, runs, seen.direct if types.count(name) < 2 else None)
@@ -91,7 +91,7 @@ class _Writer:
         return re.sub(r"(_\d+)+$", "", name) if self._is_anonymous(node) else name
 
     def _is_anonymous(self, node: Behaviour) -> bool:
-        return any(one.anonymous for one in self.case.facts.of(node.name, Kind.INIT))
+        return any(place.anonymous for place in self.case.facts.of(node.name, Kind.INIT))
 
     def _topics(self) -> dict[str, Topic]:
         """Return the topics that a contract can name, each with the field that counts."""
@@ -239,7 +239,9 @@ class _Writer:
     def _queue(self, node: Behaviour, kind: Kind, topic: Topic) -> Entry:
         """Return the length of a queue, if the sources say it plainly."""
         places = self.case.facts.of(node.name, kind)
-        of_topic = [one for one in places if last_part(one.text or "").strip("~") == topic.name]
+        of_topic = [
+            place for place in places if last_part(place.text or "").strip("~") == topic.name
+        ]
         found = {one.queue for one in of_topic or (places if len(places) == 1 else ())}
         queue = found.pop() if len(found) == 1 else None
         return {"queue": queue} if isinstance(queue, int) and queue > 0 else {}
@@ -256,7 +258,7 @@ class _Writer:
     def _parameters(self, name: str) -> Entry:
         """Return the private parameters that the launch file gives a node."""
         started = self.launch.get(name)
-        files = [one for one in self.case.launches if one.file == self.file]
+        files = [launch for launch in self.case.launches if launch.file == self.file]
         params = files[0].params if started and files else {}
         start = f"{started.path}/" if started else ""
         return {

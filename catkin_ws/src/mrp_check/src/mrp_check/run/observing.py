@@ -78,7 +78,7 @@ def observe(sessions: Sessions, spec: Spec, launch: Launch | None, facts: Facts)
     """
     result, file, workspace = Observed(), None, sessions.workspace
     if launch and not launch.error:
-        result.started = {one.name: one for one in launch.nodes if one.name in spec.nodes}
+        result.started = {node.name: node for node in launch.nodes if node.name in spec.nodes}
     if launch and result.started:
         file, result.moved = workspace.package_folder / launch.file, launch.moved
     planner = planner_of(workspace, spec, launch.params if launch else {}, facts, result)

@@ -121,11 +121,11 @@ class Traces:
 def _of_node(seen: Seen, name: str | None) -> Seen:
     """Return what was seen of one node."""
     return Seen(
-        [one for one in seen.publications if one.node == name],
-        [one for one in seen.subscriptions if one.node == name],
-        [one for one in seen.messages if one.node == name],
-        [one for one in seen.logs if one.node == name],
+        [registration for registration in seen.publications if registration.node == name],
+        [registration for registration in seen.subscriptions if registration.node == name],
+        [message for message in seen.messages if message.node == name],
+        [log for log in seen.logs if log.node == name],
         seen.lag,
-        [one for one in seen.services if one.node == name],
-        [one for one in seen.lookups if one.node == name],
+        [registration for registration in seen.services if registration.node == name],
+        [registration for registration in seen.lookups if registration.node == name],
     )

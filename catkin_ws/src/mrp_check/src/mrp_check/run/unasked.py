@@ -98,7 +98,9 @@ def _own(workspace: Workspace, spec: Spec, launch: Launch) -> dict[str, str]:
     """Return full name -> node of the spec, of what a launch file starts."""
     name = workspace.package.name
     return {
-        one.path: one.type for one in launch.nodes if one.package == name and one.type in spec.nodes
+        node.path: node.type
+        for node in launch.nodes
+        if node.package == name and node.type in spec.nodes
     }
 
 

@@ -72,7 +72,7 @@ def check(
     asked = {id_ for rule in rules for id_ in rule.ids if not spec or spec.asks(id_)}
     ids = [id_ for id_ in REQUIREMENTS if id_ in asked and (id_ in only or not only)]
     uses.SIBLINGS.clear()
-    uses.SIBLINGS.update(one.name for one in package.siblings)
+    uses.SIBLINGS.update(sibling.name for sibling in package.siblings)
     with contextlib.nullcontext(kept) if kept else scratch_folder() as folder:
         given = package, spec, folder, timeout, progress
         case = Case(*given) if spec else AnyCase(*given)

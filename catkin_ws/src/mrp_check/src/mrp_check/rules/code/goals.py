@@ -65,7 +65,7 @@ def _in_python(source: Source) -> Iterator[tuple[int, tuple[str, str], str]]:
             yield call.lineno, _NEVER, "start(), when all else is made"
         work = source.definition(argument(call, 2, "execute_cb"))
         if isinstance(work, ast.FunctionDef) and not _ASKS & named:
-            loops = (one for one in ast.walk(work) if isinstance(one, (ast.For, ast.While)))
+            loops = (node for node in ast.walk(work) if isinstance(node, (ast.For, ast.While)))
             lasting = [one.lineno for one in loops if _LASTING & _attributes(one)]
             if lasting:
                 yield lasting[0], _CANCELLED, "is_preempt_requested()"

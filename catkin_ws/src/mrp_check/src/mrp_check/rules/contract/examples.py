@@ -122,7 +122,7 @@ def _cause(node: Node, example: Example, ran: Alone, wrong: Message) -> tuple[Wh
 
 
 def _shown(messages: Sequence[Mapping[str, object]]) -> str:
-    shown = "; ".join(_message(one) for one in messages[:4])
+    shown = "; ".join(_message(message) for message in messages[:4])
     return shown + ("; ..." if len(messages) > 4 else "") or "nothing"
 
 

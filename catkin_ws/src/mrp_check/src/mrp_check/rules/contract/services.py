@@ -37,7 +37,7 @@ def _key(node: Node, service: Service) -> str:
 
 
 def _not_offered(node: Node, service: Service) -> Finding:
-    offered = {one.topic for one in node.seen_alone.services}
+    offered = {registration.topic for registration in node.seen_alone.services}
     others = sorted(last_part(name) for name in offered if last_part(name) not in ROS_SERVICES)
     return node.finding(
         "services",
@@ -94,7 +94,9 @@ def _requests(
     place = node.places.asked(node.name, Kind.ASKS, service.name)
     expected = " or ".join(_shown(call.request) for call in service.examples[:4])
     if not asked:
-        others = {last_part(one.topic) for one in node.seen_alone.lookups} - {service.name}
+        others = {last_part(registration.topic) for registration in node.seen_alone.lookups} - {
+            service.name
+        }
         looked = f": it looks for {few(sorted(others))}" if others else ""
         yield node.finding(
             "services",

@@ -139,7 +139,7 @@ def _relayed(node: Node) -> Iterator[Finding]:
     if not sent or not name:
         return
     target = resolved(relay.target, name)
-    published = [one for one in node.seen_alone.messages if one.topic == target]
+    published = [message for message in node.seen_alone.messages if message.topic == target]
     values = [node.value(one, relay.target) for one in published]
     expected = [relay.of(value) for value in sent]
     if values == expected or None in values:

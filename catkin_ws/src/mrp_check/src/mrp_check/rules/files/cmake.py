@@ -40,7 +40,7 @@ def _old(package: Package, model: Model) -> Iterator[Finding]:
     warning where this machine's CMake warns, too. Of MIN...MAX, MAX counts.
     https://cmake.org/cmake/help/latest/command/cmake_minimum_required.html
     """
-    asked = next((one for one in model.calls if one.command == "cmake_minimum_required"), None)
+    asked = next((call for call in model.calls if call.command == "cmake_minimum_required"), None)
     newest = asked.arguments[1].split("...")[-1] if asked and asked.arguments[1:] else ""
     numbers = tuple(map(int, re.findall(r"\d+", newest)))
     if asked and numbers and numbers < releases.CMAKE_LEAST:

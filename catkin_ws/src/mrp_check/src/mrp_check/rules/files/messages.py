@@ -100,7 +100,7 @@ def _is_used(case: Case, path: str) -> bool:
     """Return whether a source that is built, a header, a file in Python or another definition names
     what is made of a definition; with a contract, each one is used."""
     package, targets = case.package, case.model.targets.values()
-    built = {file for one in targets for file in one.sources if file in package.files}
+    built = {file for target in targets for file in target.sources if file in package.files}
     built = built if targets else {*package.of_kind("cpp")}
     others = package.of_kind("header", "python", *uses.DEFINITIONS)
     files = {*built, *others} - {path}
@@ -112,7 +112,7 @@ def _is_used(case: Case, path: str) -> bool:
 
 def _is_of_action(path: str, model: Model) -> bool:
     """Return whether a message is one that an action is made into: code is made of it."""
-    actions = (one for one in model.message_files if one.endswith(".action"))
+    actions = (file for file in model.message_files if file.endswith(".action"))
     made = {name for one in actions for name in uses.generated(one)}
     return path.endswith(".msg") and last_part(path)[: -len(".msg")] in made
 

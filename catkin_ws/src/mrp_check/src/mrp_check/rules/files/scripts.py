@@ -131,7 +131,7 @@ def _of(
     # A byte order mark hides it: the rules about text say so.
     elif not package.bytes(path).startswith(_MARKS):
         yield _no_first_line(package, path)
-    twins = [one for one in package.of_kind("python") if last_part(one) == last_part(path)]
+    twins = [file for file in package.of_kind("python") if last_part(file) == last_part(path)]
     if not package.is_executable(path) and not any(map(package.is_executable, twins)):
         yield Finding(
             "scripts",

@@ -44,12 +44,12 @@ def _findings(case: Case) -> Iterator[Finding]:
 def _unheard(launch: LaunchResult, path: str) -> str | None:
     """Return a topic on which messages came to a node that called no callback at all."""
     seen = launch.seen
-    waits = {one.topic for one in seen.lookups if one.node == path}
+    waits = {registration.topic for registration in seen.lookups if registration.node == path}
     if not launch.sees_callbacks or path in launch.called_back:
         return None
     if path in ends(launch.until_asked()):
         return None
-    if waits - {one.topic for one in seen.services}:
+    if waits - {registration.topic for registration in seen.services}:
         return None  # it waits for a service that nobody offers
     for one in seen.subscriptions:
         if one.node == path and one.topic not in ROS_TOPICS:

@@ -25,7 +25,11 @@ def findings(case: Case) -> Iterator[Finding]:
     missing = stubs.absent(package, step.output, case.spec.is_contract)
     if missing:
         # CMake stops at the first.
-        others = [one for one in case.catkin.model.components if not uses.is_ros_package(one)]
+        others = [
+            component
+            for component in case.catkin.model.components
+            if not uses.is_ros_package(component)
+        ]
         names = [missing, *(one for one in others if one != missing and uses.is_called_so(one))]
         raise NotHere(uses.absent(one, "cpp") for one in names)
     missing = configuring.without_definitions(step.output)

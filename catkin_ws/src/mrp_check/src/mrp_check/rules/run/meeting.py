@@ -42,12 +42,14 @@ class Graph(typing.NamedTuple):
 
 def _findings(case: Case) -> Iterator[Finding]:
     told: set[object] = set()
-    published = {last_part(one.topic) for graph, _ in _graphs(case) for one in graph.publishers}
+    published = {
+        last_part(publisher.topic) for graph, _ in _graphs(case) for publisher in graph.publishers
+    }
     for graph, nodes in _graphs(case):
         for end in graph.subscribers:
             if end.node not in nodes or (end.node, end.topic) in told:
                 continue
-            same = [one for one in graph.publishers if one.topic == end.topic]
+            same = [publisher for publisher in graph.publishers if publisher.topic == end.topic]
             for finding in (
                 _of_types(case, graph, end, same) if same else _alone(case, graph, end, published)
             ):
@@ -111,10 +113,10 @@ def _of_types(case: Case, graph: Graph, end: End, publishers: list[End]) -> Iter
 
 def _alone(case: Case, graph: Graph, end: End, published: set[str]) -> Iterator[Finding]:
     """Yield the Finding about a topic that nobody publishes on."""
-    heard = {one.topic for one in graph.subscribers}
+    heard = {subscriber.topic for subscriber in graph.subscribers}
     near = meant(case, end, graph.publishers, graph.subscribers)
     is_actions = last_part(end.topic) in ("feedback", "result", "status")
-    if is_actions and any(not one.is_up for one in case.nodes.values()):
+    if is_actions and any(not node.is_up for node in case.nodes.values()):
         return  # the action is served by one that did not run
     near.sort(key=lambda one: one.topic in heard)
     file, line = case.places.of_topic(end.node or "", Kind.SUBSCRIBER, end.topic)
@@ -167,10 +169,16 @@ def meant(case: Case, end: End, publishers: list[End], subscribers: list[End]) -
     """Return the publishers that a subscriber waits for in vain, as it has another name for their
     topic: it is alike, or their type is the package's own or plain, and they alone are without a
     partner."""
-    others = [one for one in publishers if one.node and one.node != end.node]
+    others = [
+        publisher for publisher in publishers if publisher.node and publisher.node != end.node
+    ]
     near = [one for one in others if is_like(one, end)]
     heard, published = ({o.topic for o in side} for side in (subscribers, publishers))
-    alone = [one for one in publishers if one.type == end.type and one.topic not in heard]
+    alone = [
+        publisher
+        for publisher in publishers
+        if publisher.type == end.type and publisher.topic not in heard
+    ]
     waiting = {o.topic for o in subscribers if o.type == end.type and o.topic not in published}
     is_one = len({one.topic for one in alone}) == len(waiting) == 1
     return near or [one for one in alone if is_plain(case, end) and is_one and one in others]

@@ -245,7 +245,7 @@ def _source(node: Node, finding: Finding) -> str:
 
 def _is_left_alone(node: Node) -> bool:
     """Return whether a node ended that was to be called back."""
-    heard = {one.topic for one in node.seen_alone.subscriptions}
+    heard = {registration.topic for registration in node.seen_alone.subscriptions}
     files = node.places.sources(node.name)
     if node.package.first_match(files, r"\bSimpleActionClient\b"):
         # Those of the client itself call nothing of the node's.

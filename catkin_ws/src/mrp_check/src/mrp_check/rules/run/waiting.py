@@ -56,7 +56,9 @@ def _findings(case: Case) -> Iterator[Finding]:
     every = asked.of(case.facts, {place.file for place in case.facts.places})
     own = uses.made(case.package)
     # Who reads gains has all of gains/p, too.
-    params = {part for one in case.launches for name in one.params for part in name.split("/")}
+    params = {
+        part for launch in case.launches for name in launch.params for part in name.split("/")
+    }
     for sought in _SOUGHT:
         given = {one.base for one in every if one.kind is sought.gives}
         if sought.asks is Kind.READS:
@@ -116,11 +118,11 @@ def _unwaited(case: Case, node: str) -> Iterator[Finding]:
 
 def _is_launched_with(case: Case, node: str) -> bool:
     """Return whether a launch file starts a node, and one that offers what it asks for."""
-    asks = {one.base for one in case.facts.of(node, Kind.ASKS)}
+    asks = {place.base for place in case.facts.of(node, Kind.ASKS)}
     offers = {
         other
         for other in case.facts.sources
-        if asks & {one.base for one in case.facts.of(other, Kind.OFFERS)}
+        if asks & {place.base for place in case.facts.of(other, Kind.OFFERS)}
     }
     started = [{one.type for one in launch.nodes} for launch in case.launches]
     return any(node in names and names & offers for names in started)
