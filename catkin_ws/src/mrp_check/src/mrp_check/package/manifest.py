@@ -16,8 +16,6 @@ from mrp_check.package.workspace import Workspace
 from mrp_check.package.xml_file import elements, xml_finding
 
 FILE = "package.xml"
-# A comment, or a tag with the name of a package.
-_DEPENDENCY = re.compile(r"<!--.*?-->|<(\w+_depend)\b[^>]*>\s*([\w-]+)\s*<", re.DOTALL)
 
 
 def parse(package: Package) -> tuple[Manifest | None, Finding | None]:
