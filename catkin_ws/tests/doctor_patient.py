@@ -59,7 +59,7 @@ TAKE_OUT = "delete its line from ~/.bashrc (grep -n setup ~/.bashrc) and open a 
 
 LINE = re.compile(r"(\[OK\]   |\[FAIL\] |\[--\]   )([^:]+): (.*)")
 FIX = "       fix: "
-WHY = "       why:  pages/why.html#"
+WHY = "       why:  "
 Check = collections.namedtuple("Check", "status text fixes")
 
 
@@ -76,7 +76,7 @@ class Report:
             if line.startswith(FIX):
                 self.checks[title].fixes.append(line[len(FIX) :])
             elif line.startswith(WHY):
-                self.why[title] = line[len(WHY) :]
+                self.why[title] = line.partition("pages/why.html#")[2]
             else:
                 status, title, text = LINE.fullmatch(line).groups()
                 self.checks[title] = Check(status.strip(" []"), text, [])
@@ -112,8 +112,10 @@ class Patient:
         self.script.parent.mkdir()
         for part in ("doctor.py", "doctor_network.py", "install_packages.sh"):
             shutil.copy(DOCTOR.with_name(part), self.script.parent)
-        for part in ("__init__.py", "releases.py"):
-            name = f"src/mrp_check/src/mrp_check/{part}"
+        parts = ("__init__.py", "releases.py", "contract/__init__.py", "contract/resources.py")
+        files = [f"src/mrp_check/{part}" for part in parts]
+        for file in (*files, "package.xml", "specs/pub_sub.yaml"):
+            name = f"src/mrp_check/{file}"
             self.write(name, (WORKSPACE / name).read_text())
         # The tests about python3 take the real one; it imports rospy slowly.
         python3 = self.write("stand_in/python3", "#!/bin/sh\nexit 0\n", mode=0o755)

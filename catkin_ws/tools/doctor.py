@@ -24,6 +24,7 @@ sys.path[:0] = [TOOLS, os.path.join(os.path.dirname(TOOLS), "src", "mrp_check", 
 
 from doctor_network import UNRESOLVED, host_problem, master, master_pid  # noqa: E402
 from mrp_check import releases  # noqa: E402
+from mrp_check.contract import resources  # noqa: E402
 
 PYTHON_TIMEOUT = 20  # seconds: from a slow disk it takes a few to import rospy
 LOCALHOST = "localhost"
@@ -367,6 +368,7 @@ def examine(machine):
     sys.stdout.reconfigure(errors="backslashreplace")
     colours = {"OK": 32, "FAIL": 31, "--": 33} if sys.stdout.isatty() else {}
     blocked, failed = set(), 0
+    site = resources.site() and resources.site() + "/"
     for title, check, needed, why in CHECKS:
         try:
             result = note(f"skipped: needs {needed}") if needed in blocked else check(machine)
@@ -384,7 +386,7 @@ def examine(machine):
         for command in result.fix.splitlines():
             print(f"       fix: {command}")
         if result.status == "FAIL":
-            print(f"       why:  pages/why.html#{why}")
+            print(f"       why:  {site}pages/why.html#{why}")
     print(f"{len(CHECKS)} checks, {failed} failed")
     return 1 if failed else 0
 

@@ -11,10 +11,10 @@ import os
 import re
 import sys
 
-from why_entries import WORKSPACE, entries, shown_on
+from why_entries import entries, shown_on  # finds the checker
 from why_search import Index
 
-SITE = WORKSPACE / "build" / "docs"
+from mrp_check.contract import resources  # isort:skip
 
 _TRACEBACK = 5000  # characters above an exception
 _WIDE = 300  # characters of a line that is quoted
@@ -55,11 +55,12 @@ def _one_answer(number, one, shown, text):
 
 
 def _link(address):
-    """Return where the pages are, or will be, in this folder: `make docs` builds them."""
-    page, _, anchor = address.partition("#")
-    path = SITE / "pages" / f"{page}.html"
-    unbuilt = "" if path.exists() else " (make docs builds it)"
-    return path.as_uri() + ("#" + anchor if anchor else "") + unbuilt
+    """Return the address of a page; or the one it has once `make docs` has built it."""
+    page, hash_, anchor = address.partition("#")
+    path = f"/pages/{page}.html{hash_}{anchor}"
+    if site := resources.site():
+        return site + path
+    return f"{resources.BUILT_SITE.as_uri()}{path} (make docs builds it)"
 
 
 def decoded(data):

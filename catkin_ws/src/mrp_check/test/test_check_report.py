@@ -12,6 +12,7 @@ import xml.etree.ElementTree as ElementTree
 import jsonschema
 import pytest
 from mrp_check.cli import check as check_command
+from mrp_check.contract import resources
 from mrp_check.contract.finding import Finding
 from mrp_check.report import annotation, github, json_, junit, sarif, terminal
 from mrp_check.report import html as html_report
@@ -146,7 +147,7 @@ def test_page_shows_what_a_package_says_as_text():
 
 
 def test_console_shows_verdicts_causes_first_and_pages(monkeypatch):
-    monkeypatch.setattr(terminal, "SITE", pathlib.Path("/nowhere"))
+    monkeypatch.setattr(resources, "BUILT_SITE", pathlib.Path("/nowhere"))
     text = terminal.text(report(HINTED, RESULT, CAUSE), everything=True)
     assert "  [FAIL] Each node waits for callbacks (spin)" in text
     assert "  [--]   Publishers publish the right values (values)" in text
@@ -191,13 +192,15 @@ def repository(tmp_path):
     return tmp_path / "repo" / "src" / "a_pkg"
 
 
-def test_sarif_has_each_finding_with_its_place_and_its_fix(repository):
+def test_sarif_has_each_finding_with_its_place_and_its_fix(repository, monkeypatch):
+    monkeypatch.setenv("MRP_PAGES", "https://a.example/mrp")
     one = dataclasses.replace(report(CAUSE, RESULT, CHANGE), folder=repository)
     (run,) = sarif.data(one)["runs"]
     assert run["originalUriBaseIds"]["SRCROOT"]["uri"] == f"{repository.parents[1].as_uri()}/"
     rules = run["tool"]["driver"]["rules"]
     assert [rule["id"] for rule in rules] == [*REQUIREMENTS]
-    assert "pages/publisher.html" in rules[[*REQUIREMENTS].index("spin")]["help"]["text"]
+    spin = rules[[*REQUIREMENTS].index("spin")]
+    assert "https://a.example/mrp/pages/publisher.html" in spin["help"]["text"]
     for result, finding in zip(run["results"], one.findings):
         assert rules[result["ruleIndex"]]["id"] == result["ruleId"] == finding.id
         level = "note" if finding.consequence_of else finding.severity

@@ -2,6 +2,7 @@
 """The files beside the Python code: specs, schemas, templates, and defects."""
 
 import functools
+import os
 import pathlib
 import re
 
@@ -9,6 +10,9 @@ import re
 SHARES = ("/opt/ros/noetic/share", "/usr/share")
 
 _HERE = pathlib.Path(__file__).resolve().parent
+
+# Where `make docs` puts the pages.
+BUILT_SITE = _HERE.parents[4] / "build" / "docs"
 
 
 def folder(name: str) -> pathlib.Path:
@@ -18,9 +22,16 @@ def folder(name: str) -> pathlib.Path:
     return in_sources if in_sources.is_dir() else installed
 
 
+def site() -> str:
+    """Return the address of the tutorial's pages: the one in MRP_PAGES; else the folder in which
+    they were built here; else that of a release, from package.xml; else ""."""
+    if address := os.environ.get("MRP_PAGES", ""):
+        return address.rstrip("/")
+    return BUILT_SITE.as_uri() if (BUILT_SITE / "index.html").is_file() else _website()
+
+
 @functools.lru_cache
-def website() -> str:
-    """Return the address of the tutorial's pages, which package.xml has in a release; or ""."""
+def _website() -> str:
     manifest = folder("specs").parent / "package.xml"
     found = re.search(r'<url type="website">(.*)</url>', manifest.read_text())
     return found[1] if found else ""

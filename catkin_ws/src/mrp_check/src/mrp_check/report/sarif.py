@@ -39,10 +39,11 @@ def data(report):
 
 def _rule(id_):
     requirement = REQUIREMENTS[id_]
+    page = terminal.address_of(requirement.page)
     return {
         "id": id_,
         "shortDescription": {"text": requirement.title},
-        "help": {"text": f"{requirement.title}: {requirement.page} of the tutorial explains it."},
+        "help": {"text": f"{requirement.title}: {page} explains it."},
     }
 
 

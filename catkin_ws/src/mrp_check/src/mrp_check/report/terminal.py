@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import os
-import pathlib
 import re
 import shutil
 import textwrap
@@ -16,8 +15,6 @@ from mrp_check.contract.requirements import STAGES
 from mrp_check.contract.verdict import BROKEN, MET, UNCHECKED
 from mrp_check.rules import REQUIREMENTS
 
-# Where `make docs` puts the pages.
-SITE = pathlib.Path(__file__).resolve().parents[5] / "build" / "docs"
 MARKS = {MET: "[OK]  ", BROKEN: "[FAIL]", UNCHECKED: "[--]  "}
 _COLOURS = {
     MET: "32",
@@ -194,17 +191,10 @@ def pages(finding):
 
 
 def address_of(page):
-    """Return where a reader finds a page of the tutorial: at the address of its site, if
-    MRP_PAGES has one; else its file, if it was built here; else at the site that package.xml has in
-    a release; else the page's name."""
-    path, hash_, anchor = page.partition("#")
-    site = os.environ.get("MRP_PAGES", "")
-    if site:
-        return f"{site.rstrip('/')}/{page}"
-    if (SITE / path).is_file():
-        return (SITE / path).as_uri() + hash_ + anchor
-    if site := resources.website():
+    """Return the address of a page of the tutorial; or its name, if nobody knows an address."""
+    if site := resources.site():
         return f"{site}/{page}"
+    path, _, anchor = page.partition("#")
     name = path.rpartition("/")[2].partition(".")[0].replace("_", " ")
     return f"“{name}” of the tutorial" + (f", {anchor}" if anchor else "")
 
