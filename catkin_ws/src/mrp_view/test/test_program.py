@@ -94,11 +94,12 @@ class TestProgram(unittest.TestCase):
                 page.wait_for(lambda: page.ticks, "a message")
 
     def test_hosts_and_origins_where_a_port_is_forwarded(self):
-        """Each combination, asked over HTTP and over the WebSocket."""
-        name = "lab-8765.app.github.dev"
-        with Viewer("--name", name) as viewer:
+        """Each combination, asked over HTTP and over the WebSocket: a name that was given, and
+        that of Codespaces, which has the number of the port that was asked for."""
+        names = ["robot.example", "space-0.app.github.dev"]
+        with Viewer("--name", names[0], extra_env={"CODESPACE_NAME": "space"}) as viewer:
             port = int(viewer.address.rstrip("/").rpartition(":")[2])
-            names, here = [name], [f"localhost:{port}", f"127.0.0.1:{port}"]
+            here = [f"localhost:{port}", f"127.0.0.1:{port}"]
             others = ["evil.example", f"192.0.2.1:{port}"]
             for host in (*names, *here, *others):
                 self.assertEqual(status(port, "/", host), 403 if host in others else 200, host)
