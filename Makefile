@@ -240,6 +240,10 @@ deb: packages-deb  ## make Debian packages of the four nodes (mrp) and of the ch
 release: packages-release  ## tag VERSION=1.2.3 of all packages, to be published by REPOSITORY=https://github.com/OWNER/NAME
 	@catkin_ws/tools/release.py "$(VERSION)" "$(REPOSITORY)" $(WEBSITE)
 
+.PHONY: release-dry-run
+release-dry-run: need-docker packages-release  ## do in a clone what publishing VERSION at REPOSITORY does, and list what it makes
+	@catkin_ws/tools/try_release.sh "$(VERSION)" "$(REPOSITORY)"
+
 .PHONY: release-check
 release-check: packages-release  ## list what a release still lacks
 	@catkin_ws/tools/release.py --check
@@ -327,11 +331,12 @@ docker-build-class: need-docker  ## build the image for docker/class.yaml, which
 	$(IMAGE_OF) --target class --tag mrp-class:$(DEBIAN) -
 
 # For the workflow: an image of a stage, with a list of what is in it and of how it was made, to a registry.
+PUSH := docker buildx build --push --sbom=true --provenance=mode=max
 NAME_runtime := mrp
 NAME_view := mrp-view
 NAME_check := mrp-check
 docker-push-%:
-	$(subst docker build,docker buildx build --push --sbom=true --provenance=mode=max,$(IMAGE_OF)) --target $* \
+	$(subst docker build,$(PUSH),$(IMAGE_OF)) --target $* \
 	  --tag $(REGISTRY)/$(NAME_$*):$(TAG) -
 
 # Without a network: ROS 1 has no authentication, and the nodes talk to one another alone.

@@ -4,7 +4,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 # shellcheck disable=SC2016  # expanded in the container
-exec docker run --rm --volume "$PWD:/mrp" --workdir /mrp "debian:$1-slim" sh -ec '
+exec docker run --rm --network host --volume "$PWD:/mrp" --workdir /mrp "debian:$1-slim" sh -ec '
   { apt-get update && apt-get install -y --no-install-recommends ca-certificates git make; } > /tmp/log 2>&1 ||
     { cat /tmp/log >&2; exit 1; }
   git config --global --add safe.directory /mrp

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""tools/release.py, on a repository that has the packages' manifests and changelogs alone."""
+"""tools/release.py, on a repository that has the packages' manifests and changelogs alone; and
+tools/publish_site.sh, on a bare one."""
 
 import shutil
 import subprocess
@@ -33,6 +34,7 @@ def test_release_is_complete_once_tagged(release):
     before = release("--check")
     assert before.returncode == 1
     assert '[MISSING] every package.xml has <url type="repository">' in before.stdout
+    assert (release("--notes").returncode, release("--notes").stdout) == (1, "")
     version = before.stdout.split("(")[1].split(")")[0]
     done = release(version, "https://forge.example/Somebody/mrp")
     assert done.returncode == 0, done.stderr
@@ -41,6 +43,46 @@ def test_release_is_complete_once_tagged(release):
     assert "### mrp_check\n\n* " in release("--notes").stdout
 
 
+def test_next_release_needs_its_changes_and_bumps_the_version(release, tmp_path):
+    refused = release("9.0.0", "https://forge.example/somebody/mrp")
+    assert refused.returncode == 1
+    assert refused.stderr.startswith(
+        "error: expected a section Forthcoming in CHANGELOG.rst of mrp,"
+    )
+    for path in tmp_path.glob("catkin_ws/src/*/CHANGELOG.rst"):
+        head, text = path.read_text().split("\n\n", 1)
+        path.write_text(
+            f"{head}\n\nForthcoming\n-----------\n* New in {path.parent.name}\n\n{text}"
+        )
+    subprocess.run(["git", "-C", tmp_path, "commit", "--quiet", "-am", "changes"], check=True)
+    done = release("9.0.0", "https://forge.example/somebody/mrp")
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert "[OK]      the tag 9.0.0 is here" in release("--check").stdout
+    assert "### mrp_check\n\n* New in mrp_check\n" in release("--notes").stdout
+
+
 def test_release_needs_a_version_and_an_address(release):
     done = release("1.0", "https://forge.example/somebody/mrp")
     assert done.returncode == 1 and done.stderr.startswith("error: expected make release VERSION=")
+
+
+def test_site_has_the_newest_pages_and_those_of_each_version(tmp_path):
+    git = ["git", "-C", tmp_path / "published"]
+    subprocess.run(["git", "init", "--quiet", "--bare", git[-1]], check=True)
+    (tmp_path / "pages").mkdir()
+    for version in ("1.0.0", "1.1.0"):
+        (tmp_path / "pages" / f"only_in_{version}.html").write_text("")
+        (tmp_path / "pages" / "index.html").write_text(version)
+        publish = WORKSPACE / "tools" / "publish_site.sh"
+        subprocess.run([publish, tmp_path / "pages", version, git[-1]], check=True)
+        (tmp_path / "pages" / f"only_in_{version}.html").unlink()
+
+    def shown(*words):
+        return subprocess.check_output([*git, *words], text=True).split()
+
+    pages = {version: ["index.html", f"only_in_{version}.html"] for version in ("1.0.0", "1.1.0")}
+    in_folders = [f"{version}/{page}" for version in pages for page in pages[version]]
+    listed = shown("ls-tree", "-r", "--name-only", "gh-pages")
+    assert listed == [".nojekyll", *in_folders, *pages["1.1.0"]]
+    for path, version in (("index.html", "1.1.0"), ("1.0.0/index.html", "1.0.0")):
+        assert shown("show", f"gh-pages:{path}") == [version]

@@ -4,9 +4,10 @@
 
 release.py VERSION REPOSITORY [WEBSITE]   write the addresses, commit, and tag
 release.py --check                        list what a release still lacks
-release.py --notes                        print the changelogs of the version as Markdown
+release.py --notes                        print the changelogs of a complete release as Markdown
 """
 
+import contextlib
 import pathlib
 import re
 import subprocess
@@ -34,6 +35,11 @@ def changes(folder, version):
         return None
 
 
+def has_forthcoming(folder):
+    """Say if a package's changelog has the section that becomes the next version's."""
+    return "\nForthcoming\n---" in (folder / "CHANGELOG.rst").read_text()
+
+
 def write_urls(addresses):
     """Write each package.xml's <url>s anew: type -> address."""
     lines = "".join(f'  <url type="{kind}">{addresses[kind]}</url>\n' for kind in URLS)
@@ -45,17 +51,23 @@ def write_urls(addresses):
 
 def release(version, repository, website=""):
     """Commit and tag a version. Raises CalledProcessError if git or catkin refuses."""
+    is_new = parse_package(FOLDERS[0]).version != version
+    if missing := [f.name for f in FOLDERS if is_new and not has_forthcoming(f)]:
+        sys.exit(
+            f"error: expected a section Forthcoming in CHANGELOG.rst of {', '.join(missing)}\n"
+            "fix: catkin_generate_changelog, and rewrite for people what it takes from the commits"
+        )
     owner, name = repository.rstrip("/").split("/")[-2:]
     website = website or f"https://{owner.lower()}.github.io/{name}"
     addresses = (website, repository, f"{repository}/issues")
     write_urls(dict(zip(URLS, addresses)))
     if git("status", "--porcelain", "--untracked-files=no"):
         git("commit", "--quiet", "--all", "--message", f"release: publish at {repository}")
-    if parse_package(FOLDERS[0]).version == version:
-        git("tag", version)
-    else:
+    if is_new:
         prepare = ("catkin_prepare_release", "--no-push", "--non-interactive", "--version", version)
         subprocess.run(prepare, cwd=ROOT, check=True)
+    else:
+        git("tag", version)
 
 
 def check():
@@ -92,7 +104,9 @@ def main():
     if arguments == ["--check"]:
         sys.exit(not check())
     if arguments == ["--notes"]:
-        return notes()
+        with contextlib.redirect_stdout(sys.stderr):
+            is_complete = check()
+        return notes() if is_complete else sys.exit(1)
     is_version = bool(arguments) and re.fullmatch(r"\d+\.\d+\.\d+", arguments[0])
     if not is_version or len(arguments) not in (2, 3) or "://" not in arguments[1]:
         sys.exit(
