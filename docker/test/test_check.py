@@ -1,11 +1,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The image mrp-check, as somebody uses it whose package is not ours."""
 
+import json
 import os
 import pathlib
+import shutil
 
 import pytest
-from containers import inspect, run
+from containers import ROOT, inspect, run
 
 IMAGE = "mrp-check:" + os.environ.get("DEBIAN", "trixie")
 # It needs messages that Debian does not have.
@@ -64,6 +66,23 @@ def test_it_checks_a_package_that_needs_turtlesim(field, code, says, tmp_path):
         pathlib.Path(tmp_path, name).write_text(text.replace("->x", field))
     done = run("docker", "run", "--rm", f"-v{tmp_path}:/pkg", IMAGE, "/pkg", check=False)
     assert done.returncode == code and says in done.stdout, done.stdout
+
+
+def test_gradescopes_zip_installs_nothing_in_it_and_gives_points(tmp_path):
+    """The folders are those that Gradescope makes."""
+    source, submission = tmp_path / "source", tmp_path / "submission"
+    run(ROOT / "catkin_ws/tools/make_autograder.py", tmp_path / "autograder.zip")
+    run("/usr/bin/python3", "-m", "zipfile", "-e", tmp_path / "autograder.zip", source)
+    shutil.copytree(ROOT / "catkin_ws/src/mrp", submission, ignore=shutil.ignore_patterns("doc"))
+    (tmp_path / "results").mkdir()
+    shutil.copy(source / "run_autograder", tmp_path)
+    mounted = ("--network=none", f"-v{tmp_path}:/autograder", "--entrypoint=bash")
+    script = "bash /autograder/source/setup.sh && bash /autograder/run_autograder"
+    done = run("docker", "run", "--rm", *mounted, IMAGE, "-c", script)
+    results = json.loads((tmp_path / "results" / "results.json").read_text())
+    tests = results["tests"]
+    assert tests and all(test["score"] == test["max_score"] for test in tests), done.stdout
+    assert "Installing" not in done.stdout
 
 
 def test_it_says_what_it_is():

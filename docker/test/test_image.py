@@ -105,6 +105,9 @@ def sources(image):
 
 
 def test_page_says_what_is_in_it(image, image_layers):
+    column = {"mrp:trixie": "Debian 13", "mrp:bookworm": "Debian 12"}.get(image)
+    if not column:
+        pytest.skip("the page doesn't show this release")
     owners = sources(image)
     measured = {DEBIAN: size(image_layers[0]), **dict.fromkeys(PARTS, 0)}
     for member in (member for layer in image_layers[1:] for member in layer):
@@ -115,7 +118,6 @@ def test_page_says_what_is_in_it(image, image_layers):
         measured[part] += member.size
     measured["all"] = sum(measured.values())
 
-    column = "Debian 13" if image == "mrp:trixie" else "Debian 12"
     with RECORDED.open() as file:
         written = {row["what"]: float(row[column]) for row in csv.DictReader(file)}
     assert written.keys() == measured.keys()
@@ -126,28 +128,7 @@ def test_page_says_what_is_in_it(image, image_layers):
     assert inspect(image)["Size"] == pytest.approx(measured["all"], rel=0.001)
 
 
-def test_opt_mrp_is_the_install_space(files):
-    for name in (
-        "lib/mrp/publisher_cpp_node",
-        "lib/mrp/subscriber_py_node.py",
-        "share/mrp/launch/pub_sub.launch",
-        "share/mrp/package.xml",
-    ):
-        assert "opt/mrp/" + name in files
-
-
 def test_ros_is_debians_own(image):
     lines = dpkg_query(image, "${source:Package}\t${Maintainer}\n").splitlines()
     makers = {line.split("\t")[1] for line in lines if re.match(r"ros2?-", line)}
     assert makers and all(maker.endswith("debian.org>") for maker in makers), makers
-
-
-def test_no_package_is_half_installed(image):
-    assert docker("run", "--rm", "--entrypoint", "dpkg", image, "--audit") == ""
-
-
-def test_config(image):
-    config = inspect(image)["Config"]
-    assert config["User"] == "ros"
-    assert config["StopSignal"] == "SIGINT"
-    assert config["Cmd"] == ["roslaunch", "mrp", "pub_sub.launch"]

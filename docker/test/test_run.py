@@ -92,16 +92,10 @@ def test_docker_stop_ends_roslaunch(image):
         assert log(name)[-1].endswith("done"), "\n".join(log(name))
 
 
-def test_arguments_reach_the_command(image):
-    assert docker("run", "--rm", image, "printf", "%s.", "--help", "a b") == "--help.a b."
-
-
-def test_exit_code_is_that_of_the_command(image):
-    assert run("docker", "run", "--rm", image, "sh", "-c", "exit 3", check=False).returncode == 3
-
-
-def test_user_is_not_root(image):
-    assert docker("run", "--rm", image, "id", "-un") == "ros"
+def test_command_gets_its_arguments_is_not_root_and_gives_the_exit_code(image):
+    command = ("sh", "-c", 'id -un; printf "%s." "$@"; exit 3', "sh", "--help", "a b")
+    done = run("docker", "run", "--rm", image, *command, check=False)
+    assert (done.returncode, done.stdout) == (3, "ros\n--help.a b.")
 
 
 def test_no_port_is_published(running):
