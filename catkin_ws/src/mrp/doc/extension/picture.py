@@ -51,11 +51,15 @@ class Graph(Picture):
     file = "graphs.json"
 
     def draw(self, graph):
-        lines = ["digraph {", "rankdir=LR", "bgcolor=transparent", 'node [fontname="sans-serif"]']
+        lines = ["digraph {", "rankdir=LR", "ranksep=0.35", "bgcolor=transparent"]
+        lines.append('node [fontname="sans-serif"]')
         for topic, type_ in graph["topics"].items():
             lines.append(f'"topic {topic}" [shape=box label="{topic}\\n{type_}"]')
         for node in graph["nodes"]:
-            lines.append(f'"{node}" [shape=ellipse]')
+            # On two lines, so that a phone has room for all of it.
+            group, _, name = node.rpartition("/")
+            label = f"{group}/\\n{name}" if group else node
+            lines.append(f'"{node}" [shape=ellipse label="{label}"]')
         for node, topic in graph["publishers"]:
             lines.append(f'"{node}" -> "topic {topic}"')
         for node, topic in graph["subscribers"]:
