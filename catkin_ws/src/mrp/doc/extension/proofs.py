@@ -39,12 +39,16 @@ def _mark(app, doctree):
             claims = {block.text: block.node["tests"], **claims}
         if claims:
             marked.append((block, claims))
+        elif "to-prove" in block.node["classes"]:
+            logger.warning("no row of the ledger proves: %s", block.text, location=block.node)
     app.env.metadata[page]["claims"] = [(_section(one.node), claims) for one, claims in marked]
     # A book has no boxes (book.py).
     if app.builder.name != "html" or not marked:
         return
     boxes = []
     for number, (block, claims) in enumerate(marked):
+        if "to-prove" in block.node["classes"]:
+            continue  # within a question, where a mark would be one more button
         label = html.escape(f"Proved: {' '.join(claims)}")
         mark = f'<button class="proof" popovertarget="proof-{number}" aria-label="{label}">'
         block.node.append(nodes.raw("", f" {mark}&#10003;</button>", format="html"))
@@ -136,4 +140,4 @@ def setup(app):
     app.connect("doctree-read", _mark)
     app.connect("doctree-resolved", _fill)
     app.connect("env-check-consistency", _check_others)
-    return {"parallel_read_safe": False, "env_version": 3}
+    return {"parallel_read_safe": False, "env_version": 4}

@@ -3,8 +3,8 @@
 
 .. question:: NAME
    :right: 2                      the number of the right answer, from 1
-   :test: mrp/values/test_...    the test that backs it, or
-   :output: NAME                  the recorded console that shows it
+   :output: NAME                  the recorded console that shows it; without it, the page's ledger
+                                  (ledger.py) proves what is said to the right answer
 
    What is asked.
 
@@ -21,7 +21,6 @@ import json
 import pathlib
 import zipfile
 
-import cases
 from docutils import nodes
 from docutils.parsers.rst import directives
 from sphinx.util.docutils import SphinxDirective
@@ -35,13 +34,11 @@ class Question(SphinxDirective):
     has_content = True
     option_spec = {
         "right": directives.positive_int,
-        "test": directives.unchanged_required,
         "output": directives.unchanged_required,
     }
 
     def run(self):
         name, right = self.arguments[0], self.options.get("right")
-        self._hold_to_proof()
         content = nodes.container()
         self.state.nested_parse(self.content, self.content_offset, content)
         *prompt, choices = content.children or [None]
@@ -52,17 +49,12 @@ class Question(SphinxDirective):
                 "expected what to say to each answer, and :right: as the number of one of them; "
                 f"found {len(choices)} answers and :right: {right}"
             )
+        if "output" in self.options:
+            recorded(self, "outputs.json", self.options["output"])
+        else:
+            choices[right - 1][1]["classes"].append("to-prove")  # see proofs.py
         self._keep(name, right, prompt, choices)
         return self._drawn(name, right, prompt, choices)
-
-    def _hold_to_proof(self):
-        proof, output = self.options.get("test"), self.options.get("output")
-        if bool(proof) == bool(output):
-            raise self.error("expected one of :test: and :output:")
-        if output:
-            recorded(self, "outputs.json", output)
-        elif not cases.find(proof):
-            raise self.error(f"expected the name of a test; found {proof}")
 
     def _keep(self, name, right, prompt, choices):
         kept = self.env.metadata[self.env.docname].setdefault("questions", [])
