@@ -81,7 +81,7 @@ def learn(browser, folder):
             f"PYTHONPATH={WORKSPACE}/src/mrp_check/src "
             "/usr/bin/python3 -m mrp_check.cli.learn exercises",
             pathlib.Path(scratch),
-            until="expected:",
+            until="was never closed",
         )
     for mode in THEMES:
         browser.driver.get("data:text/html;base64," + base64.b64encode(page(text, mode)).decode())
