@@ -10,6 +10,7 @@ _MISSED = """
 return [...document.querySelectorAll("a[href], button, input:not([type=hidden]), [role=button]")]
   .filter((one) => one.checkVisibility({visibilityProperty: true}))
   .filter((one) => one.type !== "radio" || one.checked)  // the arrow keys lead to the others
+  .filter((one) => !one.matches(".back-to-top"))  // comes and goes while a reader scrolls
   .filter((one) => !reached.has(one))
   .map((one) => one.outerHTML.slice(0, 200));
 """
