@@ -326,6 +326,15 @@ def test_viewer_is_restarted(browser, core):
     browser.open("about:blank")
 
 
+def test_there_is_no_master_yet(browser):
+    env = {"ROS_MASTER_URI": f"http://localhost:{free_port()}"}
+    with Viewer("--settle", "0", extra_env=env) as alone:
+        browser.open(alone.address)
+        wait_for_text(browser, "#status", "No master at")
+        wait_for_text(browser, "#findings", "No node is running")
+    browser.open("about:blank")
+
+
 def test_browser_is_offline_for_a_while(each_page):
     each_page.run("dispatchEvent(new Event('offline'))")
     wait_for_text(each_page, "#status", "connection to the viewer is lost")

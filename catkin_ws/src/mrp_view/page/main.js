@@ -132,7 +132,8 @@ function showFindings() {
     if (latest?.tutorial) item.append(html("a", { href: `tutorial/${finding.page}` }, "Read more in the tutorial"));
     return item;
   });
-  if (!items.length) items.push(html("li", {}, "Everything looks normal."));
+  const words = latest?.graph.nodes.length ? "Everything looks normal." : "No node is running, so there is nothing to see yet.";
+  if (!items.length) items.push(html("li", {}, words));
   byId("findings").replaceChildren(...items);
 }
 
