@@ -66,8 +66,10 @@ def test_text_has_contrast(browser, mode):
     checks.assert_none(checks.contrast(browser))
 
 
-def test_screenshot(browser, view, mode):
+def test_screenshot(browser, view):
     _, size, page = view
+    mode = "dark" if size == "phone" else "light"
+    browser.prefer(mode)
     width, _ = SIZES[size]
     height = min(browser.run("return document.scrollingElement.scrollHeight"), TALLEST)
     shot = browser.command(

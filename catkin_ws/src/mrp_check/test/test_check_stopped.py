@@ -76,8 +76,11 @@ def test_one_that_hangs(tmp_path, seconds):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-@pytest.mark.parametrize("what", [["--class"], []], ids=["class", "package"])
+@pytest.mark.parametrize(
+    ("what", "number"),
+    [(["--class"], signal.SIGTERM), ([], signal.SIGINT)],
+    ids=["class", "package"],
+)
 def test_a_signal_ends_all(tmp_path, monkeypatch, seconds, what, number):
     """What runs at that moment is ended, and nothing is left of it, in no folder either."""
     scratch = tmp_path / "scratch"
