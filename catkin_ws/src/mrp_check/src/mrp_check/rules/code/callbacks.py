@@ -74,17 +74,8 @@ class EarlyCallback(PythonRule):
                     )
 
     def _calls_back(self, call: ast.Call) -> str:
-        """Return what comes to a callback that a call is given; nothing if none comes.
-
-        A class of the package's own may hand it on to a subscriber of its own.
-        """
-        name = self.source.dotted(call.func) or ""
-        module, _, class_ = name.rpartition(".")
-        own = [one for one in self.package.of_kind("python") if one.endswith(f"/{module}.py")]
-        is_own = class_[:1].isupper() and any(
-            "rospy.Subscriber(" in self.package.text(one) for one in own
-        )
-        return _CALLING.get(name, "message" if module and is_own else "")
+        """Return what comes to a callback that a call is given; nothing if none comes."""
+        return _CALLING.get(self.source.dotted(call.func) or "", "")
 
     def _made_after(
         self, call: ast.Call, called: set[Defined | None]
