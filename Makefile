@@ -105,6 +105,7 @@ $(BUILT_WHOLE): $(call sources,catkin_ws/src)
 	@touch $@ $(BUILT_TUTORIAL) $(BUILT_LABS)
 
 $(BUILT_LABS): $(call sources,catkin_ws/src/mrp) $(call sources,catkin_ws/src/mrp_labs)
+	@$(if $(wildcard $@),,echo "Building the labs: that takes a minute or two, this time only ...")
 	@$(IN_WORKSPACE) $(CATKIN_MAKE) $(if $(wildcard $(BUILT_WHOLE)),$(WHOLE),$(LABS)); $(FOR_EDITORS)
 	@touch $@ $(BUILT_TUTORIAL)
 
@@ -128,8 +129,8 @@ test-rest: packages-test-all $(BUILT_WHOLE)  ## run the tests that make test lea
 	@$(IN_WORKSPACE) $(ALONE) source devel/setup.bash; tools/run_tests.sh slow
 
 .PHONY: labs
-labs: packages-lab  ## list the labs, small demos of one fact each, in an order to learn them
-	@/usr/bin/python3 catkin_ws/tools/lab.py --list
+labs: packages-lab  ## list ten labs to start with, small demos of one fact each; ALL=1: all of them
+	@/usr/bin/python3 catkin_ws/tools/lab.py --list $(if $(ALL),--all)
 
 # It looks up the name before it builds anything.
 .PHONY: lab

@@ -105,7 +105,7 @@ def test_a_new_lab_is_in_the_list(copy):
     labs = copy / "src" / "mrp_labs"
     (labs / "launch" / "new_lab.launch").write_text("<!-- It is new. -->\n<launch/>\n")
     append(labs / "labs.yaml", LAB)
-    printed = run(copy / "tools" / "lab.py", "--list").stdout
+    printed = run(copy / "tools" / "lab.py", "--list", "--all").stdout
     assert printed.endswith("  It is new.\n    make lab NAME=new_lab\n\n")
 
 

@@ -6,6 +6,7 @@ import re
 import pytest
 import yaml
 from front_door import make
+from lab import MARK, Run
 from mrp_testing.ports import free_port
 from mrp_testing.process import Process, processes_with
 from mrp_testing.waiting import wait_until
@@ -27,12 +28,14 @@ def own(folder):
 def test_list_has_every_lab_with_its_claim():
     launch_files = {path.stem: path.read_text() for path in FOLDER.glob("launch/*.launch")}
     assert len(launch_files) == 50
-    printed = make("labs").stdout
+    printed = make("labs", "ALL=1").stdout
     assert sorted(re.findall(r"^    make lab NAME=(\w+)$", printed, re.MULTILINE)) == sorted(
         launch_files
     )
     assert printed.startswith("Ten to start with:\n\n")
-    assert len(SECTIONS["Ten to start with"]) == 10
+    ten = make("labs").stdout
+    assert ten.count("make lab NAME=") == 10 and printed.startswith(ten.split("40 more")[0])
+    assert ten.endswith("\n40 more: make labs ALL=1\n")
     words = " ".join(printed.split())
     for name, text in launch_files.items():
         claim = re.match(r"<!-- (.*) -->\n", text).group(1)
@@ -67,7 +70,26 @@ def test_entry_has_patterns_to_look_for_and_a_sum(name):
 def test_unknown_name_says_which_labs_exist(name, found):
     with Process(LAB, name) as lab:
         assert lab.wait() == 1
-    assert lab.lines == [f"error: expected make lab NAME=LAB; {found} All {len(LABS)}: make labs"]
+    assert lab.lines == [
+        f"error: expected make lab NAME=LAB; {found} All {len(LABS)}: make labs ALL=1"
+    ]
+
+
+@pytest.mark.quick
+def test_what_the_twin_says_is_marked_once(capsys):
+    lines = [
+        f"[{n}.5] sub_{here} received {n} from pub_{there}"
+        for n in (3, 4)
+        for here in ("py", "cpp")
+        for there in ("cpp", "py")
+    ]
+    with Run() as run:
+        run.start("echo '" + "\n".join(lines) + "'")
+        run.wait(["sub_py received [34] from pub_py", "sub_cpp received 4 from pub_py"], MARK)
+    printed = capsys.readouterr().out.splitlines()
+    assert [line for line in printed if line.endswith(MARK)] == [
+        line + MARK for line in (*lines[:4], lines[-1])
+    ]
 
 
 @pytest.mark.slow

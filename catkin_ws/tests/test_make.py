@@ -53,9 +53,11 @@ def test_run_builds_the_tutorial_and_a_whole_workspace_stays_whole(copy):
     marks = [devel / ".built_whole", devel / ".built_labs"]
     changed = ("--what-if", "catkin_ws/src/mrp/src/publisher_cpp_node.cpp")
     assert tutorial not in make("run", "--dry-run", *changed, root=copy).stdout
+    assert "this time only" not in make("lab", "--dry-run", *changed, root=copy).stdout
     for mark in marks:
         mark.rename(copy / mark.name)
     assert tutorial in make("run", "--dry-run", *changed, root=copy).stdout
+    assert "this time only" in make("lab", "--dry-run", *changed, root=copy).stdout
     for mark in marks:
         (copy / mark.name).rename(mark)
 

@@ -40,8 +40,12 @@ def test_package_is_right_at_once(language, nodes, tmp_path):
     assert files(package) == FILES | nodes
     texts = [(package / name).read_text() for name in FILES | nodes]
     assert [
-        word for word in ("my_package", "MyPackage", "CHECKER", "|  ") for t in texts if word in t
+        word
+        for word in ("my_package", "MyPackage", "PACKAGE_PATH", "CHECKER", "|  ")
+        for t in texts
+        if word in t
     ] == []
+    assert f"    make check ANY=1 PKG={package}\n" in (package / "README.md").read_text()
     yaml.safe_load((package / ".github/workflows/check.yml").read_text())
     # At once: run_tests builds what the test starts.
     printed = scratch.catkin_make(tmp_path, "run_tests")

@@ -59,14 +59,17 @@ def steps_of(name, entry):
     return steps if "start" in steps[0] else [start, *steps]
 
 
-def print_list():
-    """Print each lab's claim, and the command that runs it."""
+def print_list(all_):
+    """Print each lab's claim, and the command that runs it: of the first section, or of all."""
     signal.signal(signal.SIGPIPE, signal.SIG_DFL)  # as when `less` is closed
-    for section, labs in read_labs().items():
+    first, *others = read_labs().items()
+    for section, labs in [first, *others] if all_ else [first]:
         print(f"{section}:\n")
         for name in labs:
             print(textwrap.fill(claim_of(name), 98, initial_indent="  ", subsequent_indent="  "))
             print(f"    make lab NAME={name}\n")
+    if not all_:
+        print(f"{sum(len(labs) for _, labs in others)} more: make labs ALL=1")
 
 
 class Run:
@@ -125,11 +128,18 @@ class Run:
                 self.lines.put((program, text))
 
     def wait(self, patterns, mark="", never=None):
-        """Print lines until each pattern has been seen; put a mark behind the first line of each.
+        """Print lines until each pattern has been seen, and mark them.
+
+        What a node in Python says is marked, too, if that in C++ is looked for, and the other way
+        round. Of lines that only differ in their numbers, the first one is marked.
 
         Raises NotSeenError if one of them does not come, or a line comes that must not.
         """
         left = [patterns] if isinstance(patterns, str) else list(patterns)
+        of_both = re.compile(
+            "|".join(re.sub(r"_(py|cpp)(?![a-z])", r"_(?:py|cpp)", p) for p in left)
+        )
+        marked = set()  # lines without their numbers
         end = time.monotonic() + DEADLINE
         while left:
             try:
@@ -144,7 +154,10 @@ class Run:
             if never and re.search(never, line):
                 raise NotSeenError(f"expected no such line: {line}")
             missing = [pattern for pattern in left if not re.search(pattern, line)]
-            if len(missing) < len(left) and mark:
+            without_numbers = re.sub(r"\b[\d.]+", "", line)
+            first = of_both.search(line) and without_numbers not in marked
+            if mark and (first or len(missing) < len(left)):
+                marked.add(without_numbers)
                 self.say(line + mark, "1;32")
             else:
                 self.show(program, line)
@@ -226,17 +239,18 @@ def find(name):
     near += [lab for lab in difflib.get_close_matches(name, labs, 5, 0.6) if lab not in near]
     found = f"there is no lab {name!r}" if name else "NAME is missing"
     near = f" The nearest: {', '.join(near)}." if near else ""
-    sys.exit(f"error: expected make lab NAME=LAB; {found}.{near} All {len(labs)}: make labs")
+    sys.exit(f"error: expected make lab NAME=LAB; {found}.{near} All {len(labs)}: make labs ALL=1")
 
 
 def main():
     parser = argparse.ArgumentParser(description="Run a lab, and mark what shows its claim.")
     parser.add_argument("name", nargs="?", default="", help="of the lab, such as latch")
-    parser.add_argument("--list", action="store_true", help="list all labs instead")
+    parser.add_argument("--list", action="store_true", help="list ten labs to start with instead")
+    parser.add_argument("--all", action="store_true", help="list all of them")
     parser.add_argument("--check", action="store_true", help="only say whether there is such a lab")
     options = parser.parse_args()
     if options.list:
-        return print_list()
+        return print_list(options.all)
     entry = find(options.name)
     if options.check:
         return None

@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Write a package to start from: one node, its launch file, its test, and a CI file.
 
-The templates are in new_package/: my_package, MyPackage and CHECKER in them are replaced. A line
-that begins with "py|" is only there with Python, "cpp|" with C++, "both|" with both, "one|" with
-one of them, "no_py|" without Python, and "no_cpp|" without C++.
+The templates are in new_package/: my_package, MyPackage, PACKAGE_PATH and CHECKER in them are
+replaced. A line that begins with "py|" is only there with Python, "cpp|" with C++, "both|" with
+both, "one|" with one of them, "no_py|" without Python, and "no_cpp|" without C++.
 """
 
 import argparse
@@ -77,6 +77,7 @@ def write(folder, language):
     words = {
         "my_package": folder.name,
         "MyPackage": "".join(part.capitalize() for part in folder.name.split("_")),
+        "PACKAGE_PATH": str(folder),
         "CHECKER": checker(),
     }
     for template in sorted(path for path in TEMPLATES.rglob("*") if path.is_file()):
