@@ -233,6 +233,28 @@ def test_names_paths_and_numbers_do_not_count(expected, text, index):
     assert not found if expected == ["outside"] else found & set(expected)
 
 
+# What beginners meet: another entry to the same line would send them astray.
+@pytest.mark.parametrize(
+    ("expected", "text"),
+    [
+        ("package-is-there", "mkdir: cannot create directory ‘/home/you/launch’: File exists"),
+        ("files-of-root", "mkdir: cannot create directory '/home/you/launch': Permission denied"),
+        ("no-such-file", "mkdir: cannot create directory 'src/launch': No such file or directory"),
+        ("no-such-file", "touch: cannot touch 'src/a.py': No such file or directory"),
+        ("command-not-found", "bash: rosrum: command not found"),
+        ("script-crlf", "$'\\r': command not found"),
+        ("no-such-target", "make: *** No rule to make target 'check'.  Stop."),
+        ("library-gone", "make[2]: *** No rule to make target 'a.so', needed by 'b'.  Stop."),
+        ("header-not-found", "fatal error: std_msgs/Uint32.h: No such file or directory"),
+        ("no-such-member", "AttributeError: 'TalkerNode' object has no attribute 'publsher'"),
+        ("nosetests-not-found", "nosetests not found"),
+        ("tutorial-not-built", "ModuleNotFoundError: No module named 'mrp_check.cli'"),
+    ],
+)
+def test_a_clear_answer_stands_alone(expected, text, index):
+    assert names(index, text) == [expected]
+
+
 def test_make_why_answers_a_text():
     text = "RLException: [a.launch] requires the '$(arg x)' arg to be \"set\""
     done = make("why", f"TEXT={text}")

@@ -98,16 +98,20 @@ _ROS = re.compile(
     re.IGNORECASE,
 )
 _WORD = re.compile(r"[^\W\d_]+|\d+")
-# A name in quotes or brackets is somebody's own: that of a package, a topic, a parameter.
+# A name in quotes or brackets is somebody's own: that of a package, a topic, a parameter. So is a
+# command that isn't found.
 _NAME = re.compile(
     r"""'[^'\s]+'|"[^"\s]+"|\[[^][\s]+\]|'(?:[\w:]+ )?~?\w+(?:::|[(<])[^'\n]*'"""
     r"|\b[A-Z]+(?:_[A-Z]+){2,}\b|\b(?:ros|python3?|lib\w+)-[\w.-]+"
+    r"|[^\s:]+(?=: command not found)|(?<=: #: )[^\s:]+(?=: not found)|(?<=command not found: )\S+"
 )
 _NO_MODULE = re.compile(r"No module named ([\w.]+)")  # Python 2 has no quotes
+_KIND = re.compile("'(module|NoneType)' object")  # no name, though in quotes
 # How much of an entry's words a text must have, or how much of the text's words the entry must
 # explain; and the least sum of the two.
 _OF_ENTRY, _OF_TEXT, _BOTH = 0.55, 0.6, 1.1
-_LEAST = 10  # the weight of the words that both have
+_LEAST = 11  # the weight of the words that both have
+_NEAR = 0.85  # of the score of a better answer to the same lines
 _RARE, _CANDIDATES = 80, 60  # texts of entries
 _TOGETHER = 2  # lines: messages are broken into that many
 _LONG = 2000  # characters: a line is cut there
@@ -211,13 +215,9 @@ class Index:
         lines = text.splitlines()
         found = self._answers(line for line in lines if not _ENDING.fullmatch(line.strip()))
         found = found or self._answers(lines)
+        found = [a for a in found if not any(_outdoes(better, a) for better in found)]
         last = [answer for answer in found if answer.entry.above][:1]
-        causes = [
-            answer
-            for answer in found
-            if not answer.entry.above
-            and not any(a.lines == answer.lines and a.score > 1.2 * answer.score for a in last)
-        ]
+        causes = [answer for answer in found if not answer.entry.above]
         return [*causes[: count - len(last)], *last]
 
     def _answers(self, lines):
@@ -266,9 +266,15 @@ class Index:
         return sum(self._weight.get(word, 0) for word in words) or 1.0
 
 
+def _outdoes(better, answer):
+    """Say whether an answer explains lines of another one much better."""
+    return answer.score < _NEAR * better.score and not {*better.lines}.isdisjoint(answer.lines)
+
+
 def _text(text, **more):
     """Return the words of a text, with pairs of words, and the words of its names."""
     readable = _NO_MODULE.sub(r"No module named '\1'", text)
+    readable = _KIND.sub(r"\1 object", readable)
     readable = _ROS2.sub(f" {_OF_ROS2} ", readable)
     readable = mask(_FOLDERS.sub(lambda match: " optros " if match[1] else "", readable))
     names = {name.strip("'\"[]").lower() for name in _NAME.findall(readable)} - {""}
