@@ -143,10 +143,10 @@ known-lab:
 
 # It builds the package in a folder of its own, so nothing of this workspace need be built before.
 .PHONY: check
-check: packages-check  ## check the package at PKG against the tutorial's contract, or against SPEC; ANY=1: without one
+check: packages-check  ## check the package at PKG against the tutorial's contract, or against SPEC; ANY=1: without one; ALL=1: show notes, too
 	@test -n "$(PKG)" || { echo "error: expected make check PKG=PATH, the folder of a package" >&2; exit 2; }
 	@$(IN_ENVIRONMENT) PYTHONPATH=catkin_ws/src/mrp_check/src exec /usr/bin/python3 \
-	  catkin_ws/src/mrp_check/scripts/check "$(PKG)" $(if $(ANY),--any) $(if $(SPEC),--spec "$(SPEC)")
+	  catkin_ws/src/mrp_check/scripts/check "$(PKG)" $(if $(ANY),--any) $(if $(ALL),--all) $(if $(SPEC),--spec "$(SPEC)")
 
 # LANGUAGE on the command line only: as a variable of the environment, it is the desktop's own.
 .PHONY: new

@@ -59,11 +59,19 @@ def test_folder_without_manifest_names_the_package_in_it(tmp_path):
     assert (data["verdict"], data["findings"]) == ("unchecked", [])
 
 
+def test_a_package_without_the_contracts_nodes_may_need_no_contract(tmp_path):
+    manifest = (WORKSPACE / "src" / "mrp" / "package.xml").read_text()
+    (tmp_path / "package.xml").write_text(manifest.replace("<name>mrp<", "<name>laser_filter<"))
+    other = run(tmp_path, "--only", "manifest")
+    assert "check: laser_filter has none of the contract's nodes. If it's a" in other.stderr
+    assert "contract's nodes" not in run(WORKSPACE / "src" / "mrp", "--only", "manifest").stderr
+
+
 def test_timing_shows_when_each_part_began():
     done = run(WORKSPACE / "src" / "mrp", "--only", "manifest", "--timing")
     shown = re.findall(r"check: +(\d+\.\d) s  (.+)\n", done.stderr)
     seconds = [float(passed) for passed, _ in shown]
-    assert [what for _, what in shown] == ["stage files", "the end"], done.stderr
+    assert [what for _, what in shown] == ["looking at the files", "the end"], done.stderr
     assert seconds == sorted(seconds)
 
 
@@ -79,7 +87,7 @@ def test_mrp_check_finds_the_package_and_static_only_reads(tmp_path):
     assert found == [("python-syntax", "src/publisher_py_node.py")], done.stdout
     assert not {"compile", "values"} & {*data["requirements"]}
     assert done.returncode == 1
-    assert "stage static" in done.stderr and "stage build" not in done.stderr
+    assert "reading the sources" in done.stderr and "at the build" not in done.stderr
 
 
 def test_a_contract_replaces_no_file(tmp_path):

@@ -167,7 +167,9 @@ def test_console_shows_one_cause_once_and_notes_on_request():
     assert "It is not kept." not in text and "No value came." not in text
     one.left_out = ["values"]
     assert "[OK]" not in terminal.text(one)
-    assert terminal.text(one).endswith("Errors: 3; warnings: 0 (--all shows 2 more).")
+    assert terminal.text(one).endswith(
+        "Errors: 3; warnings: 0 (2 more with --all; with make: ALL=1)."
+    )
     assert "[OK]" in terminal.text(one, everything=True)
 
 

@@ -273,6 +273,12 @@ def run_package(options):
             for one in package.siblings:
                 print(f"check: builds {one.name} with {package.name}.", file=sys.stderr)
             say_how_apart()
+            if contract and not _names_a_node(package, contract):
+                print(
+                    f"check: {package.name} has none of the contract's nodes. If it's a package of"
+                    " your own, add --any (with make: ANY=1).",
+                    file=sys.stderr,
+                )
             kept = None
             if scratch not in package.root.parents:  # what was unpacked is not there again
                 kept = stack.enter_context(kept_folder(marking.checker()))
@@ -303,6 +309,13 @@ def run_package(options):
     if report.reason:
         print(f"check: {report.reason}", file=sys.stderr)
     return report.verdict
+
+
+def _names_a_node(package, contract):
+    """Return whether a node of the contract is in a package: as a file, or in CMakeLists.txt."""
+    stems = {pathlib.Path(path).stem for path in package.files}
+    built = package.text("CMakeLists.txt") if "CMakeLists.txt" in package.files else ""
+    return any(name in stems or name in built for name in contract.nodes)
 
 
 def write_contract(options):

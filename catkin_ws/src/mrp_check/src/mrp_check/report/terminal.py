@@ -235,7 +235,7 @@ def summary(report):
     if report.left_out:
         errors = sum(one.severity == ERROR for one in causes_)
         notes = len(report.findings) - errors - warnings
-        rest = f" (--all shows {notes} more)" if notes else ""
+        rest = f" ({notes} more with --all; with make: ALL=1)" if notes else ""
         return f"Errors: {errors}; warnings: {warnings}{suppressed}{rest}."
     kind = "public requirements" if report.is_public else "requirements"
     met, broken = verdicts.count(MET), verdicts.count(BROKEN)

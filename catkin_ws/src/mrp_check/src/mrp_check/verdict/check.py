@@ -91,6 +91,16 @@ def check(
     return report
 
 
+# What the user reads while a stage looks for mistakes.
+_STAGES = {
+    "files": "looking at the files",
+    "static": "reading the sources",
+    "build": "looking at the build",
+    "run": "looking at the running nodes",
+    "stop": "looking at how the nodes end",
+}
+
+
 class _Examination:
     """The findings of all rules that are needed, and the ids of what they could not check."""
 
@@ -114,7 +124,7 @@ class _Examination:
             if rule.begins:
                 self._guarded(rule.ids, functools.partial(rule.begins, case))
         for stage, rules in itertools.groupby(chosen, lambda rule: rule.stage):
-            case.progress(f"stage {stage}")
+            case.progress(_STAGES[stage])
             for rule in rules:
                 self._ask(rule)
             if early:

@@ -259,7 +259,7 @@ class Names(PythonRule):
             "python-names",
             f"Nothing is called {name}: Python ends with a NameError when it comes here.{hint}",
             message.lineno,
-            expected=name,
+            expected="a name that exists",
             fix=fix,
             why="name-not-defined",
         )
