@@ -10,7 +10,7 @@ import pytest
 from mrp_check.cli import learn
 from mrp_check.contract import defects, packages
 from mrp_check.contract.finding import WARNING, Finding
-from mrp_check.learning import plain, tool_output, watch
+from mrp_check.learning import opening, plain, tool_output, watch
 from mrp_check.learning.exercise import Course
 from mrp_check.verdict import check
 from mrp_testing.waiting import DEADLINE, wait_until
@@ -57,15 +57,19 @@ def test_first_call_shows_the_task_and_makes_the_package(tmp_path, capsys, check
     assert checked.folders == []
 
 
-def test_not_yet_says_what_and_where_and_not_how(tmp_path, capsys, checked):
+def test_not_yet_says_what_and_where_and_not_how(tmp_path, capsys, checked, monkeypatch):
+    monkeypatch.setattr(opening, "built_page", lambda name: tmp_path / f"{name}.html")
     plain.run_once(tmp_path)
     capsys.readouterr()
-    checked.append(Finding("spin", "It ends.", "src/a.py", 7, expected="spin", fix="Do this."))
+    checked.append(
+        Finding("spin", "It ends.", "src/a.py", 7, expected="spin", fix="Do this.", why="x")
+    )
     checked.append(Finding("exit", "It follows.", consequence_of="spin"))
     assert plain.run_once(tmp_path) == plain.NOT_YET
     printed = capsys.readouterr().out
     assert f"Exercise 1 of {COUNT}, {FIRST}: not yet." in printed
     assert "src/a.py:7: It ends.\n  expected: spin\n" in printed
+    assert f"file://{tmp_path}/why.html#x\n            (make docs builds it)\n" in printed
     assert "Do this." not in printed and "It follows." not in printed
     assert str(tmp_path / f"01_{FIRST}" / "TASK.md") in printed
     assert checked.folders == [tmp_path / f"01_{FIRST}"]

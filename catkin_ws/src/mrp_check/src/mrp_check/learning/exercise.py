@@ -167,5 +167,8 @@ def lines_of(findings: Sequence[Finding], report: Report | None) -> list[str]:
         lines += terminal.detail_lines(finding, ("expected", "seen"))
         for name, address in terminal.pages(finding):
             page, _, anchor = address.removeprefix("pages/").partition(".html")
-            lines.append(f"  {name + ':':<10}file://{opening.page(page)}{anchor}")
+            path = opening.built_page(page)
+            lines.append(f"  {name + ':':<10}file://{path}{anchor}")
+            if not path.exists():
+                lines.append(" " * 12 + "(make docs builds it)")
     return lines

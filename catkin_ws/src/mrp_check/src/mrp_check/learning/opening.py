@@ -38,8 +38,14 @@ def page(name: str) -> pathlib.Path:
     name: such as "subscriber"
     """
     workspace = resources.folder("defects").parents[2]
-    built = workspace / "build" / "docs" / "pages" / f"{name}.html"
-    return built if built.exists() else workspace / "src/mrp/doc/pages" / f"{name}.rst"
+    html = built_page(name)
+    return html if html.exists() else workspace / "src/mrp/doc/pages" / f"{name}.rst"
+
+
+def built_page(name: str) -> pathlib.Path:
+    """Return the file of a page that `make docs` builds."""
+    workspace = resources.folder("defects").parents[2]
+    return workspace / "build" / "docs" / "pages" / f"{name}.html"
 
 
 def show_page(name: str) -> bool:
