@@ -142,39 +142,34 @@ def test_what_was_seen_all_the_same_is_no_consequence(cause, result):
 
 
 @pytest.mark.parametrize(
-    ("said", "cause"),
-    [
-        ("there is no header std_srvs/Empty.h.", "dependencies"),
-        ("there is no header some_pkg/Num.h.", None),
-        ("a semicolon is missing at its end.", None),
-    ],
+    ("missing", "cause"),
+    [(("std_srvs",), "dependencies"), (("some_pkg",), None), ((), None)],
     ids=range(3),
 )
-def test_a_missing_header_follows_from_its_own_package(said, cause):
+def test_a_missing_header_follows_from_its_own_package(missing, cause):
     undeclared, failed = findings(
         ("dependencies", "package.xml", 9, "files", None),
         ("compile", "src/a.cpp", 1, "build", None),
     )
-    undeclared.message = "package.xml does not name std_srvs, which src/a.cpp uses in line 1."
-    failed.message = f"The compiler stops at line 1 of src/a.cpp: {said}"
+    undeclared.packages, failed.packages = ("std_srvs",), missing
     causes.told_once([undeclared, failed])
     assert failed.consequence_of == cause
 
 
 @pytest.mark.parametrize(
-    ("said", "file", "cause"),
+    ("missing", "file", "cause"),
     [
-        ("there is no header some_pkg/Num.h.", "CMakeLists.txt", "messages"),
-        ("a semicolon is missing at its end.", "CMakeLists.txt", None),
-        ("nothing is called num.", "msg/Num.msg", "messages"),
+        (("some_pkg",), "CMakeLists.txt", "messages"),
+        ((), "CMakeLists.txt", None),
+        ((), "msg/Num.msg", "messages"),
     ],
     ids=range(3),
 )
-def test_what_stands_behind_a_header_that_is_not_made_stands_for_itself(said, file, cause):
+def test_what_stands_behind_a_header_that_is_not_made_stands_for_itself(missing, file, cause):
     unmade, failed = findings(
         ("messages", file, 9, "files", None), ("compile", "src/a.cpp", 1, "build", None)
     )
-    failed.message = f"The compiler stops at line 1 of src/a.cpp: {said}"
+    failed.packages = missing
     causes.told_once([unmade, failed])
     assert failed.consequence_of == cause
 

@@ -157,6 +157,7 @@ def finding(package: Package, problem: Problem) -> Finding:
     if standard:
         return _old_standard(package, standard.group(1), problem)
     words = cpp_words.of(package, problem)
+    header = None if words.change else is_no_header(problem)
     line = words.line or max(1, min(problem.line, len(lines)))
     return Finding(
         "compile",
@@ -168,6 +169,7 @@ def finding(package: Package, problem: Problem) -> Finding:
         fix=words.fix,
         change=words.change,
         why=words.why,
+        packages=(uses.package_of_header(header[1]),) if header else (),
     )
 
 

@@ -41,6 +41,7 @@ class Finding:
     stage: which stage found it; check.py fills it in
     severity: ERROR, WARNING or NOTE; check.py fills it in
     node: the name of the spec's node that it is about, or None: tells causes from consequences
+    packages: the ROS packages that are not named, or whose headers are not found: the same
     """
 
     id: str
@@ -55,6 +56,7 @@ class Finding:
     consequence_of: str | None = None
     stage: str = ""
     node: str | None = None
+    packages: tuple[str, ...] = ()
     change: Change | None = None
     column: int | None = None
     suppressed: str = ""

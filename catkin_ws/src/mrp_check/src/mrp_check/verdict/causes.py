@@ -3,9 +3,6 @@
 
 from __future__ import annotations
 
-import re
-
-from mrp_check.code import uses
 from mrp_check.contract.finding import ERROR, NOTE, READ, SEEN, Finding
 
 # What keeps a node from running at all, or from being itself.
@@ -119,21 +116,15 @@ def _is_beside(cause, finding):
     return cause.file == finding.file and None not in lines and abs(lines[0] - lines[1]) <= 1
 
 
-# A header that the compiler, or a rule, does not find.
-_HEADER = re.compile(r"there is no (?:header )?([\w./+-]+\.h\w*)|includes (/\S+),")
-
-
 def _is_of_another(cause, finding):
     """Return whether a source does not compile for another reason than this cause."""
     if finding.id != "compile" or cause.id not in {"dependencies", "messages", *_PACKAGE_WIDE}:
         return False
-    header = _HEADER.search(finding.message)
     if cause.id in _PACKAGE_WIDE:  # what is compiled, or read without a compiler, all the same
-        return header is None
+        return not finding.packages
     if cause.id == "messages":  # g++ stops at a header that is not made: this is behind it
-        return cause.file == "CMakeLists.txt" and header is None
-    package = header and uses.package_of_header(header[1] or header[2])
-    return package not in re.findall(r"\w+", cause.message)
+        return cause.file == "CMakeLists.txt" and not finding.packages
+    return not {*finding.packages} & {*cause.packages}
 
 
 def _causes(cause, finding, earlier, facts, nodes):

@@ -76,6 +76,7 @@ def _foreign(package: Package, name: str, use: Use) -> Finding:
         expected=f"no use of {name}; or <depend>{name}</depend>, and {name} in COMPONENTS",
         seen=package.line(use.file, use.line),
         fix="Take the line out if nothing of it is used; else declare the package.",
+        packages=(name,),
     )
 
 
@@ -99,6 +100,7 @@ def _kind(package: Package, name: str, use: Use, manifest: Manifest) -> Iterator
         expected=f"<depend>{name}</depend>",
         seen=package.line(FILE, line),
         fix=f"Write <depend>{name}</depend>.",
+        packages=(name,),
     )
 
 
@@ -120,6 +122,7 @@ def _misspelt_in_manifest(package: Package, name: str, use: Use, near: str) -> F
         seen=f"<depend>{near}</depend>",
         fix=f"Write {name} for {near}.",
         change=(f">{near}<", f">{name}<"),
+        packages=(name,),
     )
 
 
@@ -145,6 +148,7 @@ def _not_in_manifest(
         seen=f"no dependency on {', '.join(found)}",
         fix=f"Add {' '.join(tags)}.",
         change=(text, added) if "depend>" in text else None,
+        packages=tuple(found),
     )
 
 
@@ -169,6 +173,7 @@ def _misspelt_in_cmake(name: str, use: Use, near: str, call: Call) -> Finding:
         seen=near,
         fix=f"Write {name} for {near}.",
         change=(near, name),
+        packages=(name,),
     )
 
 
@@ -184,6 +189,7 @@ def _not_in_cmake(found: Mapping[str, Use], model: Model, call: Call, firm: bool
         expected=f"find_package(catkin REQUIRED COMPONENTS ... {names} ...)",
         seen=", ".join(model.components) or "no COMPONENTS",
         fix=f"Add {names} to COMPONENTS.",
+        packages=tuple(found),
     )
 
 
@@ -225,6 +231,7 @@ def undeclared(case: Case) -> Iterator[Finding]:
             seen=package.line(file, line),
             fix=f"Add <depend>{key}</depend> to package.xml; or take the line out if nothing of it"
             " is used.",
+            packages=(top,),
         )
 
 

@@ -167,6 +167,7 @@ def _in_manifest(package: Package, manifest: Manifest, is_brought: bool) -> Iter
                 expected=f"<{tag}>{name}</{tag}>",
                 seen=f"no <{tag}> with {name}",
                 fix=f"Add the line <{tag}>{name}</{tag}>.",
+                packages=(name,),
             )
 
 

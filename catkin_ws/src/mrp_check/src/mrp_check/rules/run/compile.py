@@ -68,6 +68,7 @@ def _of_other_machines(case: Case) -> Iterator[Finding]:
                     expected="a path that begins with the name of a package",
                     seen=package.line(file, line),
                     fix="Write the name of the package and of the header alone.",
+                    packages=(folder,),
                 )
 
 
