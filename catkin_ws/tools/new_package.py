@@ -51,11 +51,14 @@ def fault_of(folder, language):
 
 
 def checker():
-    """Return OWNER/REPOSITORY of this clone, if it comes from GitHub; otherwise one to fill in."""
+    """Return the action of this clone, if it comes from GitHub; otherwise one to fill in."""
     command = ["git", "-C", str(ROOT), "remote", "get-url", "origin"]
     url = subprocess.run(command, capture_output=True, text=True).stdout.strip()
     match = re.search(r"github\.com[:/]([\w.-]+/[\w.-]+?)(\.git)?$", url)
-    return match[1] if match else "OWNER/mrp"
+    repository = match[1] if match else "OWNER/mrp"
+    manifest = (ROOT / "catkin_ws/src/mrp/package.xml").read_text()
+    version = re.search("<version>(.*)</version>", manifest)[1]
+    return f"{repository}/.github/actions/check@{version}"
 
 
 def text_of(template, words, marks):
