@@ -40,7 +40,8 @@ html_js_files = ["page.js"]
 html_favicon = "static/icon.svg"
 html_show_sourcelink = False
 _manifest = (pathlib.Path(__file__).parents[1] / "package.xml").read_text()
-html_last_updated_fmt = f"%Y-%m-%d, version {re.search('<version>(.*)</version>', _manifest)[1]}"
+version = re.search("<version>(.*)</version>", _manifest)[1]
+html_last_updated_fmt = f"%Y-%m-%d, version {version}"
 # In a release, package.xml has the site's address: then each page has a description for search
 # engines, and sitemap.xml lists them all.
 if website := re.search('<url type="website">(.*)</url>', _manifest):
@@ -64,3 +65,17 @@ latex_engine = "xelatex"
 latex_documents = [("index", "mrp.tex", epub_title, author, "howto")]
 latex_elements = {"papersize": "a4paper", "makeindex": "", "printindex": ""}
 latex_show_urls = "no"
+
+
+def setup(app):
+    """In a release, the pages name its repository where the sources have OWNER/REPO."""
+    repository = re.search('<url type="repository">.*/(.*)/(.*)</url>', _manifest)
+    if not repository:
+        return
+    owner, name = repository.groups()
+
+    def name_repository(app, page, source):
+        text = source[0].replace("OWNER/REPO", f"{owner}/{name}").replace("1.0.0", version)
+        source[0] = text.replace("ghcr.io/OWNER", f"ghcr.io/{owner.lower()}")
+
+    app.connect("source-read", name_repository)
