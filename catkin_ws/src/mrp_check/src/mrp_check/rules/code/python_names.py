@@ -47,12 +47,7 @@ class Names(PythonRule):
 
     def findings(self) -> Iterator[Finding]:
         yield from [*self.imports()]
-        undefined = [*self.undefined_names()]
-        for finding in undefined:
-            # What was to be imported under its right name is not there under it, either.
-            if nearest(finding.expected, self.not_imported):
-                finding.consequence_of = "python-names"
-        yield from undefined
+        yield from self.undefined_names()
         yield from self.attributes()
         yield from self.own_attributes()
 
@@ -212,7 +207,11 @@ class Names(PythonRule):
                 continue
             if name not in _PYTHON2:
                 said.add(name)
-                yield self._undefined(name, message)
+                finding = self._undefined(name, message)
+                # What was to be imported under its right name is not there under it, either.
+                if nearest(name, self.not_imported):
+                    finding.consequence_of = "python-names"
+                yield finding
             elif not self._is_asked_for(name, message.lineno):
                 said.add(name)
                 yield self._of_python2(name, message.lineno)
