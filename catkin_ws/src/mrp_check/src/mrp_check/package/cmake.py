@@ -170,7 +170,7 @@ class Model:
     components: ROS package -> Call, of find_package
     catkin: the Call of find_package(catkin ...), or None
     catkin_package: its Call, or None; late: the first executable before it, or None
-    depends: the packages in CATKIN_DEPENDS; include_dirs: the folders in INCLUDE_DIRS
+    include_dirs: the folders in INCLUDE_DIRS of catkin_package()
     targets: name -> Target; scripts: list of Script; message_files: name -> Call, of services and
         actions, too
     """
@@ -195,7 +195,6 @@ class Model:
         self.add_message_files: Call | None = None
         self.generate: Call | None = None
         self.components: dict[str, Call] = {}
-        self.depends: list[str] = []
         self.include_dirs: list[str] = []
         self.targets: dict[str, Target] = {}
         self.scripts: list[Script] = []
@@ -282,7 +281,6 @@ class Model:
             *("EXPORTED_TARGETS", "SKIP_CMAKE_CONFIG_GENERATION"),
         }
         parts = sections(call.arguments, names)
-        self.depends = parts.get("CATKIN_DEPENDS", [])
         self.include_dirs = parts.get("INCLUDE_DIRS", [])
 
     def _add_executable(self, call: Call, is_library: bool = False) -> None:
