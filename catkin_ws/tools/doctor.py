@@ -368,7 +368,6 @@ def examine(machine):
     sys.stdout.reconfigure(errors="backslashreplace")
     colours = {"OK": 32, "FAIL": 31, "--": 33} if sys.stdout.isatty() else {}
     blocked, failed = set(), 0
-    site = resources.site() and resources.site() + "/"
     for title, check, needed, why in CHECKS:
         try:
             result = note(f"skipped: needs {needed}") if needed in blocked else check(machine)
@@ -386,7 +385,8 @@ def examine(machine):
         for command in result.fix.splitlines():
             print(f"       fix: {command}")
         if result.status == "FAIL":
-            print(f"       why:  {site}pages/why.html#{why}")
+            page = f"pages/why.html#{why}"
+            print(f"       why:  {resources.address_of(page) or page}")
     print(f"{len(CHECKS)} checks, {failed} failed")
     return 1 if failed else 0
 

@@ -30,6 +30,12 @@ def site() -> str:
     return BUILT_SITE.as_uri() if (BUILT_SITE / "index.html").is_file() else _website()
 
 
+def address_of(page: str) -> str:
+    """Return the address of a page, such as pages/why.html#no-rospy; or "" if it's not known."""
+    address = site()
+    return f"{address}/{page}" if address else ""
+
+
 @functools.lru_cache
 def _website() -> str:
     manifest = folder("specs").parent / "package.xml"

@@ -44,8 +44,7 @@ def page(name: str) -> pathlib.Path:
 
 def built_page(name: str) -> pathlib.Path:
     """Return the file of a page that `make docs` builds."""
-    workspace = resources.folder("defects").parents[2]
-    return workspace / "build" / "docs" / "pages" / f"{name}.html"
+    return resources.BUILT_SITE / "pages" / f"{name}.html"
 
 
 def show_page(name: str) -> bool:

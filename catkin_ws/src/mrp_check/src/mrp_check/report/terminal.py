@@ -192,8 +192,8 @@ def pages(finding):
 
 def address_of(page):
     """Return the address of a page of the tutorial; or its name, if nobody knows an address."""
-    if site := resources.site():
-        return f"{site}/{page}"
+    if address := resources.address_of(page):
+        return address
     path, _, anchor = page.partition("#")
     name = path.rpartition("/")[2].partition(".")[0].replace("_", " ")
     return f"“{name}” of the tutorial" + (f", {anchor}" if anchor else "")
