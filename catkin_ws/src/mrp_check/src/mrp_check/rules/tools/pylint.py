@@ -24,6 +24,15 @@ _COMMAND = (
     *("/usr/bin/python3", "-m", "pylint", "--rcfile=/dev/null", "--persistent=n", "--exit-zero"),
     *("--output-format=json", "--jobs=1", "--score=n", "--disable=all"),
 )
+_CATCHES_ALL = Row(
+    "This `except` also catches what rospy raises to end the node.",
+    "Name the errors that you expect.",
+    HINT,
+)
+_NO_VALUE = Row(
+    "The variable may have no value at this line: then Python ends with an error.",
+    "Give it a value before the condition or the loop; or leave the function in that case.",
+)
 _TABLE = {
     "assert-on-tuple": Row("This assert is always true.", "Leave the brackets out.", HABIT),
     "assigning-non-slot": Row(
@@ -41,16 +50,8 @@ _TABLE = {
         "Write %s, or give it a value of that type.",
         READ,
     ),
-    "bare-except": Row(
-        "This `except` also catches what rospy raises to end the node.",
-        "Name the errors that you expect.",
-        HINT,
-    ),
-    "broad-exception-caught": Row(
-        "This `except` also catches what rospy raises to end the node.",
-        "Name the errors that you expect.",
-        HINT,
-    ),
+    "bare-except": _CATCHES_ALL,
+    "broad-exception-caught": _CATCHES_ALL,
     "comparison-with-callable": Row(
         "A function is compared here, and not what it returns: its brackets are missing.",
         "Call the function.",
@@ -97,10 +98,7 @@ _TABLE = {
         "This line computes a value, and does nothing with it.",
         "Call the function, write = for ==, or take the line out.",
     ),
-    "possibly-used-before-assignment": Row(
-        "The variable may have no value at this line: then Python ends with an error.",
-        "Give it a value before the condition or the loop; or leave the function in that case.",
-    ),
+    "possibly-used-before-assignment": _NO_VALUE,
     "too-few-format-args": Row(
         "The text has more places than values: Python ends with a TypeError here.",
         "Give each place its value.",
@@ -136,10 +134,7 @@ _TABLE = {
         "Import the names that you use.",
         HINT,
     ),
-    "used-before-assignment": Row(
-        "The variable may have no value at this line: then Python ends with an error.",
-        "Give it a value before the condition or the loop; or leave the function in that case.",
-    ),
+    "used-before-assignment": _NO_VALUE,
     "using-constant-test": Row(
         "This condition never changes. Often the brackets of a call are missing.",
         "Call the function that the condition names.",
