@@ -75,10 +75,11 @@ def _never_built(case: Case) -> Iterator[Finding]:
     files = [one for one in package.files if one.endswith(("CMakeLists.txt", ".cmake"))]
     calls = [call for file in files for call in parsed(package.text(file), file)]
     named = {last_part(word) for call in calls for word in call.arguments}
-    for source in {*package.of_kind("cpp")} - built:
+    for source in package.of_kind("cpp"):
         code = uses.code(package, source)
         is_node = bool(_MAIN.search(code)) and "ros::init" in code
-        if is_node and last_part(source) not in named and not uses.is_test(source):
+        is_named = source in built or last_part(source) in named
+        if is_node and not is_named and not uses.is_test(source):
             yield Finding(
                 "targets",
                 f"No call in CMakeLists.txt names {source}: nothing is made of it.",
