@@ -173,7 +173,8 @@ def seen(place, folder, marked):
         enter = root(system, kind, architecture, folder)
     row = dict.fromkeys(FIELDS, "0")
     row["place"], row["test"] = place, "those of the place" if marked else "`make test`"
-    row["test"] = "not run" if architecture else row["test"]
+    if architecture:
+        row["test"] = "not run"
     row["date"] = datetime.date.today().isoformat()
     typed = _TYPED.replace("$TEST", f"({test})")
     with subprocess.Popen(

@@ -19,7 +19,7 @@ from mrp_bench import tables
 
 
 def results(env):
-    """Return what results.json says; the page is built anew if that or the tables change."""
+    """Return the content of results.json, and rebuild the page when it or the tables change."""
     path = pathlib.Path(env.srcdir) / "recorded" / "results.json"
     for file in (str(path), tables.__file__):
         env.note_dependency(file)

@@ -32,9 +32,9 @@ def main() -> None:
     libc.prctl(warden.PR_SET_CHILD_SUBREAPER, 1, 0, 0, 0)
     libc.prctl(warden.PR_SET_DUMPABLE, 0, 0, 0, 0)
     starter = apart.Starter()
-    # The nodes cannot write to its own files; and those of genpy lie there, too: tempfile looks at
-    # TMPDIR once, when it is first asked without a folder. If this process is killed, whoever made
-    # the plan's folder deletes it with all that is in it; in namespaces, that one is read-only.
+    # The nodes can't write to this folder. genpy's files go there, too, because tempfile reads
+    # TMPDIR only once, the first time it picks a folder itself. If this process is killed, this
+    # folder is deleted with the plan's. In namespaces the plan's is read-only, so it's in /tmp.
     place = os.path.dirname(file)
     place = place if os.access(place, os.W_OK) else "/tmp"
     with answer, tempfile.TemporaryDirectory(dir=place) as folder:
