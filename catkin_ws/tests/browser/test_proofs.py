@@ -32,6 +32,8 @@ def test_a_mark_opens_a_box_that_escape_closes(browser, addresses, size, mode):
     browser.run("document.body.classList.add('marks'); document.querySelector('.proof').focus()")
     assert browser.run(BOX) is None
     browser.press(Keys.ENTER)
+    in_box = "return document.activeElement.matches('.proof-box:popover-open button')"
+    browser.wait_until(lambda: browser.run(in_box), "the box has the focus")
     for text in (
         "There are two such queues",
         "mrp_labs/publisher_queue/test_publisher_queue passed on 20",

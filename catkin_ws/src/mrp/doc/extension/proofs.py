@@ -76,7 +76,7 @@ def _box(app, number, claims):
         )
     return (
         f'<div popover id="proof-{number}" class="proof-box" role="dialog" '
-        f'aria-label="What proves this"><button autofocus popovertarget="proof-{number}" '
+        f'aria-label="What proves this"><button popovertarget="proof-{number}" '
         f'popovertargetaction="hide">Close</button>{"".join(parts)}</div>'
     )
 

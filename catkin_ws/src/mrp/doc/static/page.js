@@ -206,6 +206,12 @@ function connectMarks() {
   if (!toggle) return;
   toggle.checked = marksAreShown();
   toggle.addEventListener("change", () => show(marksAreShown(toggle.checked)));
+  // With autofocus, a browser would look for the button when the page opens, too.
+  for (const box of document.querySelectorAll(".proof-box")) {
+    box.addEventListener("toggle", (event) => {
+      if (event.newState === "open") box.querySelector("button").focus();
+    });
+  }
 }
 
 document.addEventListener("DOMContentLoaded", () => {
