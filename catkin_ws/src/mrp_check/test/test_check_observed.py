@@ -103,6 +103,40 @@ def test_a_process_that_waits_for_the_disk_is_not_idle(tmp_path, monkeypatch):
         process.stdin.close()
 
 
+def test_a_process_that_gets_no_processor_is_not_idle(monkeypatch):
+    """Another one works on the same core, and Linux lets it run first."""
+    monkeypatch.setattr(activity, "_IDLE", 1.0)
+    core = {min(os.sched_getaffinity(0))}
+    spin = [sys.executable, "-c", "while True: pass"]
+    with subprocess.Popen(spin) as first, subprocess.Popen(spin) as last:
+        for process in (first, last):
+            os.sched_setaffinity(process.pid, core)
+        os.sched_setscheduler(last.pid, os.SCHED_IDLE, os.sched_param(0))
+        looks, end = activity.Activity(None), time.monotonic() + 3
+        idle = [looks.is_idle(last.pid)]
+        while time.monotonic() < end:
+            idle.append(looks.is_idle(last.pid))
+        for process in (first, last):
+            process.kill()
+    assert not any(idle)
+
+
+def test_how_a_node_ends_that_was_still_starting_is_not_judged(tmp_path):
+    """By itself, on a busy machine, it was asked to end while it still imported rospy."""
+    folder = make_package(tmp_path / "lab_pkg", {"right": ("", "")}, {})
+    path, topic = "/lab/publisher_right", "/lab/of_right"
+    seen = Seen(publications=[Registration(path, topic, "std_msgs/UInt32", 0)])
+    launch = LaunchResult(ending="enough", asked=12, lines=[], seen=seen)
+    observed = observing.Observed(launch=launch, executables={"publisher_right": folder})
+    interrupted = Alone(asked=9.0, stopped_in=0.1, code=-2, lines=[(9.0, "err", "KeyboardInterrupt")])
+    observed.direct = DirectResult({"publisher_right": interrupted})
+    case = observed_case(tmp_path, folder, observed)
+    found = [finding.id for rule in OF_RUN for finding in rule.findings(case)]
+    case.close()
+    assert "exit" not in found
+    assert check.unseen(case, ["exit"]) == {"exit": "publisher_right was not seen to end"}
+
+
 @pytest.mark.usefixtures("open_folders")
 def test_observer_leaves_nothing_in_tmp(tmp_path, monkeypatch):
     """With namespaces /tmp is each run's own. genpy makes a module there of each type it hears."""

@@ -17,7 +17,8 @@ from mrp_check.confined.seen import Log, Message, Registration
 
 TICK = 0.02  # seconds between two looks
 _IDLE = 3.0  # seconds in which an idle process uses hardly any processor time, ...
-_HARDLY = 0.05  # ... which is less than this many seconds
+_HARDLY = 0.05  # ... which is less than this many seconds,
+_STARVED = 0.2  # and is not found to want one in this part of the looks, as on a busy machine
 _CALM = 0.5  # seconds after which one that has announced something announces no more
 BUSY = 20.0  # seconds of processor time: a process is no longer starting up, or ending
 _LONGER = 6.0  # times, at most, that a busy machine may take longer
@@ -31,7 +32,7 @@ class Activity:
 
     def __init__(self, observer: Observer) -> None:
         self.observer = observer
-        self._used: Dict[int, List[Tuple[float, float]]] = {}
+        self._used: Dict[int, List[Tuple[float, float, bool]]] = {}
         self._began: Dict[str, Tuple[float, float]] = {}
 
     def begin(self, node: str, pid_of: Callable[[], Optional[int]]) -> None:
@@ -60,22 +61,21 @@ class Activity:
         return used is None or used > BUSY or self.is_idle(pid)
 
     def is_idle(self, pid: Optional[int]) -> bool:
-        """Return whether a process has used hardly any processor time for a while, or is no more.
-
-        On a busy machine, one that wants to work gets little, but more than that; unless its
-        modules are still being read from a slow disk."""
-        used, now = processor_seconds(pid), time.monotonic()
+        """Return whether a process has used hardly any processor time for a while, or is no more;
+        and neither waited for a processor meanwhile nor for a disk that its modules are on."""
+        used, now, status = processor_seconds(pid), time.monotonic(), _status(pid)
         if used is None or pid is None:
             return True
-        if _waits_for_disk(pid):
+        if status == psutil.STATUS_DISK_SLEEP:
             self._used.pop(pid, None)
         history = self._used.setdefault(pid, [])
-        history.append((now, used))
+        history.append((now, used, status == psutil.STATUS_RUNNING))
         # The latest that is old enough to be compared with, and all that came after it.
         while len(history) > 1 and history[1][0] <= now - _IDLE:
             del history[0]
-        then, before = history[0]
-        return now - then >= _IDLE and used - before < _HARDLY
+        then, before, _ = history[0]
+        is_starved = sum(wants for _, _, wants in history) > _STARVED * len(history)
+        return now - then >= _IDLE and used - before < _HARDLY and not is_starved
 
     def is_calm(self, node: str) -> bool:
         """Return whether a node has announced all that it has, as far as one can see."""
@@ -116,11 +116,11 @@ def runnable(pid: Optional[int]) -> Dict[str, float]:
     return found
 
 
-def _waits_for_disk(pid: int) -> bool:
+def _status(pid: Optional[int]) -> Optional[str]:
     try:
-        return bool(psutil.Process(pid).status() == psutil.STATUS_DISK_SLEEP)
+        return str(psutil.Process(pid).status()) if pid else None
     except psutil.Error:
-        return False
+        return None
 
 
 def _processor_of(pid: Union[int, str, None]) -> Tuple[float, float]:

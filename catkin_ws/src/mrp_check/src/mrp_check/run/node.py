@@ -108,8 +108,8 @@ class Node(Traces):
         return any(place.bits for place in self.places.facts.of(self.name, Kind.STEP))
 
     def has_ended(self) -> bool:
-        """Return whether it was asked to end when it ran by itself, and then ended."""
-        return self.direct is not None and self.direct.stopped_in is not None
+        """Return whether it was asked to end when it was up by itself, and then ended."""
+        return self.own_name is not None and self.direct.stopped_in is not None
 
 
 class HasNodes(Protocol):

@@ -53,6 +53,8 @@ def _of(node: Node, direct: Alone, asked: float, shutdown: Shutdown) -> Iterator
         return node.finding("exit", message, place, expected=expected, seen=seen, fix=fix)
 
     code, traceback = direct.code, places.traceback(lines)
+    if direct.name is None and direct.stopped_in is not None:
+        return  # it was asked before rospy or roscpp listened: a busy machine was still starting it
     if direct.stopped_in is None:
         # If roslaunch could end it, and never had to use force, the machine was too busy.
         force = [_needs_force(name, launch) for name, launch in _runs(node)]
