@@ -15,7 +15,7 @@ from mrp_testing.workspace import WORKSPACE
 FOLDER = WORKSPACE / "src" / "mrp_labs"
 SECTIONS = yaml.safe_load((FOLDER / "labs.yaml").read_text())
 LABS = {name: entry for labs in SECTIONS.values() for name, entry in labs.items()}
-STEPS = {"start", "stop", "run", "wait", "look", "never"}
+STEPS = {"start", "stop", "ends", "run", "wait", "look", "never"}
 LAB = str(WORKSPACE / "tools" / "lab.py")
 
 

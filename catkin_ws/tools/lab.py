@@ -119,6 +119,17 @@ class Run:
         program.wait(DEADLINE)
         reader.join(DEADLINE)
 
+    def wait_for_end(self, command):
+        """Wait until the newest program of a command has ended by itself.
+
+        roslaunch that is about to end must not be sent Ctrl-C: that has kept one from ending.
+        """
+        _, program = self.programs[self._newest(command)]
+        try:
+            program.wait(DEADLINE)
+        except subprocess.TimeoutExpired:
+            raise NotSeenError(f"expected the end of {command} within {DEADLINE:.0f} s") from None
+
     def _read(self, command, program):
         hidden = command.startswith("roslaunch")  # until its summary has ended
         for line in program.stdout:
@@ -171,12 +182,12 @@ class Run:
     def say(self, text, style=""):
         print(f"\x1b[{style}m{text}\x1b[0m" if style and self.colour else text, flush=True)
 
+    def _newest(self, command):
+        return max(n for n, (started, _) in enumerate(self.programs) if started.startswith(command))
+
     def end(self, command):
         """End the newest program of a command, as Ctrl-C does, and wait for it."""
-        number = max(
-            n for n, (started, _) in enumerate(self.programs) if started.startswith(command)
-        )
-        _, program = self.programs.pop(number)
+        _, program = self.programs.pop(self._newest(command))
         if program.poll() is None:
             os.killpg(program.pid, signal.SIGINT)
             try:
@@ -224,6 +235,8 @@ def run(name, entry):
                 lab.run(step["run"])
             elif "stop" in step:
                 lab.end(step["stop"])
+            elif "ends" in step:
+                lab.wait_for_end(step["ends"])
             else:
                 lab.start(step["start"])
         print("\nThat's it: ending the lab ...", flush=True)
