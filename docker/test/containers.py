@@ -64,8 +64,8 @@ def container(image, *command, options=()):
 
 
 def stop(name):
-    """Stop a container as `docker stop` does; return its exit code."""
-    docker("stop", name)
+    """Stop a container as `docker stop` does, however busy the machine is; return its exit code."""
+    docker("stop", "-t", "60", name)
     return inspect(name)["State"]["ExitCode"]
 
 
