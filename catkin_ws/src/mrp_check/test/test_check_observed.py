@@ -128,7 +128,9 @@ def test_how_a_node_ends_that_was_still_starting_is_not_judged(tmp_path):
     seen = Seen(publications=[Registration(path, topic, "std_msgs/UInt32", 0)])
     launch = LaunchResult(ending="enough", asked=12, lines=[], seen=seen)
     observed = observing.Observed(launch=launch, executables={"publisher_right": folder})
-    interrupted = Alone(asked=9.0, stopped_in=0.1, code=-2, lines=[(9.0, "err", "KeyboardInterrupt")])
+    interrupted = Alone(
+        asked=9.0, stopped_in=0.1, code=-2, lines=[(9.0, "err", "KeyboardInterrupt")]
+    )
     observed.direct = DirectResult({"publisher_right": interrupted})
     case = observed_case(tmp_path, folder, observed)
     found = [finding.id for rule in OF_RUN for finding in rule.findings(case)]
