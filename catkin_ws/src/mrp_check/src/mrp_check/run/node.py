@@ -109,7 +109,8 @@ class Node(Traces):
 
     def has_ended(self) -> bool:
         """Return whether it was asked to end when it was up by itself, and then ended."""
-        return self.own_name is not None and self.direct.stopped_in is not None
+        direct = self.direct
+        return direct is not None and None not in (direct.name, direct.stopped_in)
 
 
 class HasNodes(Protocol):
