@@ -107,30 +107,23 @@ def test_marks_are_those_of_one_machine(tmp_path):
     assert b"video.mp4" in found[0]["anna.json"]
 
 
-def test_a_worker_that_dies_or_hangs_takes_no_marks(tmp_path, monkeypatch, second):
-    """Of three workers, one is killed while it checks, and another stopped."""
+def test_a_worker_that_hangs_takes_no_marks(tmp_path, monkeypatch, second):
+    """Of two workers, one is stopped while it checks."""
     hand_in(tmp_path / "class", "anna", hanging(second))
-    hand_in(tmp_path / "class", "berta")
-    quiet = checked(tmp_path / "class")
-    shutil.rmtree(tmp_path / "class.checked")
     monkeypatch.setenv("DASK_DISTRIBUTED__SCHEDULER__WORKER_TTL", "1s")
-    with cluster(tmp_path, workers=3) as (_, address, workers):
+    with cluster(tmp_path, workers=2) as (_, address, workers):
         options = ("--csv", tmp_path / "table.csv", *SPEC, "--scheduler", address)
         with command("--class", tmp_path / "class", *options) as checker:
-            killed = wait_until(lambda: worker_of(second, workers), "the first checks it")
-            killed.stop(signal.SIGKILL)
-            workers.remove(killed)
-            stopped = wait_until(lambda: worker_of(second, workers), "the second checks it")
+            stopped = wait_until(lambda: worker_of(second, workers), "one checks it")
             os.kill(stopped.pid, signal.SIGSTOP)
             _, said = checker.communicate()
         stopped.stop(signal.SIGKILL)
         rows = list(csv.DictReader((tmp_path / "table.csv").read_text().splitlines()))
-    assert (checker.returncode, rows) == (quiet[0], quiet[2]), said
-    wait_until(lambda: not processes_with(second), "what the killed worker ran has ended")
+    assert [row["verdict"] for row in rows] == ["findings"], said
 
 
 def test_when_all_workers_are_gone_it_says_so_and_waits(tmp_path, second):
-    """Two die and are one loss; a third one checks what is left."""
+    """Two die and are one loss, what they ran ends, and a third one checks what is left."""
     hand_in(tmp_path / "class", "anna", hanging(second))
     hand_in(tmp_path / "class", "berta", hanging(second))
     asked = (
@@ -153,6 +146,7 @@ def test_when_all_workers_are_gone_it_says_so_and_waits(tmp_path, second):
             checker.wait_for(lambda: said() == expected[:1], "it says that there is none")
             with worker(address, tmp_path):
                 assert (checker.wait(), said()) == (1, expected), str(checker)
+    wait_until(lambda: not processes_with(second), "what the killed workers ran has ended")
 
 
 # A worker's check that takes no time: of what Dask does with it, that is enough.
