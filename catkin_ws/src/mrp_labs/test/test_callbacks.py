@@ -54,17 +54,6 @@ class TestCallbacks(unittest.TestCase):
             lab.wait_for(lambda: len(locked()) >= len(unlocked()), "both have counted")
             self.assertEqual(locked(), list(range(1, len(locked()) + 1)))
 
-    def test_service_in_callback(self):
-        waits, *answer = (f"/service/{node}" for node in ("one_thread", "two_threads", "in_python"))
-        with Lab("service_in_callback.launch", extra_env=LIVE) as lab:
-            lab.wait_for(lambda: lab.logged(waits), f"{waits} asks")
-            for node in answer:
-                count = len(lab.logged(node)) + 6
-                lab.wait_for(lambda: len(lab.logged(node)) >= count, f"{node} goes on")
-                asked, answered = lab.logged(node)[:2]
-                self.assertEqual(answered, asked.replace("asks", "has the answer"))
-            self.assertEqual(len(lab.logged(waits)), 1, "it asks once, and waits for good")
-
     def test_callback_that_answers_itself(self):
         error = "rospy.exceptions.ROSSerializationException: field data exceeds specified width"
         with values_on("/feedback_cpp/number") as cpp, values_on("/feedback_py/number") as py, Lab(

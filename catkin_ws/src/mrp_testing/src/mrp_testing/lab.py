@@ -2,12 +2,10 @@
 """A lab under test: run with roslaunch as a student runs it, and read line by line."""
 
 import collections
-import pathlib
 import re
 
 import rosgraph
 import roslib.packages
-import yaml
 
 from mrp_testing import log_line
 from mrp_testing.graph import Graph
@@ -36,16 +34,6 @@ def path_of(launch_file):
     return roslib.packages.find_resource(PACKAGE, launch_file)[0]
 
 
-def looks_of(launch_file):
-    """Return the patterns that `make lab` looks for in a lab's lines; none for one with steps."""
-    sections = yaml.safe_load(
-        (pathlib.Path(path_of(launch_file)).parents[1] / "labs.yaml").read_text()
-    )
-    labs = {name: entry for section in sections.values() for name, entry in section.items()}
-    look = labs[pathlib.Path(launch_file).stem].get("look", [])
-    return [look] if isinstance(look, str) else look
-
-
 class Lab(Process):
     """A lab that runs, and the lines that it has printed so far.
 
@@ -56,23 +44,16 @@ class Lab(Process):
     traceback: whether one belongs to the claim
 
     Use it in a `with`: on leaving without an error, the lab is ended as by Ctrl-C, unless it has
-    ended by itself, and must end cleanly: with exit code 0, no traceback and no abort. Without
-    arguments, it must show the lines that `make lab` looks for.
+    ended by itself, and must end cleanly: with exit code 0, no traceback and no abort.
     """
 
     def __init__(self, launch_file, *arguments, extra_env=None, traceback=False):
         super().__init__("roslaunch", PACKAGE, launch_file, *arguments, extra_env=extra_env)
         self.traceback = traceback
-        self.looks = [] if arguments else looks_of(launch_file)
 
     def __exit__(self, *exception):
         try:
             if exception[0] is None:
-                for look in self.looks:
-                    self.wait_for(
-                        lambda: any(re.search(look, line) for line in list(self.lines)),
-                        f"a line as of labs.yaml: {look}",
-                    )
                 code = self.stop() if self.code is None else self.wait()
                 assert code == 0, f"exit code {code} of {self}"
                 assert not any("lock_error" in line for line in self.lines), str(self)
