@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The publisher of the labs: what it publishes, and how, is said by its private parameters.
+// The publisher of the labs that no idiom can show: bursts, large messages, any type, any timer.
+// Its private parameters, in a lab's launch file, say what it publishes, and how.
 
 #include <unistd.h>
 #include <clocale>
@@ -37,7 +38,6 @@ public:
         size_(parameters.number("size", 0)),
         delay_(parameters.seconds("delay", 0)),
         wait_for_subscribers_(parameters.number("wait_for_subscribers", 0)),
-        on_connect_(parameters.flag("on_connect", false)),
         show_memory_(parameters.flag("show_memory", false)),
         show_namespaces_(parameters.flag("show_namespaces", false)),
         shown_type_(parameters.flag("show_type", false) ? type() + " " : "")
@@ -74,9 +74,7 @@ public:
 
     const mrp_labs::Name name(topic_);
     ros::NodeHandle nh(name.handle);
-    publisher_ = nh.advertise<Message>(
-        name.text, queue_size_, [this](const auto& subscriber) { connectCallback(subscriber); },
-        ros::SubscriberStatusCallback(), ros::VoidConstPtr(), latch_);
+    publisher_ = nh.advertise<Message>(name.text, queue_size_, latch_);
     ROS_INFO_STREAM(name_ << " publishes " << type() << " on " << publisher_.getTopic()
                           << name.asked());
 
@@ -151,18 +149,6 @@ private:
     mrp_labs::work(work_);
   }
 
-  // Called when a subscriber connects. What is published here goes to that subscriber alone.
-  void connectCallback(const ros::SingleSubscriberPublisher& subscriber)
-  {
-    if (on_connect_)
-    {
-      const std::string value = valueText(sent_ == 0 ? 0 : sent_ - 1);
-      subscriber.publish(message(value));
-      ROS_INFO_STREAM(name_ << " sent " << value << " to " << subscriber.getSubscriberName()
-                            << ", which has just connected");
-    }
-  }
-
   // The text of the message with that index: the values in turn; or start, start + step, ...
   std::string valueText(int64_t index) const
   {
@@ -210,7 +196,6 @@ private:
   const int size_;      // bytes, to which a String is filled up
   const double delay_;  // seconds before it advertises
   int wait_for_subscribers_;
-  const bool on_connect_;
   const bool show_memory_;
   const bool show_namespaces_;
   const std::string shown_type_;

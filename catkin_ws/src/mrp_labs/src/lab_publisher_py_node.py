@@ -1,6 +1,9 @@
 #!/usr/bin/env python
 # SPDX-License-Identifier: BSD-3-Clause
-"""The publisher of the labs: what it publishes, and how, is said by its private parameters."""
+"""The publisher of the labs that no idiom can show: bursts, large messages, any type, any timer.
+
+Its private parameters, in a lab's launch file, say what it publishes, and how.
+"""
 
 import contextlib
 import math
@@ -35,7 +38,6 @@ class LabPublisher:
         self.size = parameters.number("size", 0)  # bytes, to which a String is filled up
         self.delay = parameters.seconds("delay", 0)  # seconds before it advertises
         self.wait_for_subscribers = parameters.number("wait_for_subscribers", 0)
-        self.on_connect = parameters.flag("on_connect", False)
         self.show_memory = parameters.flag("show_memory", False)
         self.show_namespaces = parameters.flag("show_namespaces", False)
         self.shown_type = self.type + " " if parameters.flag("show_type", False) else ""
@@ -56,7 +58,6 @@ class LabPublisher:
         self.publisher = rospy.Publisher(
             self.topic,
             MESSAGE_TYPES[self.type],
-            subscriber_listener=ConnectListener(self),
             latch=self.latch,
             queue_size=self.queue_size,
         )
@@ -143,18 +144,6 @@ class LabPublisher:
         from_text(text, msg)
         pad_to(self.size, msg)
         return msg
-
-
-class ConnectListener(rospy.SubscribeListener):
-    def __init__(self, node):
-        self.node = node
-
-    def peer_subscribe(self, topic_name, topic_publish, peer_publish):
-        """Is called when a subscriber connects. What peer_publish gets goes to that one alone."""
-        if self.node.on_connect:
-            value = self.node.value_text(max(0, self.node.sent - 1))
-            peer_publish(self.node.message(value))
-            rospy.loginfo(f"{rospy.get_name()} sent {value} to one that has just connected")
 
 
 def megabytes():

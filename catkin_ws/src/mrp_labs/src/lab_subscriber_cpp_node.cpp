@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The subscriber of the labs: prints what it receives, from whom, and, if asked to, in which
-// thread.
+// thread. Its private parameters make it late, slow, or ready for another type.
 
 #include <unistd.h>
 #include <clocale>

@@ -1,6 +1,9 @@
 #!/usr/bin/env python
 # SPDX-License-Identifier: BSD-3-Clause
-"""The subscriber of the labs: prints what it receives, from whom and, if asked, in which thread."""
+"""The subscriber of the labs: prints what it receives, from whom and, if asked, in which thread.
+
+Its private parameters make it late, slow, or ready for another type.
+"""
 
 import sys
 import threading
