@@ -81,17 +81,19 @@ _OTHERS = re.compile(
     r"\.(?:[cm]?js|jsx|tsx?|java|kt|rs|rb|php|cs|swift|c):[\d(]|\.go:\d+:\d"
     r"|\bat \S+ \(\S+:\d|^goroutine |^panic: |^configure: |\bgit@|\bgithub\.com|nodesource"
     r"|docker-ce|/lib/modules/|\bfixture '"
-    r"|\b(?:npm|yarn|node_modules|webpack|java|gradle|maven|cargo|rustc|PHP|ENOENT|CUDA|pytest)\b"
+    r"|\b(?:npm|yarn|node_modules|webpack|java|gradle|maven|cargo|rustc|PHP|CUDA|pytest)\b"
+    r"|\bE(?:NOENT|ACCES|PERM|ADDRINUSE)\b|\b(?:nvidia-(?!container|docker)|cuda-)\w|\blibcu\w+\.so"
+    r"|\[(?:Err|Wrn)\] \[\w+\.cc\b|\b(?:lib)?(?:ign(?:ition)?|gz)-\w|^fatal: \["
     r"|\b(?:django|flask|pandas|tensorflow|jinja2|sqlalchemy|selenium|requests\.exceptions)\."
     r"|(?:dist|site)-packages/(?!numpy|cv2|yaml|serial|setuptools|pkg_resources|matplotlib|tf|gen)"
     r"|\b(?:systemd(?:-\w+)?\[|systemctl|journalctl|kubelet|kubectl|ansible|terraform)"
-    r"|(?<![\w/.-])(?i:postgres\w*|psycopg\w*|mysql|mongodb?|redis|amqp|nginx|apache2?)(?![\w/])"
-    r"|[A-Z]:[/\\](?:Program|Users|Windows)|^fatal: Could not "
+    r"|(?<![\w/.-])(?i:psql|postgres\w*|psycopg\w*|mysql|mongodb?|redis|amqp|nginx|apache2?)(?![\w/])"
+    r"|\b[A-Z]:\\\w|[A-Z]:/(?:Program|Users|Windows)|^fatal: Could not "
     r"|\berror: (?:linker|linking with|could not compile) `",
     re.MULTILINE,
 )
 _ROS = re.compile(
-    r"\bros(?:[_\d]|\b|bag|bash|build|cd|clean|comm|console|core|cpp|dep|distro|graph|install|launch"
+    r"\bros(?:_|\b|bag|bash|build|cd|clean|comm|console|core|cpp|dep|distro|graph|install|launch"
     r"|lib|make|master|msg|node|out|pack|param|pkg|py|run|serial|service|srv|test|topic|version)"
     r"|catkin|\.launch\b|package\.xml|_msgs\b|\bxacro|\bgazebo|\brviz|\btf2?[._]|actionlib|nodelet"
     r"|/devel/|\brqt_",
