@@ -36,9 +36,14 @@ _LAUNCH = """\
   <node pkg="some_pkg" type="rate.py" name="rate">
     <param name="rate" value="5"/>
   </node>
-  <node pkg="some_pkg" type="asks" name="asks"/>
   <node pkg="some_pkg" type="hurries.py" name="hurries"/>
   <node pkg="some_pkg" type="fast" name="fast"/>
+</launch>
+"""
+_LAUNCH_OF_ASKS = """\
+<launch>
+  <node pkg="some_pkg" type="talker.py" name="talker"/>
+  <node pkg="some_pkg" type="asks" name="asks"/>
 </launch>
 """
 _HEAD = "#!/usr/bin/env python3\nimport rospy\n"
@@ -253,11 +258,9 @@ int main(int argc, char** argv)
   ros::Rate rate(10);
   while (ros::ok())
   {
-    if (key > 0)
-    {
-      ros::spinOnce();
-    }
     rate.sleep();
+    if (key < 1) continue;
+    ros::spinOnce();
   }
 }
 """
@@ -280,7 +283,7 @@ _RIGHT = {
     "rate.py": [('"rate"))', '"~rate"))')],
     "hurries.py": [("    count = rospy.get_time()\n", "    rate.sleep()\n")],
     "fast.cpp": [("// sleep", "rate.sleep();")],
-    "asks.cpp": [("key > 0", "key >= 0")],
+    "asks.cpp": [("key < 1", "key < 0")],
 }
 _SOURCES = {
     "talker.py": _TALKER,
@@ -308,6 +311,7 @@ def make(folder, is_right):
     manifest = check_rules.MANIFEST.replace("</package>", f"{_DEPENDS}</package>")
     files = {"package_DOT_xml": manifest, "CMakeLists_DOT_txt": _CMAKE}
     files["launch__all_DOT_launch"] = _LAUNCH
+    files["launch__asks_DOT_launch"] = _LAUNCH_OF_ASKS
     for name, source in _SOURCES.items():
         for wrong, right in _RIGHT.get(name, ()) if is_right else ():
             assert wrong in source, name

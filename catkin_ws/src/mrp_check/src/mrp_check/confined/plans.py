@@ -40,6 +40,7 @@ class LaunchNode:
     publishes: whether it publishes
     received: the regular expression of the line that it logs for each value, if it logs one
     hears: the topic that it subscribes to, if there is one; senders: how many nodes publish there
+    is_cpp: whether it may make the file of hook/callbacks.cpp
     """
 
     path: str
@@ -48,6 +49,7 @@ class LaunchNode:
     received: Optional[str]
     hears: Optional[str]
     senders: int
+    is_cpp: bool = False
 
 
 @dataclasses.dataclass

@@ -17,6 +17,7 @@ from mrp_check.confined.seen import LaunchResult
 _DIED = re.compile(r"\[(?P<name>\S+)-\d+\] process has (?P<how>died|finished cleanly)")
 _STARTED = re.compile(r"process\[(?P<name>\S+)-\d+\]: started with pid \[(?P<pid>\d+)\]")
 _SAYS_SO = 3.0  # seconds in which roslaunch says that a process has ended
+_CALLS_BACK = 4.0  # seconds after the first message in which a callback is waited for
 _NOT_STARTED = re.compile(r"cannot launch node of type \[(?P<type>[^\]]*)\]")
 
 
@@ -33,7 +34,7 @@ def run(plan: LaunchPlan, observer: Observer, starter: apart.Starter) -> LaunchR
     ending = wait(plan.common, plan.nodes, launch.is_up, launch.is_settled, has_ended)
     waited = launch.waited()
     latched = observer.latched()
-    called_back = launch.called_back()
+    uncalled = [node.path for node in plan.nodes if launch.is_uncalled(node)]
     observer.release()
     asked, code = time.monotonic(), roslaunch.poll()
     roslaunch.send(signal.SIGINT)
@@ -52,8 +53,7 @@ def run(plan: LaunchPlan, observer: Observer, starter: apart.Starter) -> LaunchR
         lines=roslaunch.all_lines(),
         latched=latched,
         waited=waited,
-        called_back=called_back,
-        sees_callbacks=variables.CALLBACKS in plan.common.environment,
+        uncalled=uncalled,
         seen=observer.seen_since(roslaunch.started),
     )
 
@@ -76,12 +76,20 @@ class _Launch:
         nodes = self.plan.nodes
         return {node.path: self.activity.waited(node.path, self._pid(node)) for node in nodes}
 
-    def called_back(self) -> List[str]:
-        """Return the roscpp nodes that have called a callback: see hook/callbacks.cpp."""
-        file = self.plan.common.environment.get(variables.CALLBACKS)
-        started = [_STARTED.search(text) for _, _, text in list(self.roslaunch.lines)]
-        found = [one for one in started if one and file]
-        return ["/" + one["name"] for one in found if os.path.exists(f"{file}.{one['pid']}")]
+    def is_uncalled(self, node: LaunchNode) -> bool:
+        """Return whether it would be seen if a node called a callback, and it has called none."""
+        file, pid = self.plan.common.environment.get(variables.CALLBACKS), self._own_pid(node)
+        return bool(file and node.is_cpp) and not os.path.exists(f"{file}.{pid}")
+
+    def _may_call_back(self, node: LaunchNode) -> bool:
+        """Return whether messages have come to a node, so that it may still call a callback."""
+        if not self.is_uncalled(node):
+            return False
+        seen = self.observer.seen
+        topics = {one.topic: one.time for one in list(seen.subscriptions) if one.node == node.path}
+        heard = (m.time for m in list(seen.messages) if m.time > topics.get(m.topic, m.time))
+        first = next(heard, None)
+        return first is not None and not is_over(time.monotonic() - first, _CALLS_BACK)
 
     def is_up(self, node: LaunchNode) -> bool:
         return self._has_died(node) or self.activity.is_up_or_stuck(node.path, self._pid(node))
@@ -98,6 +106,8 @@ class _Launch:
         if self._has_died(node):
             return True
         if self._has_just_ended(node):
+            return False
+        if self._may_call_back(node):
             return False
         last = self.activity.last(node.path)
         if last is None:  # not asked twice: by then it may have come up, and is not settled
@@ -128,12 +138,14 @@ class _Launch:
 
     def _pid(self, node: LaunchNode) -> Optional[int]:
         """Return the process id that roslaunch has printed for a node, or None."""
-        for _, _, text in list(self.roslaunch.lines):
-            found = _STARTED.search(text)
-            if found and "/" + found["name"] == node.path:
-                init = self.roslaunch.init
-                return apart.id_outside(init, found["pid"]) if init else int(found["pid"])
-        return None
+        pid, init = self._own_pid(node), self.roslaunch.init
+        return apart.id_outside(init, pid) if init and pid else pid and int(pid)
+
+    def _own_pid(self, node: LaunchNode) -> Optional[str]:
+        """Return the process id that a node has where it runs, or None."""
+        started = [_STARTED.search(text) for _, _, text in list(self.roslaunch.lines)]
+        pids = (one["pid"] for one in started if one and "/" + one["name"] == node.path)
+        return next(pids, None)
 
     def _has_died(self, node: LaunchNode) -> bool:
         for _, _, text in list(self.roslaunch.lines):

@@ -106,7 +106,7 @@ class LaunchResult:
     code: its exit code (negative: killed by that signal), if it had ended before it was asked to
     latched: topic -> the nodes that latch it
     waited: node -> which part of the time in which it published it waited for a processor
-    called_back: the roscpp nodes of which a subscriber's callback was called, if sees_callbacks
+    uncalled: the roscpp nodes of which no subscriber's callback was called, as far as that is seen
     lines: what it printed
     """
 
@@ -119,8 +119,7 @@ class LaunchResult:
     left: List[Left] = dataclasses.field(default_factory=list)
     latched: Dict[str, List[str]] = dataclasses.field(default_factory=dict)
     waited: Dict[str, float] = dataclasses.field(default_factory=dict)
-    called_back: List[str] = dataclasses.field(default_factory=list)
-    sees_callbacks: bool = False
+    uncalled: List[str] = dataclasses.field(default_factory=list)
 
     def until_asked(self, after: float = _AFTER) -> List[str]:
         """Return the lines that were printed before it was asked to end, or just then.

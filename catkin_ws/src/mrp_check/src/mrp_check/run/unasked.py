@@ -127,7 +127,11 @@ def _watched(workspace: Workspace, facts: Facts, nodes: Mapping[str, str]) -> li
         name: bool(facts.of(name, Kind.PUBLISH)) or bool(facts.of(name, Kind.ASKS))
         for name in nodes.values()
     }
+    is_cpp = {
+        name: any(package.kind(file) == "cpp" for file in facts.sources.get(name, ()))
+        for name in nodes.values()
+    }
     return [
-        LaunchNode(path, f"{package.name}/{name}", busy[name], None, None, 0)
+        LaunchNode(path, f"{package.name}/{name}", busy[name], None, None, 0, is_cpp[name])
         for path, name in nodes.items()
     ]

@@ -24,8 +24,7 @@ def _findings(case: Case) -> Iterator[Finding]:
         where = f"under {launched.file}" if launched.file else "together with the other nodes"
         for path, name in launched.nodes.items():
             topic = _unheard(launched.seen, path) if name not in reported else None
-            is_cpp = any(case.package.kind(f) == "cpp" for f in case.facts.sources.get(name, ()))
-            if topic and is_cpp:
+            if topic:
                 reported.add(name)
                 file, line = case.places.of(name, Kind.SPIN, Kind.SUBSCRIBER)
                 yield Finding(
@@ -45,9 +44,7 @@ def _unheard(launch: LaunchResult, path: str) -> str | None:
     """Return a topic on which messages came to a node that called no callback at all."""
     seen = launch.seen
     waits = {registration.topic for registration in seen.lookups if registration.node == path}
-    if not launch.sees_callbacks or path in launch.called_back:
-        return None
-    if path in ends(launch.until_asked()):
+    if path not in launch.uncalled or path in ends(launch.until_asked()):
         return None
     if waits - {registration.topic for registration in seen.services}:
         return None  # it waits for a service that nobody offers
