@@ -7,6 +7,7 @@ import subprocess
 import sys
 import tempfile
 import time
+import types
 
 import check_rules
 import psutil
@@ -14,7 +15,7 @@ import pytest
 from lab_package import OF_RUN, findings_of, make_package, spec_of
 from mrp_check import sandbox
 from mrp_check.code.facts import Facts
-from mrp_check.confined import activity
+from mrp_check.confined import activity, alone, roslaunch
 from mrp_check.confined.seen import Alone, DirectResult, LaunchResult, Message, Registration, Seen
 from mrp_check.contract.errors import CannotCheck
 from mrp_check.contract.finding import ERROR, NOTE, SEEN
@@ -82,6 +83,30 @@ def test_a_fault_of_the_observer_is_no_finding(tmp_path, monkeypatch):
     said = r"The observer itself failed: .*\.enough: expected int; found '0.5'"
     with pytest.raises(CannotCheck, match=said):
         findings_of(folder, spec_of(["right"], []), tmp_path / "scratch")
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize("run", [alone._Node, roslaunch._Launch])
+def test_a_node_that_registers_while_it_is_asked_for_is_not_settled(run):
+    """A node that has not come up, and is not stuck, is waited for: it is looked for once."""
+    looks = iter([None])
+
+    def look(*_):
+        return next(looks, "/node")  # it registers after the first look
+
+    node = types.SimpleNamespace(path="/node", is_cpp=False)
+    known = types.SimpleNamespace(
+        program=types.SimpleNamespace(poll=lambda: None, pid=1),
+        activity=activity.Activity(None),
+        name=look,
+        _has_died=lambda _: False,
+        _has_just_ended=lambda _: False,
+        _may_call_back=lambda _: False,
+        _pid=lambda _: None,
+    )
+    known.activity.last, known.activity.is_stuck = look, lambda _: False
+    known.is_up = lambda *_: known.activity.is_up_or_stuck(known.name(), 1)
+    assert not run.is_settled(known, *([] if run is alone._Node else [node]))
 
 
 def test_a_process_that_waits_for_the_disk_is_not_idle(tmp_path, monkeypatch):

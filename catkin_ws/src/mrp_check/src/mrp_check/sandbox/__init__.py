@@ -45,7 +45,7 @@ class ConfineError(Exception):
 class Isolation(enum.Enum):
     """How far what runs is kept apart, in the words that each report has."""
 
-    NAMESPACES = "The package ran in a sandbox."
+    NAMESPACES = "The package's code only ran in a sandbox."
     USER = (
         "No sandbox here: the package runs as another user, who can use the network and read what"
         " everybody can read."

@@ -141,7 +141,8 @@ def _alone(case: Case, graph: Graph, end: End, published: set[str]) -> Iterator[
         is_own or is_like(other, end) and (other.topic not in heard or not _is_moved(other, end))
     )
     # A topic that's named after its node has another name where the checker has renamed the node.
-    is_sure = is_sure and not any(one.topic.startswith(graph.made_up) for one in (end, other))
+    made_up = tuple(f"{name}/" for name in graph.made_up)
+    is_sure = is_sure and not any(f"{one.topic}/".startswith(made_up) for one in (end, other))
     digits = [re.sub(r"\d", "", one.topic) for one in (other, end)]
     yield Finding(
         "topic",
