@@ -193,3 +193,9 @@ def test_last_words_have_no_time():
     """They are the same in each run."""
     said = ["[ INFO] [1795624487.418407537]: yes", "[ERROR] [1795624487.5, 3.2]: no", ""]
     assert words.last_words(said) == "ERROR: no"
+
+
+def test_a_node_may_end_before_it_comes_to_a_name_that_lacks():
+    entries = ("python-names", "src/a.py", 5, "static", None), ("starts", "src/a.py", 9, "run", "a")
+    told = causes.told_once(findings(*entries), facts(), has_contract=False)
+    assert told[1].consequence_of is None

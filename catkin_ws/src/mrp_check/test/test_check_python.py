@@ -284,6 +284,24 @@ def test_a_name_of_python_2_is_found_where_nothing_asks_for_it(code, line, tmp_p
 
 
 @pytest.mark.parametrize(
+    ("code", "certainty"),
+    [
+        ("def hear(_):\n    print(lost)\nrospy.Subscriber('a', String, hear)", "certain"),
+        ("class Node:\n    def hear(self, _):\n        print(lost)\nNode().hear(1)", "certain"),
+        ("def hear(_):\n    print(lost)", "read"),  # nothing calls it
+        ("class Node:\n    def hear(self, _):\n        print(lost)\nNode()", "read"),
+        ("globals()['lost'] = 1\nprint(lost)", "read"),
+        ("try:\n    print(lost)\nexcept Exception:\n    pass", "read"),
+    ],
+)
+def test_a_name_that_python_lacks_is_certain_where_it_is_used(code, certainty, tmp_path):
+    text = f"import rospy\nfrom std_msgs.msg import String\n{code}\n"
+    said = check_rules.python_findings(tmp_path, text)
+    found = [f.certainty for f in said if f.message.startswith("Nothing is called lost")]
+    assert found == [certainty]
+
+
+@pytest.mark.parametrize(
     ("imports", "names"),
     [
         ("from std_msgs.msg import *\nfrom math import *", ["AskRequest", "Tell"]),

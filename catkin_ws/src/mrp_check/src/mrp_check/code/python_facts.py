@@ -70,7 +70,7 @@ def last_line(node: ast.stmt) -> int:
     return max((getattr(one, "lineno", 0) for one in ast.walk(node)), default=node.lineno)
 
 
-def _is_unused(source: Source, definition: Definition) -> bool:
+def is_unused(source: Source, definition: Definition) -> bool:
     """Return whether a function, method or class is named nowhere but in itself."""
     name = definition.name
     if name.startswith("__") or definition.decorator_list:
@@ -250,7 +250,7 @@ class _Node:
         return self.named(Kind.SERVES, 1, "ActionSpec")
 
     def definition(self, node: Definition) -> Iterator[Place]:
-        unused = True if _is_unused(self.source, node) else None
+        unused = True if is_unused(self.source, node) else None
         yield self.place(Kind.FUNCTION, node.name, end=last_line(node), unused=unused)
 
     # Calls

@@ -103,6 +103,10 @@ def told_once(findings, facts=None, nodes=None, has_contract=True):
         for number, cause in ordered:
             if not has_contract and cause.id == "scripts" and finding.id != "configure":
                 continue
+            # Why a node ends, Python says as it ends: it need not come to a name that lacks.
+            is_read = cause.id == "python-names" and cause.certainty != SEEN
+            if not has_contract and is_read and finding.stage in _LATER and finding.id != cause.id:
+                continue
             if cause is not finding and _causes(cause, finding, number < index, facts, nodes or {}):
                 finding.consequence_of = cause.consequence_of or cause.id
                 if finding.certainty == SEEN and cause.certainty == READ and cause.id not in _OWN:

@@ -13,7 +13,7 @@ from pyflakes import checker, messages
 
 from mrp_check import releases
 from mrp_check.code import uses
-from mrp_check.code.python_facts import last_line
+from mrp_check.code.python_facts import is_unused, last_line
 from mrp_check.code.python_modules import (
     OF_PYTHON_2,
     is_known,
@@ -37,6 +37,8 @@ _PYTHON2 = {
     **{"unicode": "str", "xrange": "range", "raw_input": "input", "long": "int"},
     **{"basestring": "str", "reduce": "functools.reduce", "unichr": "chr", "file": "open"},
 }
+# By these, a source may give a value to names that it doesn't write.
+_HIDES = {"builtins", "exec", "globals", "vars"}
 
 
 class Names(PythonRule):
@@ -208,6 +210,8 @@ class Names(PythonRule):
             if name not in _PYTHON2:
                 said.add(name)
                 finding = self._undefined(name, message)
+                if type(message) is messages.UndefinedName and self._is_used(name, message.lineno):
+                    finding.certainty = CERTAIN
                 # What was to be imported under its right name is not there under it, either.
                 if nearest(name, self.not_imported):
                     finding.consequence_of = "python-names"
@@ -215,6 +219,17 @@ class Names(PythonRule):
             elif not self._is_asked_for(name, message.lineno):
                 said.add(name)
                 yield self._of_python2(name, message.lineno)
+
+    def _is_used(self, name: str, line: int) -> bool:
+        """Return whether Python looks for a name where it is not, as far as the source says it.
+
+        https://docs.python.org/3/reference/executionmodel.html#resolution-of-names"""
+        source = self.source
+        if _HIDES & {*source.imports, *(one.id for one in source.nodes(ast.Name))}:
+            return False
+        kinds = ast.FunctionDef, ast.ClassDef
+        around = [d for k in kinds for d in source.nodes(k) if d.lineno <= line <= last_line(d)]
+        return not self._is_asked_for(name, line) and not any(is_unused(source, d) for d in around)
 
     def _is_asked_for(self, name: str, line: int) -> bool:
         """Return whether old code asks, before it uses a name, whether Python has it."""
