@@ -86,7 +86,7 @@ def test_a_fault_of_the_observer_is_no_finding(tmp_path, monkeypatch):
 
 
 @pytest.mark.quick
-@pytest.mark.parametrize("run", [alone._Node, roslaunch._Launch])
+@pytest.mark.parametrize("run", [alone.RunningNode, roslaunch.RunningLaunch])
 def test_a_node_that_registers_while_it_is_asked_for_is_not_settled(run):
     """A node that has not come up, and is not stuck, is waited for: it is looked for once."""
     looks = iter([None])
@@ -106,7 +106,7 @@ def test_a_node_that_registers_while_it_is_asked_for_is_not_settled(run):
     )
     known.activity.last, known.activity.is_stuck = look, lambda _: False
     known.is_up = lambda *_: known.activity.is_up_or_stuck(known.name(), 1)
-    assert not run.is_settled(known, *([] if run is alone._Node else [node]))
+    assert not run.is_settled(known, *([] if run is alone.RunningNode else [node]))
 
 
 def test_a_process_that_waits_for_the_disk_is_not_idle(tmp_path, monkeypatch):

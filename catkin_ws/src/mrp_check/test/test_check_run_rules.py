@@ -58,7 +58,12 @@ def launched(file, topic, *names):
 
 @pytest.mark.parametrize(
     ("files", "made_up", "found"),
-    [([], (), [ERROR]), (["launch/a.launch"], (), []), ([], ("/say",), []), ([], ("/sa",), [ERROR])],
+    [
+        ([], (), [ERROR]),
+        (["launch/a.launch"], (), []),
+        ([], ("/say",), []),
+        ([], ("/sa",), [ERROR]),
+    ],
 )
 def test_names_that_a_launch_file_may_give(files, made_up, found):
     """Without one, all nodes run together; with one, it has renamed what they need. Nor is it an

@@ -39,7 +39,7 @@ def run(plan: DirectPlan, observer: Observer, starter: apart.Starter) -> DirectR
     """Run the nodes until they have done enough, and end them."""
     began, activity = time.monotonic(), Activity(observer)
     given = observer, starter, activity
-    nodes = [_Node(key, one, plan.common, *given) for key, one in plan.nodes.items()]
+    nodes = [RunningNode(key, one, plan.common, *given) for key, one in plan.nodes.items()]
 
     def send() -> None:
         for node in nodes:
@@ -48,7 +48,7 @@ def run(plan: DirectPlan, observer: Observer, starter: apart.Starter) -> DirectR
             node.send_paced()
             node.exchange.step(node.name())
 
-    wait(plan.common, nodes, _Node.is_up, _Node.is_settled, send)
+    wait(plan.common, nodes, RunningNode.is_up, RunningNode.is_settled, send)
     observer.ask_types()
     latched = observer.latched()
     observer.release()
@@ -75,7 +75,7 @@ def run(plan: DirectPlan, observer: Observer, starter: apart.Starter) -> DirectR
     return DirectResult(results, left, observer.seen_since(began), latched)
 
 
-class _Node:
+class RunningNode:
     """A node that is started by itself."""
 
     def __init__(

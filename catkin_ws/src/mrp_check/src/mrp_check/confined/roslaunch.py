@@ -5,7 +5,7 @@ import os
 import re
 import signal
 import time
-from typing import Dict, List, Optional
+from typing import Dict, Optional
 
 from mrp_check.confined import apart, variables
 from mrp_check.confined.activity import TICK, Activity, is_over, processor_seconds, wait
@@ -25,7 +25,7 @@ def run(plan: LaunchPlan, observer: Observer, starter: apart.Starter) -> LaunchR
     """Run roslaunch until its nodes have done enough, and end it."""
     env = {**plan.common.environment, variables.MASTER: observer.uri}
     roslaunch = Program(starter, plan.command, env, plan.common.writable, merge=True)
-    launch = _Launch(plan, roslaunch, observer)
+    launch = RunningLaunch(plan, roslaunch, observer)
 
     def has_ended() -> Optional[str]:
         launch.begin()
@@ -58,7 +58,7 @@ def run(plan: LaunchPlan, observer: Observer, starter: apart.Starter) -> LaunchR
     )
 
 
-class _Launch:
+class RunningLaunch:
     """What roslaunch and its nodes are doing."""
 
     def __init__(self, plan: LaunchPlan, roslaunch: Program, observer: Observer) -> None:
