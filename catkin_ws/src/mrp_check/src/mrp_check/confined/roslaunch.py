@@ -139,7 +139,9 @@ class RunningLaunch:
     def _pid(self, node: LaunchNode) -> Optional[int]:
         """Return the process id that roslaunch has printed for a node, or None."""
         pid, init = self._own_pid(node), self.roslaunch.init
-        return apart.id_outside(init, pid) if init and pid else pid and int(pid)
+        if pid is None:
+            return None
+        return apart.id_outside(init, pid) if init else int(pid)
 
     def _own_pid(self, node: LaunchNode) -> Optional[str]:
         """Return the process id that a node has where it runs, or None."""

@@ -13,7 +13,7 @@ from pyflakes import checker, messages
 
 from mrp_check import releases
 from mrp_check.code import uses
-from mrp_check.code.python_facts import is_unused, last_line
+from mrp_check.code.python_facts import Definition, is_unused, last_line
 from mrp_check.code.python_modules import (
     OF_PYTHON_2,
     is_known,
@@ -227,9 +227,11 @@ class Names(PythonRule):
         source = self.source
         if _HIDES & {*source.imports, *(one.id for one in source.nodes(ast.Name))}:
             return False
-        kinds = ast.FunctionDef, ast.ClassDef
-        around = [d for k in kinds for d in source.nodes(k) if d.lineno <= line <= last_line(d)]
-        return not self._is_asked_for(name, line) and not any(is_unused(source, d) for d in around)
+        found: list[Definition] = [*source.nodes(ast.FunctionDef), *source.nodes(ast.ClassDef)]
+        around = [one for one in found if one.lineno <= line <= last_line(one)]
+        if any(is_unused(source, definition) for definition in around):
+            return False
+        return not self._is_asked_for(name, line)
 
     def _is_asked_for(self, name: str, line: int) -> bool:
         """Return whether old code asks, before it uses a name, whether Python has it."""
