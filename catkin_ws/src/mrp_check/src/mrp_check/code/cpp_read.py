@@ -6,7 +6,7 @@ from __future__ import annotations
 import pathlib
 import re
 from concurrent.futures import Future
-from typing import Mapping, Sequence
+from typing import Callable, Mapping, Sequence
 
 from mrp_check import sandbox
 from mrp_check.confined import cpp_headers, crossing
@@ -24,21 +24,21 @@ class CppReader:
     """See above.
 
     commands: a source's path -> (folder, command) of its compiler, as far as CMake says that
-    headers: the file of cpp_headers.make(), once there is one
+    headers: returns the file of cpp_headers.make(), once there is one
     """
 
     def __init__(
         self,
         workspace: Workspace,
         commands: Mapping[str, tuple[str, list[str]]],
-        headers: Future[pathlib.Path],
+        headers: Callable[[], Future[pathlib.Path]],
     ) -> None:
         self.workspace, self.commands, self.headers = workspace, commands, headers
 
     def read(self, file: str) -> Said | None:
         """Return what a source says, or None if it cannot be read. Raises CannotCheck."""
         workspace, unit = self.workspace, self._unit(file)
-        task = Task(str(workspace.package_folder), str(self.headers.result()), [unit])
+        task = Task(str(workspace.package_folder), str(self.headers().result()), [unit])
         reader = str(sandbox.code() / "cpp_facts.py")
         try:
             command = "/usr/bin/python3", reader, crossing.to_json(task)

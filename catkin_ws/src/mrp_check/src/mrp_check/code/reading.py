@@ -34,7 +34,8 @@ def read(reader: CppReader, spec: Spec, model: Model, launch: Launch | None) -> 
             continue
         facts.python[file] = source
         facts.places += python_facts.places(source)
-    workspace.progress("reading the C++ sources")
+    if cpp:
+        workspace.progress("reading the C++ sources")
     _used_elsewhere(facts)
     named: set[str] = set()
     for file, said in said_of.items():

@@ -122,7 +122,7 @@ class Case(Workspace):
         """What the sources say."""
         if self.package.of_kind(*uses.DEFINITIONS):
             self.catkin.wait_until_built()  # before, there are no headers of its messages
-        reader = CppReader(self, self.catkin.compile_commands(), self.headers)
+        reader = CppReader(self, self.catkin.compile_commands(), lambda: self.headers)
         return reading.read(reader, self.spec, self.model, self.launch)
 
     @functools.cached_property

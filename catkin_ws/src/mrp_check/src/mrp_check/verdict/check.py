@@ -13,7 +13,7 @@ import typing
 
 from mrp_check import sandbox
 from mrp_check.build.catkin import missing_tool
-from mrp_check.code import python_modules, uses
+from mrp_check.code import uses
 from mrp_check.contract.errors import CannotCheck, NotHere
 from mrp_check.contract.finding import ERROR, Finding
 from mrp_check.contract.requirements import ANY, CONTRACT, STATIC, closure
@@ -114,10 +114,8 @@ class _Examination:
         needs = needs_of(ids, rules)
         if "nodes" in needs:
             case.sessions.begin()
-        if "facts" in needs:
-            # This is done while CMake configures.
-            _ = case.headers
-            case.submit(python_modules.of_rospy)
+        if "facts" in needs and case.package.of_kind("cpp"):
+            _ = case.headers  # they are read while CMake configures
         # Others that need no more are asked, too: they may know the cause.
         chosen = [rule for rule in rules if needs.issuperset(rule.needs)]
         for rule in chosen:

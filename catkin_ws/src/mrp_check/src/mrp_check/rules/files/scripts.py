@@ -73,7 +73,7 @@ def _shadowing(package: Package, path: str) -> Iterator[Finding]:
         for module, line in uses.imports(package, path)
         if module.startswith(f"{stem}.") or module == stem and is_package
     )
-    is_rospys = stem in python_modules.of_rospy()
+    is_rospys = python_modules.is_module(stem) and stem in python_modules.of_rospy()
     line, who = (1, "rospy") if is_rospys else (next(own, 0), "it")
     if ending == ".py" and line:
         yield Finding(
