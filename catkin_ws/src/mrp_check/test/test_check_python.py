@@ -172,6 +172,31 @@ def test_each_line_of_python_2_is_named(text, first, other, tmp_path):
     assert finding.line == first and said in finding.message
 
 
+@pytest.mark.parametrize(
+    ("code", "kind", "value"),
+    [
+        ("subprocess.run(['true'])", Kind.STARTS, 0),
+        ("multiprocessing.Process()", Kind.STARTS, 0),
+        ("os.kill(0, 9)", Kind.KILLS, 0),
+        ("server.set_succeeded()", Kind.ENDS, 0),
+        ("len(sys.argv) < 2", Kind.COUNTS, 0),
+        ("sys.exit(3)", Kind.EXIT, 3),
+        ("raise SystemExit('usage')", Kind.EXIT, 1),
+    ],
+)
+def test_facts_say_what_happens_to_programs_and_goals(code, kind, value, tmp_path):
+    text = f"import multiprocessing, os, subprocess, sys\n{code}\n"
+    _, found = check_rules.python_facts_of(tmp_path, text)
+    assert [(one.kind, one.line, one.value) for one in found.places] == [(kind, 2, value)]
+
+
+@pytest.mark.parametrize(("given", "latch"), [("", False), (", latch=True", True)])
+def test_a_publisher_may_latch(given, latch, tmp_path):
+    text = f"import rospy\nrospy.Publisher('a', None, queue_size=1{given})\n"
+    _, found = check_rules.python_facts_of(tmp_path, text)
+    assert [one.latch for one in found.places] == [latch]
+
+
 def test_facts_say_what_the_source_says(tmp_path):
     text = HEAD.replace('"publisher_py_node")', '"publisher_py_node", sys.argv, True)')
     _, facts = check_rules.python_facts_of(tmp_path, text)
@@ -359,7 +384,8 @@ def test_only_a_client_of_a_service_needs_no_init_node(call, found, tmp_path):
 @pytest.mark.parametrize(("between", "misses"), [(6, True), (20, False)])
 def test_who_counts_arguments_may_read_them_before_it_ends(between, misses, tmp_path):
     text = "import sys\nif len(sys.argv) == 4:\n" + "    a = 1\n" * between + "sys.exit(1)\n"
-    package = check_rules.make(tmp_path, src__odd_DOT_py="# first\n" * 30 + text)
-    node_ = types.SimpleNamespace(package=package, direct=types.SimpleNamespace(code=1))
+    _, known = check_rules.python_facts_of(tmp_path, "# first\n" * 30 + text)
+    places = types.SimpleNamespace(facts=known)
+    node_ = types.SimpleNamespace(places=places, direct=types.SimpleNamespace(code=1))
     found = types.SimpleNamespace(file="src/odd.py", line=1)
     assert starts.misses_arguments(node_, found) == misses

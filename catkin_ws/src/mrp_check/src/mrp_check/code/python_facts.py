@@ -15,6 +15,7 @@ Definition = Union[ast.FunctionDef, ast.ClassDef]
 
 LEVELS = {"logdebug", "loginfo", "logwarn", "logerr", "logerror", "logfatal"}
 _WAITS = ("join", "wait", "pause")  # methods that do
+_GOAL_ENDS = ("set_succeeded", "set_aborted", "set_preempted", "set_canceled")
 _FAIL = ("wait_for_server", "wait_for_result")
 # What asks whether the node is to end, what ends the program, and what raises an error of rospy's
 # once it is to end. publish() gives up in silence then.
@@ -110,6 +111,10 @@ class _Node:
             yield from look(self, node)
         elif name.startswith("rospy.log"):
             yield from self.log(node, name.split(".")[1])
+        elif name.startswith("subprocess."):
+            yield self.place(Kind.STARTS)
+        elif method in _GOAL_ENDS:
+            yield self.place(Kind.ENDS)
         elif method == "publish":
             yield self.place(Kind.PUBLISH)
         elif method == "wait_for_server":
@@ -266,7 +271,9 @@ class _Node:
         queue = argument(self.node, position, "queue_size")
         line = queue.lineno if queue is not None else None
         name, length = self.value(0, "name"), self.source.value(queue)
-        yield self.place(kind, name, queue=length, queue_line=line)
+        latch = argument(self.node, 4, "latch") if kind is Kind.PUBLISHER else None
+        latches = latch is not None and self.source.value(latch) is not False
+        yield self.place(kind, name, queue=length, queue_line=line, latch=latches)
 
     def publisher(self, node: ast.Call) -> Iterator[Place]:
         return self.topic(Kind.PUBLISHER, 6)
@@ -298,7 +305,19 @@ class _Node:
         yield self.place(Kind.PRINT, self.value(0, "s"))
 
     def exit(self, node: ast.Call) -> Iterator[Place]:
-        yield self.place(Kind.EXIT, self.called(node))
+        code = self.value(0, "status")
+        value = code if isinstance(code, int) else int(isinstance(code, str))
+        yield self.place(Kind.EXIT, self.called(node), value=value)
+
+    def starts(self, node: ast.Call) -> Iterator[Place]:
+        yield self.place(Kind.STARTS)
+
+    def kills(self, node: ast.Call) -> Iterator[Place]:
+        yield self.place(Kind.KILLS)
+
+    def length(self, node: ast.Call) -> Iterator[Place]:
+        if node.args and self.source.dotted(node.args[0]) == "sys.argv":
+            yield self.place(Kind.COUNTS)
 
     def signal(self, node: ast.Call) -> Iterator[Place]:
         name = self.source.dotted(argument(node, 0, "signalnum"))
@@ -339,7 +358,13 @@ _CALLS = (
     (("rospy.spin",), _Node.spin),
     (("print",), _Node.print),
     (("sys.stdout.write",), _Node.write),
-    (("sys.exit", "os._exit", "exit", "quit", "rospy.signal_shutdown"), _Node.exit),
+    (
+        ("sys.exit", "os._exit", "exit", "quit", "SystemExit", "rospy.signal_shutdown"),
+        _Node.exit,
+    ),
+    (("os.fork", "os.popen", "os.system", "multiprocessing.Process"), _Node.starts),
+    (("os.kill", "os.killpg"), _Node.kills),
+    (("len",), _Node.length),
     (("signal.signal",), _Node.signal),
     (("itertools.count",), _Node.count),
     (("rospy.ServiceProxy",), _Node.asks_service),

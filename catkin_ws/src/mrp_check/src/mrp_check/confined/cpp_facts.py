@@ -84,7 +84,8 @@ class _Source(Counters, Habits):
     def look_at_return(self, cursor: Cursor) -> None:
         function = self.function(cursor)
         if function is not None and function.spelling == "main":
-            self.add(cursor, Kind.EXIT, "return")
+            code = self.value(next(cursor.get_children(), None))
+            self.add(cursor, Kind.EXIT, "return", value=code if isinstance(code, int) else 0)
 
     def look_at_function(self, cursor: Cursor) -> None:
         if not cursor.is_definition():
@@ -93,6 +94,11 @@ class _Source(Counters, Habits):
         virtual = cursor.kind == self.kinds.CXX_METHOD and cursor.is_virtual_method()
         usr = None if used or virtual else cursor.canonical.get_usr()
         self.add(cursor, Kind.FUNCTION, cursor.spelling, end=cursor.extent.end.line, usr=usr)
+        for argc in [*cursor.get_arguments()][:1] if cursor.spelling == "main" else ():
+            for one in cursor.walk_preorder():
+                sides = one.get_children() if one.kind == self.kinds.BINARY_OPERATOR else ()
+                if any(self.names(self.peel(side), argc) for side in sides):
+                    self.add(one, Kind.COUNTS)
 
     def look_at_call(self, call: Cursor) -> None:
         arguments, scope = list(call.get_arguments()), self.scope(call)
@@ -112,6 +118,10 @@ class _Source(Counters, Habits):
 
     def add_call(self, kind: Kind, call: Cursor, arguments: Arguments) -> None:
         self.add(call, kind, call.spelling)
+
+    def add_exit(self, kind: Kind, call: Cursor, arguments: Arguments) -> None:
+        code = self.optional(arguments, 0)
+        self.add(call, kind, call.spelling, value=code if isinstance(code, int) else 0)
 
     def add_spin(self, kind: Kind, call: Cursor, arguments: Arguments) -> None:
         scope = self.scope(call)
@@ -154,7 +164,9 @@ class _Source(Counters, Habits):
             if prefix and not topic.startswith(("/", "~")):
                 topic = f"{prefix}/{topic}" if prefix != "~" else "~" + topic
         queue = self.optional(arguments, 1)
-        self.add(call, kind, topic, queue=queue if isinstance(queue, int) else None)
+        given = next(arguments[2].get_tokens(), None) if len(arguments) > 2 else None
+        latch = kind is Kind.PUBLISHER and given is not None and given.spelling != "false"
+        self.add(call, kind, topic, queue=queue if isinstance(queue, int) else None, latch=latch)
 
     def namespace(self, handle: Cursor | None) -> str | None:
         """Return what a NodeHandle was made with, such as "~", or None if it has none."""
@@ -303,6 +315,7 @@ _LOOKS = {
 }
 # (scopes or None for any, names) of a call, what it is, and what looks at it
 _HANDLE, _PARAM = ("NodeHandle",), ("NodeHandle", "param")
+_GOAL_ENDS = ("setSucceeded", "setAborted", "setPreempted", "setCanceled")
 _FAIL = ("waitForServer", "waitForResult", "waitForExistence", "waitForService")
 _CALLS = (
     (("ros",), ("init",), Kind.INIT, _Source.add_init),
@@ -312,7 +325,7 @@ _CALLS = (
     (None, ("Rate", "WallRate"), Kind.TIMER, _Source.add_rate),
     (None, ("publish",), Kind.PUBLISH, _Source.add_publish),
     (None, _SPINS, Kind.SPIN, _Source.add_spin),
-    (None, _EXITS, Kind.EXIT, _Source.add_call),
+    (None, _EXITS, Kind.EXIT, _Source.add_exit),
     (None, ("signal", "sigaction"), Kind.SIGNAL, _Source.add_call),
     (None, tuple(SLEEPS), Kind.SLEEP, _Source.add_call),
     (_HANDLE, ("serviceClient",), Kind.ASKS, _Source.add_name),
@@ -326,6 +339,9 @@ _CALLS = (
     (("ServiceClient", "service"), ("call",), Kind.CALLS, _Source.add_name),
     (None, ("SimpleActionClient",), Kind.COMMANDS, _Source.add_name),
     (None, ("SimpleActionServer",), Kind.SERVES, _Source.add_name),
+    (None, _GOAL_ENDS, Kind.ENDS, _Source.add_call),
+    (("", "std"), ("fork", "vfork", "popen", "system"), Kind.STARTS, _Source.add_call),
+    (("",), ("kill", "killpg"), Kind.KILLS, _Source.add_call),
     (None, _FAIL, Kind.IGNORED, _Source.look_at_ignored),
     (("ServiceClient",), ("call",), Kind.IGNORED, _Source.look_at_ignored),
     (("", "std"), ("printf", "puts"), Kind.PRINT, _Source.add_print),

@@ -38,6 +38,11 @@ class Kind(enum.Enum):
     READS = "reads"  # a parameter, without a default
     KNOWS = "knows"  # a parameter
     SETS = "sets"  # a parameter
+    ENDS = "ends"  # a goal
+    # Other programs, and the command line:
+    STARTS = "starts"  # a process
+    KILLS = "kills"  # a process
+    COUNTS = "counts"  # the arguments
     # What may go wrong:
     ARGUMENT = "argument"  # of the command line, which nobody has counted
     BLOCKS = "blocks"  # a subscriber's callback sleeps
@@ -71,7 +76,9 @@ class Place:
     type, bits: of a counter; type: of a service or an action, its last part
     names: of the variables that a message's field is set from
     limit, value: a counter that has come to the limit is given the value; which argument of the
-        command line; whether a call that is waited for has a limit, or a loop ends on Ctrl-C
+        command line; whether a call that is waited for has a limit, or a loop ends on Ctrl-C; the
+        exit code that is returned
+    latch: whether a publisher latches, or may
     name, function: of a handle's variable, and the function that it stands in
     holds: the types of the handles in it
     """
@@ -94,6 +101,7 @@ class Place:
     names: List[str] = dataclasses.field(default_factory=list)
     limit: int = 0
     value: int = 0
+    latch: bool = False
     name: Optional[str] = None
     function: Optional[str] = None
     holds: List[str] = dataclasses.field(default_factory=list)

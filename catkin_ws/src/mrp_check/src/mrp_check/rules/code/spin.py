@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-import re
+import ast
 from typing import Iterator, Sequence
 
 from mrp_check.code.source_node import SourceNode, each_node
@@ -77,27 +77,30 @@ def _last_line(node: SourceNode) -> int:
 def _made_too_late(node: SourceNode, spins: Sequence[Place]) -> Iterator[Finding]:
     """Yield a finding if the node's parts are made below a spin() of the same function."""
     classes = {p.text for p in node.places(Kind.FUNCTION) if (p.text or "")[:1].isupper()}
-    handles = {(p.file, p.line) for p in node.places(Kind.HANDLE)}
+    parts = Kind.HANDLE, Kind.PUBLISHER, Kind.SUBSCRIBER
+    made = {(p.file, p.line) for p in node.places(*parts)}
+    for file in node.files:
+        source = node.facts.python.get(file)
+        for call in source.nodes(ast.Call) if source else ():
+            if getattr(call.func, "id", "") in classes:
+                made.add((file, call.lineno))
     for spin in spins:
         ends = [f.end for f in node.places(Kind.FUNCTION) if f.is_around(spin)]
         if spin.text not in (None, "spin", "waitForShutdown") or not ends:
             continue
-        made = {p.line for p in node.places(Kind.PUBLISHER, Kind.SUBSCRIBER) if p.file == spin.file}
-        for number in range(spin.line + 1, min(ends) + 1):
-            line = node.package.line(spin.file, number)
-            is_handle = (spin.file, number) in handles
-            if is_handle or number in made or classes & set(re.findall(r"\w+", line)):
-                call = "rospy.spin()" if node.is_python else "ros::spin()"
-                yield node.finding(
-                    "spin",
-                    f"{call} returns only when the node is to end: what stands below it, in"
-                    f" line {number}, is made too late.",
-                    spin,
-                    certainty=_sure(node),
-                    expected=f"{call} below all that the node is made of",
-                    fix=f"Move it below line {number}.",
-                )
-                return
+        late = [n for file, n in made if file == spin.file and spin.line < n <= min(ends)]
+        if late:
+            spins_by = "rospy.spin()" if node.is_python else "ros::spin()"
+            yield node.finding(
+                "spin",
+                f"{spins_by} returns only when the node is to end: what stands below it, in line"
+                f" {min(late)}, is made too late.",
+                spin,
+                certainty=_sure(node),
+                expected=f"{spins_by} below all that the node is made of",
+                fix=f"Move it below line {min(late)}.",
+            )
+            return
 
 
 def _is_rate(node: SourceNode, place: Place) -> bool:

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import ast
 from typing import Iterator, Mapping, Sequence
 
 from mrp_check.confined import fitting
@@ -82,9 +83,15 @@ def _answers(node: Node, service: Service, answers: list[Answer]) -> Iterator[Fi
 
 def _answering(node: Node, response: Message) -> Where | None:
     """Return the place at which a response gets its fields, or None."""
-    made = r"return\s+\w*Response\(|\w*Response\(\s*[^\s)]"
     place = node.places.of_setting(node.name, response)
-    return place or node.package.first_match(node.places.sources(node.name), made)
+    sources = map(node.places.facts.python.get, node.places.sources(node.name))
+    for source in [] if place else filter(None, sources):
+        for call in source.nodes(ast.Call):
+            is_response = (source.dotted(call.func) or "").endswith("Response")
+            is_returned = isinstance(source.parents.get(call), ast.Return)
+            if is_response and (is_returned or call.args or call.keywords):
+                return source.file, call.lineno
+    return place
 
 
 def _requests(

@@ -14,7 +14,6 @@ from mrp_check.contract.finding import HABIT, Finding, Where
 from mrp_check.contract.names import last_part
 from mrp_check.contract.requirements import Requirement, Rule
 from mrp_check.contract.spec import Shutdown
-from mrp_check.package.package import Package
 from mrp_check.run import evidence
 from mrp_check.run.case import Case
 from mrp_check.run.node import Node
@@ -144,14 +143,11 @@ def _needs_force(name: str, launch: LaunchResult | None) -> bool | None:
 
 def _waits(node: Node) -> Where:
     """Return the place of what may keep a C++ node from ending: a handler of its own, or a loop."""
-    handler = r"\bSIG_IGN\b|\bsignal\s*\(|\bsigaction\s*\("
-    endless = r"\bwhile\s*\(\s*(true|1)\s*\)|\bfor\s*\(\s*;\s*;|\bwhile True"
-    files = node.places.sources(node.name)
-    return (
-        node.package.first_match(files, handler)
-        or node.package.first_match(files, endless)
-        or node.places.of(node.name, Kind.LOOP, Kind.SPIN, Kind.INIT)
-    )
+    places = node.places.facts.of(node.name, Kind.SIGNAL, Kind.LOOP)
+    places.sort(key=lambda place: (place.kind is not Kind.SIGNAL, place.text != "endless"))
+    if places:
+        return places[0].file, places[0].line
+    return node.places.of(node.name, Kind.SPIN, Kind.INIT)
 
 
 def _loop_around(node: Node, place: Where | None) -> Where | None:
@@ -164,21 +160,20 @@ def _loop_around(node: Node, place: Where | None) -> Where | None:
 
 
 def _leaves(node: Node, code: int | None) -> Where:
-    """Return the place at which a node says its exit code, or may break."""
-    ends = rf"\b(return|exit|_exit|SystemExit)\b\s*\(?\s*{code}\b|EXIT_FAILURE"
-    breaks = r"\bstd::thread\b|\bboost::thread\b|\babort\s*\("
-    if code == -signal.SIGINT:
-        breaks = r"\bNoSigintHandler\b|\bSIG_DFL\b"
-    files = node.places.sources(node.name)
-    return (
-        node.package.first_match(files, ends)
-        or (code is not None and code < 0 and node.package.first_match(files, breaks))
-        or node.places.of(node.name, Kind.SPIN, Kind.INIT)
-    )
+    """Return the place at which a node says its exit code, or changes what Ctrl-C does."""
+    exits = node.places.facts.of(node.name, Kind.EXIT)
+    if code == -signal.SIGABRT:
+        exits = [one for one in exits if one.text == "abort"]
+    else:
+        exits = [one for one in exits if code and one.value % 256 == code]
+    if exits:
+        return exits[0].file, exits[0].line
+    kinds = (Kind.SIGNAL, Kind.INIT) if code == -signal.SIGINT else (Kind.SPIN, Kind.INIT)
+    return node.places.of(node.name, *kinds)
 
 
 def _leftovers(case: Case) -> Iterator[Finding]:
-    seen, spec, package, places = case.observed, case.spec, case.package, case.places
+    seen, spec, places = case.observed, case.spec, case.places
     reported: set[object] = set()
     for left in [one for run in (seen.direct, seen.launch) if run for one in run.left]:
         name = left.node
@@ -189,7 +184,7 @@ def _leftovers(case: Case) -> Iterator[Finding]:
         if {(name, "left"), left.command} & reported or alone and alone.killed:
             continue
         reported |= {(name, "left"), left.command}
-        file, line = _starts_program(name, package, places)
+        file, line = _starts_program(name, places)
         name = name or next((node for node in spec.nodes if file in places.sources(node)), None)
         yield Finding(
             "leftovers",
@@ -202,11 +197,11 @@ def _leftovers(case: Case) -> Iterator[Finding]:
         )
 
 
-def _starts_program(name: str | None, package: Package, places: Places) -> Where:
-    files = places.sources(name) if name else package.of_kind("python", "cpp")
-    starts = r"\b(Popen|fork|system|popen|Process)\s*\(|subprocess\.\w+\("
-    place = package.first_match(files, starts)
-    return place or (places.of(name, Kind.INIT) if name else (None, None))
+def _starts_program(name: str | None, places: Places) -> Where:
+    if name:
+        return places.of(name, Kind.STARTS, Kind.INIT)
+    found = [place for place in places.facts.places if place.kind is Kind.STARTS]
+    return (found[0].file, found[0].line) if found else (None, None)
 
 
 def _findings(case: Case) -> Iterator[Finding]:

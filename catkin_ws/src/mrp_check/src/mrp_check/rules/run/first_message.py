@@ -62,8 +62,7 @@ def _is_lost(case: Case, run: Run, one: Registration, times: list[float]) -> boo
     is_short = run.asked < one.answered + _LATER and run.ended is None
     latches = run.path in run.latched.get(one.topic, ())
     if run.ended is not None:  # then it could not be asked
-        files = case.places.sources(run.node)
-        latches = case.package.first_match(files, r"\blatch|advertise\b.*,\s*true\b") is not None
+        latches = any(publisher.latch for publisher in places(Kind.PUBLISHER))
     return one.heard and not (is_late or is_short or latches)
 
 

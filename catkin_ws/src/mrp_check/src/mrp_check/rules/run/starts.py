@@ -3,11 +3,14 @@
 
 from __future__ import annotations
 
+import ast
 import re
 from typing import Iterator
 
 from mrp_check.code import asked, uses
+from mrp_check.code.facts import Facts
 from mrp_check.confined.launch_dump import Started
+from mrp_check.confined.places import Kind
 from mrp_check.contract.finding import HABIT, HINT, Finding, Line, Where
 from mrp_check.contract.names import last_part
 from mrp_check.contract.requirements import Requirement, Rule
@@ -22,7 +25,7 @@ from mrp_check.run.words import code_text, last_words
 
 _ARGUMENTS, _PARAMETER = "arguments on its command line", "a parameter"
 # What a node says that stands before an empty keyboard, screen or command line, what it waits for,
-# and what must stand in the line that raised, where anything else raises the same error, too.
+# and what the line that raised must name, where anything else raises the same error, too.
 _WAITS = (
     (r"(?i)^\s*\W*usage\b|\[ ?\w+\] \[[\d., ]+\]: usage\b", _ARGUMENTS, ""),
     (r"EOFError: EOF when reading a line", "the keyboard", ""),
@@ -30,21 +33,17 @@ _WAITS = (
     (r"(?i)cannot open display|could not connect to display|no display name", "a screen", ""),
     (r"(?i)can.t open camera|VIDEOIO|/dev/(video|tty|input)\w*", "a device", ""),
     (r"KeyError: ", _PARAMETER, "param"),
-    (r"IndexError: list index|ValueError: ", "arguments", "sys.argv["),
+    (r"IndexError: list index|ValueError: ", "arguments", "sys.argv"),
 )
-# Beside the line at which a program ends, it misses some of the arguments that it counts.
-_COUNTS = re.compile(r"\bargc\s*[!<>=]|[<>=]\s*argc\b|\blen\(sys\.argv\)")
-_ENDS = re.compile(r"\bexit\s*\(|\bquit\s*\(|\breturn\s+(-?[1-9]|EXIT_FAILURE)")
 _WAITS_FOR_ARGUMENTS = f"waits for {_ARGUMENTS}"
 _FEW = 6  # lines
 _OF_ACTIONS = {"feedback", "result", "status"}
-_KILLS = r"\bkill(pg)?\s*\(|\b(pkill|killall)\b"
 
 
 def findings(case: Case) -> Iterator[Finding]:
     yield from _problems(case)
     yield from _launch_findings(case.package, case.spec, case.observed)
-    yield from _killed(case.package, case.observed)
+    yield from _killed(case.facts, case.observed)
     for node in case.nodes.values():
         if not node.has_executable and not _lacks_what_is_not_here(case, node):
             yield _no_executable(node)
@@ -102,16 +101,17 @@ def _launch_findings(package: Package, spec: Spec, seen: Observed) -> Iterator[F
         return
 
 
-def _killed(package: Package, seen: Observed) -> Iterator[Finding]:
+def _killed(facts: Facts, seen: Observed) -> Iterator[Finding]:
     """Yield a Finding if something has killed roslaunch: only the package itself can reach it."""
     code = seen.launch.code if seen.launch else None
     if code is not None and code < 0:
-        files = package.of_kind("python", "cpp")
-        place: Where = package.first_match(files, _KILLS) or (None, None)
+        places = [one for one in facts.places if one.kind in (Kind.KILLS, Kind.STARTS)]
+        places.sort(key=lambda place: place.kind is not Kind.KILLS)
         yield Finding(
             "starts",
             "A node kills roslaunch, and perhaps the other nodes.",
-            *place,
+            places[0].file if places else None,
+            places[0].line if places else None,
             expected="nodes that end no program but themselves",
             seen=f"roslaunch ended {code_text(code)}",
         )
@@ -163,7 +163,7 @@ def _of_start(case: Case, node: Node, finding: Finding) -> bool:
             continue  # its launch file should give them
         said = next((text for text in lines if re.search(shape, text)), None)
         if said:
-            if reads not in _source(node, finding):
+            if reads and not any(reads in name for name in _names(node, finding)):
                 continue
             finding.certainty = HABIT if what == _PARAMETER else HINT
             finding.message = f"{node.name} waits for {what}: {said.strip()[:200]}"
@@ -229,25 +229,28 @@ def misses_arguments(node: Node, finding: Finding) -> bool:
     is not known, beside any line that ends it."""
     if not finding.file or not finding.line:
         return False
-    lines = node.package.lines(finding.file)
-    begin, end = max(finding.line - _FEW, 0), finding.line + _FEW
-    if any(map(_COUNTS.search, lines[begin:end])):
+    places = [one for one in node.places.facts.places if one.file == finding.file]
+    counting = [one.line for one in places if one.kind is Kind.COUNTS]
+    if any(abs(line - finding.line) <= _FEW for line in counting):
         return True
     code = node.direct.code if node.direct else 0
-    counting = [number for number, text in enumerate(lines) if _COUNTS.search(text)]
-    return bool(code) and any(any(map(_ENDS.search, lines[n : n + 2 * _FEW])) for n in counting)
+    exits = [p.line for p in places if p.kind is Kind.EXIT and (p.value or p.text != "return")]
+    return bool(code) and any(0 <= end - n < 2 * _FEW for end in exits for n in counting)
 
 
-def _source(node: Node, finding: Finding) -> str:
-    lines = node.package.lines(finding.file) if finding.file else []
-    return lines[finding.line - 1] if finding.line and finding.line <= len(lines) else ""
+def _names(node: Node, finding: Finding) -> set[str]:
+    """Return the names in the line of a Python source that raised."""
+    source = node.places.facts.python.get(finding.file or "")
+    if source is None:
+        return set()
+    named = [one for one in source.nodes(ast.Attribute) if one.lineno == finding.line]
+    return {source.dotted(one) or one.attr for one in named}
 
 
 def _is_left_alone(node: Node) -> bool:
     """Return whether a node ended that was to be called back."""
     heard = {registration.topic for registration in node.seen_alone.subscriptions}
-    files = node.places.sources(node.name)
-    if node.package.first_match(files, r"\bSimpleActionClient\b"):
+    if node.places.facts.of(node.name, Kind.COMMANDS):
         # Those of the client itself call nothing of the node's.
         heard = {topic for topic in heard if last_part(topic) not in _OF_ACTIONS}
     return bool(heard)

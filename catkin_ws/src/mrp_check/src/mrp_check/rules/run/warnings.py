@@ -6,6 +6,7 @@ What a node logs itself is its author's business: it is counted, and shown as a 
 
 from __future__ import annotations
 
+import ast
 import re
 from typing import Iterator, NamedTuple
 
@@ -27,14 +28,14 @@ class _Known(NamedTuple):
     """A line that a library logs where a node is wrong for certain.
 
     says: a part of the line; id: the requirement; means: what the node does; fix: what to do
-    near: a regular expression of the line of the source that it is about
+    near: the kind of the place in the source that it is about
     """
 
     says: str
     id: str
     means: str
     fix: str
-    near: str
+    near: Kind
 
 
 _KNOWN = (
@@ -43,21 +44,21 @@ _KNOWN = (
         "callbacks",
         "returns from its execute callback without ending the goal: actionlib aborts it",
         "Call set_succeeded(), set_aborted() or set_preempted() on each path through the callback.",
-        r"\bSimpleActionServer\b",
+        Kind.SERVES,
     ),
     _Known(
         "To transition to a",
         "callbacks",
         "ends a goal that has ended already",
         "Return from the callback right after the call that ends the goal.",
-        r"\bset_?(?:[sS]ucceeded|[aA]borted|[pP]reempted|[cC]ancell?ed)\s*\(",
+        Kind.ENDS,
     ),
     _Known(
         "Error processing request",
         "callbacks",
         "raises an error while it answers a service",
         "Correct the line that raises it.",
-        r"\brospy\.Service\s*\(",
+        Kind.OFFERS,
     ),
 )
 # What is no fault of the package, and why not.
@@ -139,20 +140,16 @@ def _of_libraries(node: Node, run: Run, lines: list[Log]) -> Iterator[Finding]:
         else:
             said = f"A library of ROS logs this for {node.name}, {run.where}: {text[:300]}"
             seen = f"{log.file}:{log.line}"
-            place = _place(node, log, "")
+            place = _place(node, log)
             more = {"expected": "no such line", "seen": seen, "why": why}
             yield node.finding("warnings", said, place, HABIT, **more)
 
 
-def _place(node: Node, log: Log, near: str) -> Where:
-    """Return the last line of the package's own in a traceback, or a line that is like `near`."""
+def _place(node: Node, log: Log, *near: Kind) -> Where:
+    """Return the last line of the package's own in a traceback, or a place of these kinds."""
     own = [(node.places.own(one["path"]), int(one["line"])) for one in _FILE.finditer(log.text)]
     places = [(file, line) for file, line in own if file]
-    if places:
-        return places[-1]
-    files = node.places.sources(node.name)
-    found = node.package.first_match(files, near) if near else None
-    return found or node.places.of(node.name, Kind.INIT, Kind.HANDLE)
+    return places[-1] if places else node.places.of(node.name, *near, Kind.INIT, Kind.HANDLE)
 
 
 def _of_frames(node: Node, run: Run, failed: list[Log]) -> Iterator[Finding]:
@@ -192,8 +189,11 @@ def _illegal_name(node: Node) -> Iterator[Finding]:
             name = found["name"]
             kind = Kind.PUBLISHER if node.wanted.publishing else Kind.SUBSCRIBER
             file, line = node.places.of_topic(node.name, kind, name)
-            if "//" in name and file:  # where it is put together
-                line = node.package.find_line(file, "get_namespace()") or line
+            source = node.places.facts.python.get(file or "")
+            if "//" in name and source:  # where it is put together
+                calls = source.nodes(ast.Call)
+                joins = (c.lineno for c in calls if source.dotted(c.func) == "rospy.get_namespace")
+                line = next(joins, line)
             slashes = " It has two slashes: rospy.get_namespace() already ends with one."
             yield node.finding(
                 "warnings",
