@@ -118,7 +118,7 @@ def without_definitions(output: str) -> str | None:
     """Return the package whose headers this machine has, and whose definitions it has not: Debian
     keeps them apart. None if CMake did not look for such a definition."""
     found = re.search(_DEFINITION, output)
-    if not found or not uses.is_ros_package(found[1]):
+    if not found or not uses.is_installed(found[1]):
         return None
     has_any = any((pathlib.Path(share) / found[1] / "msg").is_dir() for share in resources.SHARES)
     return None if has_any else found[1]

@@ -141,7 +141,7 @@ def _undeclared(error: Error) -> Words:
     name, text = error.match.group(1), "\n".join(error.lines)
     if name == "ros" or name.startswith("ROS_") and not _INCLUDES_ROS.search(text):
         return _header(name, "ros/ros.h")
-    if uses.is_ros_package(name):
+    if uses.is_here(error.package, name):
         used = re.search(rf"\b{re.escape(name)}::(\w+)", text)
         return _header(name, f"{name}/{used.group(1)}.h" if used else f"{name}/....h")
     if re.fullmatch(r"_[1-9]", name):
@@ -228,8 +228,8 @@ def _missing_header(error: Error) -> Words:
             f"there is no package {folder}: {last_part(header)} is made by {package.name} itself."
         )
         return Words(said, f"Write {right}.", None, (header, right))
-    is_other = folder != package.name and uses.is_called_so(folder)
-    if is_other and not uses.is_ros_package(folder):
+    is_other = folder != package.name and uses.is_called_so(package, folder)
+    if is_other and not uses.is_here(package, folder):
         return Words(
             f"there is no header {header} on this machine: {uses.absent(folder, 'cpp')}.",
             "Install it.",

@@ -19,7 +19,7 @@ from mrp_check.contract.resources import SHARES
 
 
 def is_ros(name: str) -> bool:
-    return uses.is_ros_package(name.split(".")[0])
+    return uses.is_installed(name.split(".")[0])
 
 
 # Modules of Python, and one that robots need, that are the same on each system; what versions of

@@ -109,7 +109,7 @@ class Source:
     def _see_star(self, module: str) -> None:
         """Take the names of `from MODULE import *`, if MODULE is ROS's own, or Python's."""
         try:
-            if module not in _PLAIN and not uses.is_ros_package(module.split(".")[0]):
+            if module not in _PLAIN and not uses.is_installed(module.split(".")[0]):
                 raise ImportError
             found = importlib.import_module(module)
         except Exception:  # the rules about imports say what is wrong with it

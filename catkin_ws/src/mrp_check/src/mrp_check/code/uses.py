@@ -73,7 +73,7 @@ def is_old_name(package: Package, owner: str, name: str) -> bool:
     is made of a definition of this package's own."""
     if name not in made(package):
         return False
-    is_other = owner == package.name or exists(owner) or is_called_so(owner)
+    is_other = owner == package.name or exists(owner) or is_called_so(package, owner)
     files = [file for file in ("package.xml", "CMakeLists.txt") if file in package.files]
     texts = (_WORDS.sub("", package.text(file)) for file in files)
     is_named = any(re.search(rf"\b{re.escape(owner)}\b", text) for text in texts)
@@ -121,7 +121,7 @@ def _guesses(name: str, language: str) -> list[str]:
 
 def exists(name: str) -> bool:
     """Return whether this machine or Debian has a ROS package of that name."""
-    return is_ros_package(name) or bool(debian_packages() & {*_guesses(name, "cpp")})
+    return is_installed(name) or bool(debian_packages() & {*_guesses(name, "cpp")})
 
 
 def absent(name: str, language: str) -> str:
@@ -149,13 +149,9 @@ def debian_packages() -> set[str]:
     return names if len(names) >= _ALL else set()
 
 
-# The names of the packages that are built with the package under check.
-SIBLINGS: set[str] = set()
-
-
-def is_ros_package(name: str) -> bool:
+def is_here(package: Package, name: str) -> bool:
     """Return whether a ROS package of that name is on this machine, or beside the package."""
-    return name in SIBLINGS or is_installed(name)
+    return is_installed(name) or any(sibling.name == name for sibling in package.siblings)
 
 
 @functools.lru_cache(maxsize=None)
@@ -217,12 +213,12 @@ def absent_header(package: Package, header: str) -> str | None:
     if not name or name == package.name:
         return None
     is_debian = _guesses(name, "cpp")[0] in debian_packages()
-    if is_ros_package(name):  # Debian may keep its headers in a package of their own
+    if is_here(package, name):  # Debian may keep its headers in a package of their own
         return name if is_debian and not _has_headers(header.split("/")[0]) else None
     asked = rf"(?m)^[^#\n]*\b{re.escape(name)}\b"
     cmake = package.text("CMakeLists.txt") if "CMakeLists.txt" in package.files else ""
     is_named = package.find_line("package.xml", f">{name}<") or re.search(asked, cmake)
-    is_known = is_debian or name in _LIBRARIES or is_called_so(name)
+    is_known = is_debian or name in _LIBRARIES or is_called_so(package, name)
     return name if is_named or is_known else None
 
 
@@ -243,17 +239,19 @@ _WELL_KNOWN = set(
 
 def is_of_ros(name: str) -> bool:
     """Return whether a name is that of one of ROS's own packages, on this machine or elsewhere."""
-    return name in _WELL_KNOWN or is_ros_package(name)
+    return name in _WELL_KNOWN or is_installed(name)
 
 
-def is_called_so(name: str) -> bool:
-    """Return whether a name is that of a ROS package, on this machine or elsewhere."""
+def is_called_so(package: Package, name: str) -> bool:
+    """Return whether a name is that of a ROS package: on this machine, beside the package, or
+    elsewhere."""
     is_messages = name.endswith(("_msgs", "_srvs")) and not nearest(name, ["std_msgs"], 0.85)
-    return is_messages or name == "learning_tf" or is_of_ros(name)
+    is_ros = is_messages or name == "learning_tf" or is_of_ros(name)
+    return is_ros or is_here(package, name)
 
 
 def of(
-    package: Package, model: Model, is_known: Callable[[str], bool] = is_ros_package
+    package: Package, model: Model, is_known: Callable[[str], bool] = is_installed
 ) -> dict[str, Use]:
     """Return name -> Use of the ROS packages that the sources use; tests are left out.
 
@@ -284,7 +282,8 @@ def of_all(package: Package, model: Model, is_contract: bool) -> dict[str, Use]:
     machine and of what the launch files start, too."""
     if is_contract:
         return of(package, model)
-    return {**of_launch(package), **of(package, model, is_called_so)}
+    is_known = functools.partial(is_called_so, package)
+    return {**of_launch(package), **of(package, model, is_known)}
 
 
 def of_launch(package: Package) -> dict[str, Use]:

@@ -13,7 +13,6 @@ import typing
 
 from mrp_check import sandbox
 from mrp_check.build.catkin import missing_tool
-from mrp_check.code import uses
 from mrp_check.contract.errors import CannotCheck, NotHere
 from mrp_check.contract.finding import ERROR, Finding
 from mrp_check.contract.requirements import ANY, CONTRACT, STATIC, closure
@@ -71,8 +70,6 @@ def check(
         rules = [rule for rule in rules if rule.stage in STATIC]
     asked = {id_ for rule in rules for id_ in rule.ids if not spec or spec.asks(id_)}
     ids = [id_ for id_ in REQUIREMENTS if id_ in asked and (id_ in only or not only)]
-    uses.SIBLINGS.clear()
-    uses.SIBLINGS.update(sibling.name for sibling in package.siblings)
     with contextlib.nullcontext(kept) if kept else scratch_folder() as folder:
         given = package, spec, folder, timeout, progress
         case = Case(*given) if spec else AnyCase(*given)

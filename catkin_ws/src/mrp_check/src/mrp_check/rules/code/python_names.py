@@ -81,7 +81,7 @@ class Names(PythonRule):
         if missing is None:
             return
         self.not_imported.append(name.split(".")[-1])
-        if missing.split(".")[0] in uses.SIBLINGS:
+        if any(one.name == missing.split(".")[0] for one in self.package.siblings):
             return  # it is built with the package: the run shows whether it has that
         if missing in OF_PYTHON_2:
             yield self._renamed(node, missing)
@@ -96,7 +96,7 @@ class Names(PythonRule):
             if any(uses.is_old_name(self.package, missing, one) for one in _names_of(node)):
                 yield self._old_name(node, missing)
                 return
-            if not near or uses.is_called_so(missing) or uses.is_of_debian(missing):
+            if not near or uses.is_called_so(self.package, missing) or uses.is_of_debian(missing):
                 self.source.absent[missing] = uses.absent(missing, "python")
                 return
         else:
@@ -290,7 +290,7 @@ class Names(PythonRule):
         """Return what may be meant by a name that nothing has, and what to do."""
         if name in members:
             return f" Perhaps self.{name} is meant.", f"Write self.{name}."
-        if uses.is_ros_package(name) or is_module(name):
+        if uses.is_installed(name) or is_module(name):
             return f" The import of {name} is missing.", f"Add the line: import {name}"
         if re.fullmatch(r"U?Int\d+|Float\d+|String|Bool|Empty|Header|Char|Byte", name):
             line = f"from std_msgs.msg import {name}"

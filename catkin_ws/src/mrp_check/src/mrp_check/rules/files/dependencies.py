@@ -46,14 +46,14 @@ def _findings(case: Case) -> Iterator[Finding]:
             yield _foreign(package, name, use)
             continue
         if not in_manifest:
-            near = _misspelt(name, named(manifest), used)
+            near = _misspelt(package, name, named(manifest), used)
             if near:
                 yield _misspelt_in_manifest(package, name, use, near)
             else:
                 lacking.setdefault((FILE, use.firm), {})[name] = use
         # Python finds it all the same.
         if not in_cmake and model.catkin and use.language == "cpp":
-            near = _misspelt(name, model.components, ())
+            near = _misspelt(package, name, model.components, ())
             if near:
                 yield _misspelt_in_cmake(name, use, near, model.catkin)
             else:
@@ -104,9 +104,11 @@ def _kind(package: Package, name: str, use: Use, manifest: Manifest) -> Iterator
     )
 
 
-def _misspelt(name: str, names: Iterable[str], used: Collection[str]) -> str | None:
+def _misspelt(
+    package: Package, name: str, names: Iterable[str], used: Collection[str]
+) -> str | None:
     """Return the name in `names` that is no package and looks like this one, or None."""
-    others = [one for one in names if one not in used and not uses.is_ros_package(one)]
+    others = [one for one in names if one not in used and not uses.is_here(package, one)]
     return nearest(name, others, 0.8)
 
 
@@ -249,7 +251,9 @@ def _used(case: Case) -> Iterator[tuple[str, int, str]]:
         for module, line in uses.imports(package, file):
             top = module.partition(".")[0]
             is_own = any(f"/{top}/" in path or path.endswith(f"/{top}.py") for path in paths)
-            is_others = top in uses.STANDARD | _BROUGHT or is_ros(top) or uses.is_called_so(top)
+            is_others = (
+                top in uses.STANDARD | _BROUGHT or is_ros(top) or uses.is_called_so(package, top)
+            )
             is_package = module.endswith((".msg", ".srv"))
             # Of its own definitions, the name is an old one: another rule says so.
             is_old = is_package and any(one in package.line(file, line) for one in made)

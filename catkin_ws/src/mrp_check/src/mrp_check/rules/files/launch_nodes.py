@@ -69,7 +69,7 @@ def _elsewhere(case: Case, launch: Launch) -> Iterator[Finding]:
     starts them by, that is not here; and a warning where this package has such a node."""
     own = _executables(case.package, case.model)
     for node in launch.nodes:
-        is_ros = node.package == case.package.name or uses.is_called_so(node.package)
+        is_ros = node.package == case.package.name or uses.is_called_so(case.package, node.package)
         # Both names are those of before the package was renamed.
         is_old = case.package.name.startswith(node.package) and any(
             one.startswith(node.type) for one in own
@@ -130,7 +130,7 @@ def _can_start(case: Case, node: Started, spec_node: str | None = None) -> Itera
     """Yield a finding if roslaunch cannot find what a <node> names."""
     package, model = case.package, case.model
     if node.package != package.name:
-        if spec_node and not uses.is_ros_package(node.package):
+        if spec_node and not uses.is_installed(node.package):
             yield _other_package(package, model, node, spec_node)
         return
     names = _executables(package, model)

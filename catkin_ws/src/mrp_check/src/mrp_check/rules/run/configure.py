@@ -26,11 +26,11 @@ def findings(case: Case) -> Iterator[Finding]:
     if missing:
         # CMake stops at the first.
         others = [
-            component
-            for component in case.catkin.model.components
-            if not uses.is_ros_package(component)
+            one
+            for one in case.catkin.model.components
+            if uses.is_called_so(package, one) and not uses.is_here(package, one)
         ]
-        names = [missing, *(one for one in others if one != missing and uses.is_called_so(one))]
+        names = dict.fromkeys([missing, *others])
         raise NotHere(uses.absent(one, "cpp") for one in names)
     missing = configuring.without_definitions(step.output)
     if missing:
