@@ -45,7 +45,7 @@ class ConfineError(Exception):
 class Isolation(enum.Enum):
     """How far what runs is kept apart, in the words that each report has."""
 
-    NAMESPACES = "The package's code only ran in a sandbox."
+    NAMESPACES = "The package ran in a sandbox."
     USER = (
         "No sandbox here: the package runs as another user, who can use the network and read what"
         " everybody can read."
@@ -60,9 +60,15 @@ def isolation() -> Isolation:
     return Isolation.NONE if os.getuid() else Isolation.USER
 
 
-def isolation_text() -> str:
-    """Return what the Isolation is, and what bubblewrap says where it makes no sandbox."""
-    return " ".join(filter(None, [isolation().value, bubblewraps_error()]))
+def isolation_text(static: bool = False) -> str:
+    """Return what the Isolation is, and what bubblewrap says where it makes no sandbox.
+
+    static: whether the package's files are only read
+    """
+    error = bubblewraps_error()
+    if static and not error:
+        return "No node ran; CMake did, in a sandbox."
+    return " ".join(filter(None, [isolation().value, error]))
 
 
 @functools.lru_cache(maxsize=None)

@@ -211,7 +211,7 @@ class _Examination:
             console=_console(known.get("observed")),
             tools=_failed_step(known.get("catkin")),
             suppressed=[finding for finding in suppressed if finding.id in self.ids],
-            isolation=sandbox.isolation_text(),
+            isolation=sandbox.isolation_text(self.case.static),
             folder=package.root.resolve(),
         )
 
