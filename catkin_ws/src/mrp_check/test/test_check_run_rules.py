@@ -10,12 +10,12 @@ from mrp_check.build import configuring
 from mrp_check.code.facts import Facts
 from mrp_check.confined.launch_dump import Started
 from mrp_check.confined.places import Kind, Place
-from mrp_check.confined.seen import LaunchResult, Registration, Seen
+from mrp_check.confined.seen import LaunchResult, Message, Registration, Seen
 from mrp_check.contract.finding import ERROR, HABIT, HINT, NOTE, WARNING, Finding
 from mrp_check.package.cmake import Model
 from mrp_check.rules.code import same_name
 from mrp_check.rules.files import messages
-from mrp_check.rules.run import exceptions, meeting, starts
+from mrp_check.rules.run import called_back, exceptions, meeting, starts
 from mrp_check.run.observing import Launched, Observed
 
 pytestmark = pytest.mark.quick
@@ -132,6 +132,31 @@ def test_a_topic_of_several_types(file, others, found):
     assert [
         one.severity for one in check_rules.of(meeting.RULE, known) if one.id == "type"
     ] == found
+
+
+@pytest.mark.parametrize(
+    ("asked", "kinds", "found"),
+    [
+        (4, [Kind.LOOP], [ERROR]),
+        (2, [Kind.LOOP], []),  # nobody has waited long enough
+        (4, [Kind.SLEEP], [WARNING]),  # it may only be late
+        (4, [Kind.WAITS], [WARNING]),
+    ],
+)
+def test_a_node_that_gets_messages_and_calls_no_callback(asked, kinds, found):
+    said = [Registration("/say", "/talk", "std_msgs/String", 0)]
+    heard = [Registration("/hear", "/talk", "std_msgs/String", 0)]
+    messages_ = [Message("/say", "/talk", {}, time / 10) for time in range(10 * asked)]
+    seen = Seen(publications=said, subscriptions=heard, messages=messages_)
+    result = LaunchResult("enough", asked, [], seen, uncalled=["/hear"])
+    places = types.SimpleNamespace(of=lambda *_: ("src/a.cpp", 1))
+    known = types.SimpleNamespace(
+        observed=types.SimpleNamespace(launches=[Launched("", {"/hear": "hear"}, result)]),
+        facts=Facts([Place("src/a.cpp", 2, kind) for kind in kinds], {"hear": ["src/a.cpp"]}),
+        places=places,
+        nodes={},
+    )
+    assert [one.severity for one in check_rules.of(called_back.RULE, known)] == found
 
 
 @pytest.mark.parametrize(("header", "found"), [("nowhere_msgs/A.h", 0), ("std_msgs/String.h", 1)])

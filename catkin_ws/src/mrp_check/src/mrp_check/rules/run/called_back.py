@@ -5,9 +5,10 @@ from __future__ import annotations
 
 from typing import Iterator
 
+from mrp_check.code.facts import Facts
 from mrp_check.confined.places import Kind
 from mrp_check.confined.seen import LaunchResult
-from mrp_check.contract.finding import HABIT, Finding
+from mrp_check.contract.finding import HABIT, SEEN, Finding
 from mrp_check.contract.requirements import ANY, Rule
 from mrp_check.run.case import Case
 from mrp_check.run.node import Node, each_node
@@ -33,6 +34,7 @@ def _findings(case: Case) -> Iterator[Finding]:
                     " never gets to ros::spin() or ros::spinOnce().",
                     file,
                     line,
+                    HABIT if _may_wait(case.facts, name) else SEEN,
                     expected="ros::spinOnce() in each turn of the loop, or ros::spin()",
                     seen="no call of a callback",
                     fix="Call ros::spinOnce() in the loop itself, not under a condition.",
@@ -55,6 +57,13 @@ def _unheard(launch: LaunchResult, path: str) -> str | None:
             if one.type in types and len(sent) >= _FEW and launch.asked - sent[0] > _SECONDS:
                 return one.topic
     return None
+
+
+def _may_wait(facts: Facts, name: str) -> bool:
+    """Return whether a node sleeps before its loop, or waits for a server: it may spin later."""
+    loops, sleeps = facts.of(name, Kind.LOOP), facts.of(name, Kind.SLEEP)
+    is_early = any(not any(loop.is_around(sleep) for loop in loops) for sleep in sleeps)
+    return is_early or bool(facts.of(name, Kind.WAITS))
 
 
 _BUSY = 0.9  # part of the time
