@@ -97,6 +97,8 @@ int main(int argc, char** argv)
   auto caller = nh.serviceClient<std_srvs::SetBool>("set_it");
   std_srvs::SetBool service;
   if (!caller.waitForExistence() || !caller.call(service)) return 1;
+  if (!caller.exists()) return EXIT_FAILURE;
+  if (!caller.isPersistent()) exit(-1);
   auto joint = nh.subscribe("words", 1, hear);
   nh.param("gain", gain, 2.0);
   ROS_INFO("while (true) { std::cin >> x; } argv[1] // /home/NAME/map.yaml and /* \\n");
@@ -169,5 +171,5 @@ def test_what_may_go_wrong_is_found_at_its_line(tmp_path):
 def test_what_only_looks_wrong_is_not_flagged(tmp_path):
     package, facts = facts_of(tmp_path, VALID)
     exits = [one.value for one in facts.places if one.kind is Kind.EXIT]
-    assert (exits, sum(one.kind is Kind.COUNTS for one in facts.places)) == ([1], 1)
+    assert (exits, sum(one.kind is Kind.COUNTS for one in facts.places)) == ([1, 1, -1], 1)
     assert {one for one in findings(package, facts) if one[1] != "hint"} == set()

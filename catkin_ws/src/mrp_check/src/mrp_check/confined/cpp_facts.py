@@ -84,8 +84,7 @@ class _Source(Counters, Habits):
     def look_at_return(self, cursor: Cursor) -> None:
         function = self.function(cursor)
         if function is not None and function.spelling == "main":
-            code = self.value(next(cursor.get_children(), None))
-            self.add(cursor, Kind.EXIT, "return", value=code if isinstance(code, int) else 0)
+            self.add(cursor, Kind.EXIT, "return", value=self.code(cursor, [*cursor.get_children()]))
 
     def look_at_function(self, cursor: Cursor) -> None:
         if not cursor.is_definition():
@@ -120,8 +119,13 @@ class _Source(Counters, Habits):
         self.add(call, kind, call.spelling)
 
     def add_exit(self, kind: Kind, call: Cursor, arguments: Arguments) -> None:
+        self.add(call, kind, call.spelling, value=self.code(call, arguments))
+
+    def code(self, cursor: Cursor, arguments: Arguments) -> int:
+        """Return the code that exit() or return is given; 0 if that is not plain."""
         code = self.optional(arguments, 0)
-        self.add(call, kind, call.spelling, value=code if isinstance(code, int) else 0)
+        is_macro = any(token.spelling == "EXIT_FAILURE" for token in cursor.get_tokens())
+        return code if isinstance(code, int) else int(is_macro)
 
     def add_spin(self, kind: Kind, call: Cursor, arguments: Arguments) -> None:
         scope = self.scope(call)
