@@ -25,10 +25,13 @@ def view(request, browser, addresses):
     return addresses[where], size, page
 
 
-@pytest.fixture(params=["light", "dark"])
-def mode(request, browser, view):
-    browser.prefer(request.param)
-    return request.param
+@pytest.fixture
+def mode(browser, view):
+    """Light on a desktop and dark on a phone: a size changes no colour."""
+    _, size, _ = view
+    mode = "dark" if size == "phone" else "light"
+    browser.prefer(mode)
+    return mode
 
 
 def test_the_console_stays_empty(browser, view):
@@ -66,10 +69,8 @@ def test_text_has_contrast(browser, mode):
     checks.assert_none(checks.contrast(browser))
 
 
-def test_screenshot(browser, view):
+def test_screenshot(browser, view, mode):
     _, size, page = view
-    mode = "dark" if size == "phone" else "light"
-    browser.prefer(mode)
     width, _ = SIZES[size]
     height = min(browser.run("return document.scrollingElement.scrollHeight"), TALLEST)
     shot = browser.command(
