@@ -76,7 +76,7 @@ class Report:
             if line.startswith(FIX):
                 self.checks[title].fixes.append(line[len(FIX) :])
             elif line.startswith(WHY):
-                self.why[title] = line.partition("pages/why.html#")[2]
+                self.why[title] = re.search(r"\S+://\S+/pages/why.html#(\S+)", line)[1]
             else:
                 status, title, text = LINE.fullmatch(line).groups()
                 self.checks[title] = Check(status.strip(" []"), text, [])

@@ -385,8 +385,7 @@ def examine(machine):
         for command in result.fix.splitlines():
             print(f"       fix: {command}")
         if result.status == "FAIL":
-            page = f"pages/why.html#{why}"
-            print(f"       why:  {resources.address_of(page) or page}")
+            print(f"       why:  {resources.link_to(f'pages/why.html#{why}')}")
     print(f"{len(CHECKS)} checks, {failed} failed")
     return 1 if failed else 0
 

@@ -55,11 +55,8 @@ def _one_answer(number, one, shown, text):
 
 
 def _link(address):
-    """Return the address of a page; or the one it has once `make docs` has built it."""
     page, hash_, anchor = address.partition("#")
-    path = f"pages/{page}.html{hash_}{anchor}"
-    unbuilt = f"{resources.BUILT_SITE.as_uri()}/{path} (make docs builds it)"
-    return resources.address_of(path) or unbuilt
+    return resources.link_to(f"pages/{page}.html{hash_}{anchor}")
 
 
 def decoded(data):

@@ -36,6 +36,11 @@ def address_of(page: str) -> str:
     return f"{address}/{page}" if address else ""
 
 
+def link_to(page: str) -> str:
+    """Return the address of a page; or the one it has once `make docs` has built it."""
+    return address_of(page) or f"{BUILT_SITE.as_uri()}/{page} (make docs builds it)"
+
+
 @functools.lru_cache
 def _website() -> str:
     manifest = folder("specs").parent / "package.xml"
