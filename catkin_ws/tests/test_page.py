@@ -179,3 +179,9 @@ def test_the_number_of_a_process_may_be_small():
     recorded, shown = "I am /talker_48123_1795518217512", "I am /talker_812_1795518217990"
     assert record_pages.differences([recorded], [shown], [shown]) == set()
     assert record_pages.masked(["/robot_1"]) == {"/robot_1"}
+
+
+@pytest.mark.quick
+def test_a_recording_proves_how_many_of_how_many():
+    recorded, shown = "All requirements are met: 38 of 38.", "All requirements are met: 37 of 38."
+    assert record_pages.differences([recorded], [shown], [shown]) == {recorded, shown}

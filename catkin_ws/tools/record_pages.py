@@ -20,9 +20,11 @@ from run_page import RECORDED, StepError, meaning, page_of, pages_of
 _LEFT_OUT = re.compile(r"\[\d+ other lines? left out\]")
 
 
-# Numbers, and those at the end of a name that is anonymous: of a process, which may be a small one,
-# and of a time.
-_NUMBERS = re.compile(r"(?<![\w.])-?\d+(\.\d+)?(?=s?(?!\w))|(?<=_)(\d+(?=_\d{4,})|\d{4,})")
+# Numbers, but not those of "38 of 38"; and those at the end of a name that is anonymous: of a
+# process, which may be a small one, and of a time.
+_NUMBERS = re.compile(
+    r"(?<![\w.])(?<!\d of )-?\d+(\.\d+)?(?=s?(?!\w))(?! of \d)|(?<=_)(\d+(?=_\d{4,})|\d{4,})"
+)
 
 
 def masked(lines):
