@@ -143,7 +143,7 @@ known-lab:
 
 # It builds the package in a folder of its own, so nothing of this workspace need be built before.
 .PHONY: check
-check: packages-check  ## check the package at PKG against the tutorial's contract, or against SPEC; ANY=1: without one; ALL=1: show notes, too
+check: packages-check  ## check your package, PKG=path; ANY=1: any other ROS package; SPEC=FILE: another contract; ALL=1: notes, too
 	@test -n "$(PKG)" || { echo "error: expected make check PKG=PATH, the folder of a package" >&2; exit 2; }
 	@$(IN_ENVIRONMENT) PYTHONPATH=catkin_ws/src/mrp_check/src exec /usr/bin/python3 \
 	  catkin_ws/src/mrp_check/scripts/check "$(PKG)" $(if $(ANY),--any) $(if $(ALL),--all) $(if $(SPEC),--spec "$(SPEC)")
@@ -157,7 +157,7 @@ new:  ## write a package of your own to start from, PKG=~/catkin_ws/src/laser_fi
 # More than 150 whole packages are built and run, and dozens of nodes at once: so it is no part of
 # `make test-all`.
 .PHONY: test-check
-test-check: packages-test-all  ## check the packages that judge the checker; TESTS=NAME: those of a name
+test-check: packages-test-all  ## run the checker on its own test packages; TESTS=NAME: those of a name
 	@$(IN_WORKSPACE) $(ALONE) /usr/bin/python3 -m pytest -n 3 --dist loadgroup -m sets $(if $(TESTS),-k "$(TESTS)") --junit-xml=$(RESULTS)/sets.xml src/mrp_check/test
 
 # On a terminal it fills the screen, and elsewhere it prints lines.
@@ -354,7 +354,7 @@ docker-view: docker-build-view  ## as docker-up, with the live page at http://12
 	@$(COMPOSE_MRP) --profile view up
 
 .PHONY: docker-down
-docker-down: need-docker  ## take away what docker-up or docker-view leaves
+docker-down: need-docker  ## remove what docker-up or docker-view leaves
 	@$(COMPOSE_MRP) --profile view down
 
 .PHONY: docker-test
