@@ -178,7 +178,7 @@ def test_a_header_that_this_machine_has_not_is_no_misspelt_one(tmp_path, monkeyp
     [
         ("ROS_INF0(x);", "‘ROS_INF0’ was not declared in this scope", "ROS_INFO is meant"),
         ("ROS_ERROR(no rate!!);", "‘no’ was not declared in this scope", "no quotation marks"),
-        ("bind(f, _1);", "‘_1’ was not declared in this scope", "boost::placeholders alone"),
+        ("bind(f, _1);", "‘_1’ was not declared in this scope", "only in boost::placeholders"),
         ("#include <old/Go.h>", "old/Go.h: No such file or directory", "made by some_pkg itself"),
         ("#include <old/No.h>", "old/No.h: No such file or directory", "no header old/No.h"),
     ],

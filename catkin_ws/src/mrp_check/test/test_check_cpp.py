@@ -118,14 +118,14 @@ BROKEN = {
         [(SUBSCRIBE, "nh_.subscribe")],
         "lifetime",
         "subscribe",
-        "kept nowhere",
+        "kept anywhere",
     ),
     "timer_discarded": (
         PUBLISHER,
         [(TIMER, TIMER.replace("timer_ = ", ""))],
         "lifetime",
         "createTimer",
-        "kept nowhere",
+        "kept anywhere",
     ),
     "no_timer": (PUBLISHER, [(TIMER, "")], "callbacks", "void timerCallback", "nobody ever"),
     "short_counter": (

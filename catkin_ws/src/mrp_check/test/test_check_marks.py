@@ -68,7 +68,7 @@ def test_late_days_take_points_or_percent():
     [
         ("student\nanna\nana\n", r":3: there is no submission 'ana'\. Did you mean 'anna'\?"),
         ("student,by\nanna,\n,B. Roe\n", r":3: there is no submission ''\."),
-        ("student\nanna\nberta\nanna\n", r":4: 'anna' stands twice: see line 2\."),
+        ("student\nanna\nberta\nanna\n", r":4: 'anna' appears twice: see line 2\."),
         ("student,late_days\nanna,two\n", r":2: late_days: expected a number .* found 'two'\."),
         ("student,late_days\nanna,-1\n", r":2: late_days: .* found '-1'\."),
         ("student,late_days\nanna,0.5\n", r":2: late_days: expected whole days; found 0\.5\."),
@@ -79,7 +79,7 @@ def test_late_days_take_points_or_percent():
         ("student,reason\nanna,a,b\n", r":2: expected 2 cells, .*; found 3\."),
         ("student;maximum\nanna;3\n", r":1: there is no column 'student;maximum'"),
         ("student,maximun\n", r":1: there is no column 'maximun'.* Did you mean 'maximum'\?"),
-        ("student,by,by\n", r":1: the column 'by' stands twice\."),
+        ("student,by,by\n", r":1: the column 'by' appears twice\."),
         ("by\nanna\n", r":1: expected the column 'student'; it is missing\."),
         ('student,reason\nanna,"x\ny"\n"berta\n', r":4: this is no valid CSV"),
         ("student\nj\xfcrgen\n", r":2: expected UTF-8 text"),

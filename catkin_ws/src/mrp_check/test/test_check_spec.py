@@ -94,7 +94,7 @@ def test_each_key_says_what_it_is():
         ("launch:", "hidden: values\nlaunch:", r":9: hidden: expected a list; found 'values'"),
         ("launch:", "late: {points: 1, percent: 2}\nlaunch:", r":9: late: .*at most 1"),
         ("launch:", "late: {percent: 101}\nlaunch:", r":9: late\.percent: .*at most 100"),
-        ("launch:", "topics: {}\nlaunch:", r":9: .*the key 'topics' stands twice"),
+        ("launch:", "topics: {}\nlaunch:", r":9: .*the key 'topics' appears twice"),
         ("title: An", "title: [An", r":\d+: .*no valid YAML"),
         ("    type: std", "\ttype: std", r":4: .*no valid YAML"),
         ("std_msgs/UInt32", "std_msgs/UInt23", r":4: .*no message 'std_msgs/UInt23'.*mean"),

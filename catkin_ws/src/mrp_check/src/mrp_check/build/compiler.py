@@ -134,7 +134,7 @@ def _no_return(package: Package, file: str, line: int) -> Finding:
     return Finding(
         "compile",
         f"The function that ends in line {line} of {file} says that it returns a value, and has no"
-        " return: what its caller gets is left to chance, and the node may crash.",
+        " return: its caller gets any value, and the node may crash.",
         file,
         line,
         expected="return, with a value",
@@ -184,13 +184,13 @@ def older_standard(package: Package, output: str) -> Iterator[Finding]:
     if place and package.of_kind("cpp"):
         yield Finding(
             "compile",
-            "CMakeLists.txt sets a standard of C++ that is older than C++17: it works here, and"
+            "CMakeLists.txt selects a C++ standard older than C++17: it works here, but"
             " ROS's headers do not compile with it where log4cxx is newer.",
             *place,
             HABIT,
             expected="no such line, as the compiler takes C++17 by itself",
             seen=package.line(*place),
-            fix="Take the line out, or set the standard to 17.",
+            fix="Remove the line, or set the standard to 17.",
         )
 
 
@@ -200,7 +200,7 @@ def _old_standard(package: Package, needed: str, problem: Problem) -> Finding:
     line = package.find_line(file, "CXX_STANDARD") or package.find_line(file, "-std=") or 1
     return Finding(
         "compile",
-        f"The compiler is told to take a standard of C++ that is older than C++{needed}, which the"
+        f"CMakeLists.txt selects a C++ standard older than C++{needed}, which the"
         " code or ROS's headers need.",
         file,
         line,

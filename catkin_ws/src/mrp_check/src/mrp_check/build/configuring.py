@@ -150,7 +150,7 @@ def _no_package(package: Package, model: Model, match: re.Match[str], text: str)
     near = nearest(name, PACKAGES, ALIKE)
     return (
         f"there is no package {name} on this machine.{perhaps(near)}",
-        f"Write {near} for {name}." if near else f"Install {name}, or take it out.",
+        f"Write {near} for {name}." if near else f"Install {name}, or remove it.",
     )
 
 
@@ -175,7 +175,7 @@ def _no_dependency(package: Package, model: Model, match: re.Match[str], text: s
     near = nearest(name, [*model.targets, *(f"{package.name}_{one}" for one in _MESSAGE_TARGETS)])
     return (
         f"there is no target {name} to wait for.{perhaps(near)}",
-        f"Write {near} for {name}." if near else f"Take {name} out.",
+        f"Write {near} for {name}." if near else f"Remove {name}.",
     )
 
 
@@ -192,7 +192,7 @@ _WORDS: Sequence[tuple[str | None, str, Callable[..., _Said] | _Said, str]] = (
         None,
         WANTS_TESTS,
         (
-            "it makes a test where no tests are wanted, as where Debian builds a package.",
+            "it makes a test even where no tests are wanted, such as when Debian builds a package.",
             "Put it between if(CATKIN_ENABLE_TESTING) and endif().",
         ),
         "",
@@ -271,7 +271,7 @@ _WORDS: Sequence[tuple[str | None, str, Callable[..., _Said] | _Said, str]] = (
     (
         None,
         r"Parse error",
-        ("a bracket or a quotation mark is missing, or too much.", "Correct the call there."),
+        ("a bracket or a quotation mark is missing, or one too many.", "Correct the call there."),
         "cmake-parenthesis",
     ),
 )

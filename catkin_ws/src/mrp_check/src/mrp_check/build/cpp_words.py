@@ -108,7 +108,7 @@ def _expected(error: Error) -> Words:
     if what in _MISSING:
         return Words(_MISSING[what], "Close what was opened.")
     return Words(
-        f"{what} is expected there. Often something is missing or too much in the line above it.",
+        f"{what} is expected there. Often the mistake is in the line above it.",
         "Look for a missing ; or bracket at the end of the line above, or a brace too many.",
     )
 
@@ -117,7 +117,7 @@ def _brace(line: int, missing: str) -> Words:
     if missing == "}":
         said = f"the brace {{ that is opened in line {line} is never closed."
         return Words(said, "Add the missing }.", line)
-    return Words(f"the brace }} of line {line} closes nothing.", "Take one } out.", line)
+    return Words(f"the brace }} of line {line} closes nothing.", "Remove one }.", line)
 
 
 def _function_definition(error: Error) -> Words:
@@ -129,7 +129,7 @@ def _function_definition(error: Error) -> Words:
 
 
 # https://www.boost.org/doc/libs/1_73_0/libs/bind/doc/html/bind.html
-_PLACEHOLDERS = "this machine's Boost has it in boost::placeholders alone."
+_PLACEHOLDERS = "this machine's Boost has it only in boost::placeholders."
 _BIND = "Add #include <boost/bind/bind.hpp> and using namespace boost::placeholders;"
 _INCLUDES_ROS = re.compile(r"#\s*include\s*[<\"]ros/")
 # Two words in a row are no C++.
@@ -250,7 +250,7 @@ def _missing_header(error: Error) -> Words:
         return Words(
             f"{copy} is in the package, so that {header} is not made of {last_part(own[name])}; and"
             " include_directories() has no include.",
-            f"Take {copy} away: then the header is made.",
+            f"Remove {copy}: then the header is made.",
         )
     if name in own:
         return Words(
@@ -292,7 +292,7 @@ def _in_words(said: str, fix: str) -> Callable[[Error], Words]:
 
 
 _text_without_end = _in_words(
-    "a text is begun with a quotation mark and not ended with one.",
+    "a string begins with a quotation mark, but doesn't end with one.",
     "Add the missing quotation mark.",
 )
 _no_message = _in_words(

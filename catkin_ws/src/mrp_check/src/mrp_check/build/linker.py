@@ -58,7 +58,7 @@ def _duplicate(package: Package, model: Model, target: Target, match: re.Match[s
         (target.file, target.line),
         f"one definition of {name}",
         ", ".join(target.sources),
-        "Give each target its own sources alone.",
+        "Give each target only its own sources.",
         why="multiple-definition",
     )
 

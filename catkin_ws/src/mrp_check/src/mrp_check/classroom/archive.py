@@ -84,7 +84,7 @@ def refuse_huge(path: pathlib.Path) -> None:
     if size > _MOST_PACKED:
         raise PackageError(
             f"{path.name} has {size // MEGABYTE} MB: more than {_MOST_PACKED // MEGABYTE} MB are"
-            " not read. Hand in the package alone."
+            " not read. Hand in only the package."
         )
 
 
@@ -106,7 +106,7 @@ def _accepted(name: str, entries: Iterable[Entry]) -> Iterator[Entry]:
         if number > _MOST_ENTRIES:
             raise PackageError(
                 f"{name} is refused: it has more than {_MOST_ENTRIES} entries."
-                " Hand in the package alone."
+                " Hand in only the package."
             )
         for is_so, why in _REFUSED:
             if is_so(entry):

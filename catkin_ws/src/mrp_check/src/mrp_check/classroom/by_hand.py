@@ -73,7 +73,7 @@ def read(
             name = line.cells["student"]
             line.fail(f"there is no submission '{name}'." + near(name, known))
         if student in found:
-            line.fail(f"'{student}' stands twice: see line {lines[student]}.")
+            line.fail(f"'{student}' appears twice: see line {lines[student]}.")
         found[student], lines[student] = line.by_hand(most, late), line.number
     return found
 
@@ -133,7 +133,7 @@ def _lines(path: str | pathlib.Path) -> Iterator[_Line]:
         if column not in COLUMNS:
             first.fail(no_such("column", column, COLUMNS))
         if columns.count(column) > 1:
-            first.fail(f"the column '{column}' stands twice.")
+            first.fail(f"the column '{column}' appears twice.")
     if "student" not in columns:
         first.fail("expected the column 'student'; it is missing.")
     for number, cells in rows[1:]:

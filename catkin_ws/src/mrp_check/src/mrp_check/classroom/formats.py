@@ -72,7 +72,7 @@ class Plain(io.BufferedReader):
         if offset > self._most:
             raise PackageError(
                 f"{self.path.name} is refused: it unpacks to more than"
-                f" {_MOST_PASSED // MEGABYTE} MB. Hand in the package alone."
+                f" {_MOST_PASSED // MEGABYTE} MB. Hand in only the package."
             )
 
 
@@ -172,7 +172,7 @@ def _bundle(file: Plain, stack: contextlib.ExitStack) -> _Tar:
         said = done.limit_text(limits) or (done.errors.strip().splitlines() or ["nothing"])[-1]
         raise PackageError(
             f"{file.path.name} is a git bundle, and git cannot read it: {said}."
-            " Make it by: git bundle create NAME.bundle HEAD"
+            " Make it with: git bundle create NAME.bundle HEAD"
         )
     tar = Plain(file.path, open(folder / "files.tar", "rb", buffering=0))
     return _Tar(stack.enter_context(tar), stack)

@@ -15,11 +15,11 @@ from mrp_check.package.package import Package
 # What Python says -> what it means.
 _SYNTAX = (
     (r"was never closed|unexpected EOF", "A bracket is opened there and never closed."),
-    (r"unmatched|does not match opening", "A bracket is closed that is not open, or another one."),
+    (r"unmatched|does not match opening", "This closing bracket matches no open one."),
     (r"expected ':'", "A colon is missing at the end of the line."),
-    (r"unterminated|EOL while", "A text is begun with a quotation mark and not ended with one."),
+    (r"unterminated|EOL while", "A string begins with a quotation mark, but doesn't end with one."),
     (r"expected an indented block", "The lines that belong to this one must be indented."),
-    (r"unindent does not match|unexpected indent", "The line is not indented as those around it."),
+    (r"unindent does not match|unexpected indent", "The line isn't indented like those around it."),
     (r"inconsistent use of tabs", "Tabs and spaces are mixed: use four spaces for each level."),
     (r"Missing parentheses in call to 'print'", "In Python 3, print is a function: print(...)."),
     (r"multiple exception types", "In Python 3, write: except NAME as VARIABLE."),
@@ -27,7 +27,7 @@ _SYNTAX = (
     (r"forgot a comma", "A comma is missing, or a bracket is not closed."),
     (
         r"invalid character|invalid non-printable",
-        "A character stands there that is no part of Python:"
+        "There's a character that Python doesn't know:"
         " perhaps it was copied from a page or a document.",
     ),
 )

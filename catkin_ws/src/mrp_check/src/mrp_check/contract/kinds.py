@@ -117,7 +117,7 @@ def fault(kind: str, value: object) -> str | None:
     """Return what is wrong with a value of a field of that type, in words; None if nothing is."""
     expected = "a number" if NUMBER.fullmatch(kind) else "a text" if kind == "string" else None
     if expected is None:
-        return f"a value can stand for a number or a text; this field is a {kind}."
+        return f"a value can stand for a number or a string; this field is a {kind}."
     fits = isinstance(value, str) == (expected == "a text")
     if kind == "bool" and not isinstance(value, bool):
         return f"expected true or false; found {value!r}."

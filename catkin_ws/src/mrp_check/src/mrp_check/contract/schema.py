@@ -48,7 +48,7 @@ class Loader(yaml.SafeLoader):
         for key, _ in node.value:
             if isinstance(key, yaml.ScalarNode) and key.value in seen:
                 raise yaml.MarkedYAMLError(
-                    problem=f"the key '{key.value}' stands twice", problem_mark=key.start_mark
+                    problem=f"the key '{key.value}' appears twice", problem_mark=key.start_mark
                 )
             seen.add(getattr(key, "value", None) if isinstance(key, yaml.ScalarNode) else None)
         return super().construct_mapping(node, deep)

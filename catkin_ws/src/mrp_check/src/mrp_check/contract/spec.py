@@ -301,7 +301,7 @@ class _Reader:
             if roles["published"] or roles["subscribed"]:
                 self.fail(
                     [*place, "relays"],
-                    "a node that relays has no 'publishes' or 'subscribes' besides: 'from' and"
+                    "a node that relays has no 'publishes' or 'subscribes': 'from' and"
                     " 'to' say both.",
                 )
             roles["relays"] = Relays(*ends, **rest)

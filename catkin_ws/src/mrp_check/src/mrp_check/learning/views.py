@@ -138,7 +138,7 @@ def nodes(watched: Watched, width: int) -> Iterator[Line]:
     elif watched.check and watched.check.done:
         yield from _wrapped("The nodes did not run: see what is wrong.", width)
     else:
-        yield from _wrapped("Their lines appear here when the check has run them.", width)
+        yield from _wrapped("Their output appears here once the check has run them.", width)
 
 
 def diff(lines: Sequence[str], width: int) -> Iterator[Line]:

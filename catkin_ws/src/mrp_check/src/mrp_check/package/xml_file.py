@@ -66,13 +66,13 @@ def stray(
         for text, line in element.texts if element.tag not in readers else ():
             yield Finding(
                 id_,
-                f"A text stands here between the tags, and nothing reads it: {text[:40]}",
+                f"There is text between the tags here, and nothing reads it: {text[:40]}",
                 file,
                 line,
                 HABIT,
                 expected="elements, and comments between <!-- and -->",
                 seen=package.line(file, line),
-                fix="Take it out, or make a comment of it.",
+                fix="Remove it, or turn it into a comment.",
             )
 
 
@@ -108,7 +108,7 @@ def _bad_token(package: Package, path: str, line: int) -> tuple[int, str]:
     for number in range(line, 0, -1):
         text = lines[number - 1] if number <= len(lines) else ""
         if number == line and re.search(r"<!--(?:(?!-->).)*--(?!>)", text):
-            return line, "Within a comment there must be no two hyphens (--)."
+            return line, "A comment must not contain two hyphens (--)."
         # A tag that never ends swallows the lines below it.
         if number < line and text.count("<") > text.count(">"):
             return number, "The tag that begins there has no end."
@@ -116,7 +116,7 @@ def _bad_token(package: Package, path: str, line: int) -> tuple[int, str]:
             return number, "A quotation mark is missing there."
         if number < line and ">" in text:
             break
-    return line, "Perhaps a quotation mark, a > or an = is missing, or & stands for &amp;."
+    return line, "Perhaps a quotation mark, a > or an = is missing, or & should be &amp;."
 
 
 _TAG = re.compile(
@@ -143,7 +143,7 @@ def _unclosed(package: Package, path: str, noticed: int | None) -> tuple[int, st
         if stack:
             opened, where = stack[-1]
             return line, f"<{opened}> of line {where} is closed by </{name}>."
-        return line, f"</{name}> closes what is not open."
+        return line, f"</{name}> closes something that isn't open."
     if stack:
         return stack[-1][1], f"<{stack[-1][0]}> is opened there and not closed."
     return noticed or 1, ""

@@ -14,7 +14,7 @@ from mrp_check.run.places import Traceback
 from mrp_check.run.traces import Traces
 from mrp_check.run.words import code_text, last_words
 
-_EXPECTED = "a node that goes on until Ctrl-C"
+_EXPECTED = "a node that runs until Ctrl-C"
 
 
 def start_findings(node: Traces) -> Iterator[Finding]:
@@ -48,7 +48,7 @@ def start_findings(node: Traces) -> Iterator[Finding]:
             node.places.of(node.name, Kind.INIT),
             expected=_EXPECTED,
             seen="it ended with exit code 0, and the master never heard of it",
-            fix="See to it that main() is called, and that it starts the node.",
+            fix="Make sure that main() is called, and that it starts the node.",
         )
 
 
@@ -86,7 +86,7 @@ def _ended(node: Traces) -> Finding:
     if ends and node.places.facts.of(node.name, Kind.SPIN):
         why = f", though it waits: most likely by its call of {ends[0].text}()."
         place: Where = ends[0].file, ends[0].line
-        fix = "Leave the call out, or see to it that it is only made at the end."
+        fix = "Remove the call, or make sure that it only runs at the end."
     else:
         why = ": nothing keeps it waiting for messages or for its timer."
         end = node.places.facts.end_of_main(node.name)

@@ -79,16 +79,16 @@ def _wrong(comment: Comment, idle: bool, has_contract: bool) -> Iterator[Finding
     """
     place = comment.file, comment.line
     if comment.id not in REQUIREMENTS:
-        message = f"A comment is to suppress '{comment.id}': there is no such requirement."
+        message = f"A comment suppresses '{comment.id}': there is no such requirement."
         message += near(comment.id, REQUIREMENTS)
         yield Finding("text", message, *place, HABIT, expected=_FORM)
     elif has_contract:
         message = f"This comment suppresses nothing of {comment.id}: a contract says what counts."
         yield Finding(comment.id, message, *place, HINT)
     elif not comment.reason:
-        message = f"A comment is to suppress {comment.id}, and gives no reason: it does nothing."
+        message = f"A comment suppresses {comment.id}, but gives no reason: it does nothing."
         yield Finding(comment.id, message, *place, HABIT, expected=_FORM)
     elif idle:
-        message = f"A comment is to suppress {comment.id}, and nothing of it is found here."
-        fix = "Take the comment out, or write it on the line of the finding or the line above."
+        message = f"A comment suppresses {comment.id}, but there's no such finding here."
+        fix = "Remove the comment, or write it on the line of the finding or the line above."
         yield Finding(comment.id, message, *place, HABIT, fix=fix)

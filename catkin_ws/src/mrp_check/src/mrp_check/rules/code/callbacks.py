@@ -35,7 +35,7 @@ def _of(node: SourceNode) -> Iterator[Finding]:
             f"{function.text} {does}, and nobody ever calls or uses it.{timer}",
             function,
             expected=f"a place where {function.text} is used",
-            fix=f"Call {function.text}, or hand it over as a callback.",
+            fix=f"Call {function.text}, or pass it as a callback.",
         )
 
 

@@ -28,7 +28,7 @@ _NEVER = (
     "Call start() on it.",
 )
 _CANCELLED = (
-    "This loop doesn't ask whether its goal has been cancelled: it goes on.",
+    "This loop doesn't ask whether its goal has been cancelled: it keeps running.",
     "Ask {0} in each turn, and end the goal as preempted.",
 )
 

@@ -25,8 +25,8 @@ def _findings(case: Case) -> Iterator[Finding]:
                 when = "if nobody offers the service, or if it fails"
             yield Finding(
                 "starts",
-                f"{name}() returns false {when}, and {node} doesn't look at it: it goes on as if it"
-                " had been answered.",
+                f"{name}() returns false {when}, and {node} doesn't look at it: it continues as if"
+                " it had been answered.",
                 place.file,
                 place.line,
                 HABIT if place.value else HINT,

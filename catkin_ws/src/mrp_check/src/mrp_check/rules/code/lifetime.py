@@ -28,7 +28,7 @@ def _of(node: SourceNode) -> Iterator[Finding]:
                 continue
         what = kinds.get(call, Kind.TIMER).value
         if place.kind is Kind.DISCARDED:
-            how = "is kept nowhere: it ends with this very line"
+            how = "isn't kept anywhere: it ends with this very line"
         else:
             how = (
                 f"is kept in {place.name}, a variable of"

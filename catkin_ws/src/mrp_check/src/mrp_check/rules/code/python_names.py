@@ -249,7 +249,7 @@ class Names(PythonRule):
     def _of_python2(self, name: str, line: int) -> Finding:
         return self.finding(
             "python-names",
-            f"Python 3 has no {name}: it ends with a NameError when it comes here.",
+            f"Python 3 has no {name}: it ends with a NameError when it gets here.",
             line,
             expected=_PYTHON2[name],
             fix=f"Write {_PYTHON2[name]} for {name}.",
@@ -273,7 +273,7 @@ class Names(PythonRule):
         hint, fix = self._meant(name, members)
         return self.finding(
             "python-names",
-            f"Nothing is called {name}: Python ends with a NameError when it comes here.{hint}",
+            f"Nothing is called {name}: Python ends with a NameError when it gets here.{hint}",
             message.lineno,
             expected="a name that exists",
             fix=fix,
@@ -393,7 +393,7 @@ class Names(PythonRule):
             yield self.finding(
                 "python-names",
                 f"No method of {class_.name} ever sets self.{node.attr}: Python ends with an"
-                " AttributeError when it comes here." + perhaps(near),
+                " AttributeError when it gets here." + perhaps(near),
                 node,
                 expected="a member that is set, or a method that is defined",
                 fix=f"Write {near}." if near else f"Set self.{node.attr} in __init__.",

@@ -67,10 +67,10 @@ class Calls(PythonRule):
             yield self.finding(
                 "python-names",
                 f"The text that is logged here has {_places(wanted)}, and is given"
-                f" {len(given) - 1}: Python ends with a TypeError when it comes here.",
+                f" {len(given) - 1}: Python ends with a TypeError when it gets here.",
                 node,
                 expected=f"{name}(... %s, ...), with a place for each value",
-                fix="Write a place such as %s into the text for each value.",
+                fix="Write a placeholder such as %s for each value.",
             )
             return
         for place, value in zip(places, given[1:]):
@@ -100,10 +100,10 @@ class Calls(PythonRule):
         if value is not UNKNOWN and not isinstance(value, str) or self._is_type(given):
             yield self.finding(
                 "node-start",
-                "rospy.init_node() takes the node's name, a text, as its first argument.",
+                "rospy.init_node() takes the node's name, a string, as its first argument.",
                 node,
                 expected='rospy.init_node("NAME")',
-                fix="Hand the node's name over first.",
+                fix="Pass the node's name first.",
             )
 
     def _is_type(self, node: ast.expr | None) -> bool:
@@ -158,7 +158,7 @@ class Calls(PythonRule):
                     " arrives.",
                     node,
                     expected="the callback as the third argument",
-                    fix="Hand the callback over, without calling it.",
+                    fix="Pass the callback itself, without calling it.",
                 )
 
     def _callback_added(self, parent: ast.AST | None) -> bool:
@@ -201,7 +201,7 @@ class Calls(PythonRule):
                 f"{taker}() takes a function to call, and is given a plain value.",
                 callback,
                 expected="the name of a function",
-                fix="Hand the function over, without quotation marks and without calling it.",
+                fix="Pass the function itself, without quotation marks and without calling it.",
             )
             return
         function = self.source.definition(callback)
@@ -307,7 +307,7 @@ class Messages(PythonRule):
                     yield self.finding(
                         "python-names",
                         f"A message {class_._type} has no field {node.attr}: Python ends with an"
-                        f" AttributeError when it comes here.{hint}",
+                        f" AttributeError when it gets here.{hint}",
                         node,
                         expected=", ".join(class_.__slots__) or "no field at all",
                         fix=f"Write {near} for {node.attr}." if near else "Correct the name.",
@@ -357,7 +357,7 @@ class Messages(PythonRule):
                 yield self.finding(
                     "python-names",
                     f"A message {class_._type} has no field {keyword.arg}: Python ends with an"
-                    " AttributeError when it comes here." + perhaps(near),
+                    " AttributeError when it gets here." + perhaps(near),
                     node,
                     expected=", ".join(class_.__slots__),
                     fix=f"Write {near} for {keyword.arg}." if near else "Correct the name.",

@@ -53,7 +53,7 @@ def _empty(node: str, source: Source) -> Iterator[Finding]:
                 body[-1].lineno,
                 HABIT,
                 expected="a callback that uses its message",
-                fix="Write what is to be done with a message; or take the subscriber out.",
+                fix="Write what is to be done with a message; or remove the subscriber.",
                 node=node,
             )
 

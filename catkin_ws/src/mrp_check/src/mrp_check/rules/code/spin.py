@@ -93,7 +93,7 @@ def _made_too_late(node: SourceNode, spins: Sequence[Place]) -> Iterator[Finding
             spins_by = "rospy.spin()" if node.is_python else "ros::spin()"
             yield node.finding(
                 "spin",
-                f"{spins_by} returns only when the node is to end: what stands below it, in line"
+                f"{spins_by} returns only when the node ends: what comes below it, in line"
                 f" {min(late)}, is made too late.",
                 spin,
                 certainty=_sure(node),

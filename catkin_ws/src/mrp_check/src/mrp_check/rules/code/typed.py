@@ -33,7 +33,7 @@ class Typed(PythonRule):
             said.add(call)
             yield from self._at_the_use(call, node)
             is_equality = isinstance(node, ast.Compare) and isinstance(node.ops[0], _EQUALITIES)
-            follows = "Python ends with a TypeError when it comes there"
+            follows = "Python ends with a TypeError when it gets there"
             yield self.finding(
                 "python-names",
                 f"{says(call)}, and line {node.lineno} {does}:"
@@ -47,7 +47,7 @@ class Typed(PythonRule):
     def _at_the_use(self, call: ast.expr, node: ast.expr | ast.stmt) -> Iterator[Finding]:
         """Yield a note at the line that Python names in its error, if it is another one."""
         if node.lineno != call.lineno:
-            said = f"{self.written(call)} of line {call.lineno} is a text, and this needs a number."
+            said = f"{self.written(call)} of line {call.lineno} is a string; this needs a number."
             yield self.finding("python-names", said, node, certainty=HINT)
 
     def _uses(self) -> Iterator[tuple[ast.expr | ast.stmt, ast.expr, str]]:
@@ -148,7 +148,7 @@ class Typed(PythonRule):
 def says(typed: ast.expr) -> str:
     """Return in words why something that was typed is no number."""
     is_input = isinstance(typed, ast.Call)
-    return "In Python 3, input() returns a text" if is_input else "An argument is a text"
+    return "In Python 3, input() returns a string" if is_input else "An argument is a string"
 
 
 RULE = Rule("static", ("facts",), of_sources(Typed), also=("python-names",))

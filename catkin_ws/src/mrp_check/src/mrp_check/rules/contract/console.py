@@ -87,7 +87,7 @@ def _name_hint(text: str, wanted: str, path: str) -> str:
     if start is None or text not in (start + group, start + group + "/"):
         return ""
     return (
-        "That is the group's name alone. The node's full name is rospy.get_name() in Python,"
+        "That is only the group's name. The node's full name is rospy.get_name() in Python,"
         ' and ros::NodeHandle("~").getNamespace() in C++.'
     )
 

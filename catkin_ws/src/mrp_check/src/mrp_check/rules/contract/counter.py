@@ -59,7 +59,7 @@ def _resets(node: SourceNode, used: Collection[str], step: int, modulus: int) ->
                 f" the message could hold up to {modulus - 1}.",
                 place,
                 expected=f"the next value up to {modulus - 1}",
-                fix="Take the limit away: a uint32_t begins again at 0 by itself.",
+                fix="Remove the limit: a uint32_t begins again at 0 by itself.",
             )
 
 

@@ -133,7 +133,7 @@ def _remaps_of(package: Package, spec: Spec, node: Started) -> Iterator[Finding]
                     node=node.name,
                     expected=f"the topic {topic.name}",
                     seen=f"{old} renamed to {new}",
-                    fix="Take the <remap> out.",
+                    fix="Remove the <remap>.",
                 )
 
 

@@ -23,7 +23,7 @@ def _of(node: Node) -> Iterator[Finding]:
     if node.wanted.anonymous and name == node.name:
         yield node.finding(
             "node-name",
-            f"{node.name} does not ask for an anonymous name, as the contract says: a second one of"
+            f"{node.name} asks for no anonymous name, as the contract wants: a second one of"
             " it ends the first.",
             node.places.of(node.name, Kind.INIT),
             expected=f"{name}_ and a number",

@@ -125,7 +125,7 @@ def _no_folder(package: Package, model: Model) -> Iterator[Finding]:
                     model.catkin_package.line_of(package.lines(model.catkin_package.file), name),
                     expected="a folder of the package",
                     seen=f"INCLUDE_DIRS {name}",
-                    fix=f"Take INCLUDE_DIRS {name} out; or make the folder, with a file in it, as"
+                    fix=f"Remove INCLUDE_DIRS {name}; or make the folder, with a file in it, as"
                     " git keeps no empty folder.",
                 )
 

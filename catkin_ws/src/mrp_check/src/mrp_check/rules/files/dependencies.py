@@ -75,7 +75,7 @@ def _foreign(package: Package, name: str, use: Use) -> Finding:
         certainty=READ if use.firm else HABIT,
         expected=f"no use of {name}; or <depend>{name}</depend>, and {name} in COMPONENTS",
         seen=package.line(use.file, use.line),
-        fix="Take the line out if nothing of it is used; else declare the package.",
+        fix="Remove the line if nothing uses it; else declare the package.",
         packages=(name,),
     )
 
@@ -231,7 +231,7 @@ def undeclared(case: Case) -> Iterator[Finding]:
             HABIT,
             expected=f"<depend>{key}</depend> in package.xml",
             seen=package.line(file, line),
-            fix=f"Add <depend>{key}</depend> to package.xml; or take the line out if nothing of it"
+            fix=f"Add <depend>{key}</depend> to package.xml; or remove the line if nothing of it"
             " is used.",
             packages=(top,),
         )

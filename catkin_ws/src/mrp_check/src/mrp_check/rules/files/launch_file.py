@@ -49,7 +49,7 @@ def _unknown(tags: Sequence[tuple[str, Element]]) -> Iterator[Finding]:
                 HABIT,
                 expected=f"<{near}>" if near else "an element of roslaunch",
                 seen=f"<{element.tag}>",
-                fix=f"Write <{near}>." if near else "Take it out.",
+                fix=f"Write <{near}>." if near else "Remove it.",
                 why="launch-unknown-tag",
             )
 
@@ -72,7 +72,7 @@ def _no_attributes(launch: Launch, tags: Sequence[tuple[str, Element]]) -> Itera
                 HABIT,
                 expected=f'{near}="..."' if near else "an attribute of roslaunch",
                 seen=f'{name}="{element.attributes[name]}"',
-                fix=f"Write {near} for {name}." if near else "Take it out.",
+                fix=f"Write {near} for {name}." if near else "Remove it.",
             )
 
 

@@ -221,7 +221,7 @@ _GONE = {
         "",
     ),
     r"\bname\s*=\s*\"(use_gui)\"": (
-        "joint_state_publisher does not read use_gui any more: no window with sliders comes",
+        "joint_state_publisher does not read use_gui any more: no window with sliders appears",
         HABIT,
         "a node of type joint_state_publisher_gui",
         "joint_state_publisher",

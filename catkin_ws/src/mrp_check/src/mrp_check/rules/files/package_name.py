@@ -62,13 +62,13 @@ def _within(package: Package) -> Iterator[Finding]:
             yield Finding(
                 "package-name",
                 f"{path} makes a package of a folder of this one: catkin does not look for one"
-                " there, and builds nothing of it.",
+                " there, and builds nothing in it.",
                 path,
                 1,
                 HABIT,
                 expected="packages beside each other, in src of the workspace",
                 seen=path,
-                fix="Move that folder to beside this package; or delete it.",
+                fix="Move that folder next to this package; or delete it.",
             )
 
 
@@ -80,7 +80,7 @@ def _unusual(package: Package) -> Iterator[Finding]:
     yield Finding(
         "package-name",
         f"catkin warns of the name {package.name}: a package's name begins with a small letter,"
-        " and has small letters, digits, - and _ alone.",
+        " and has only small letters, digits, - and _.",
         "package.xml",
         line,
         HABIT,

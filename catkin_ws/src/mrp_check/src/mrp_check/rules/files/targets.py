@@ -64,7 +64,7 @@ def _no_dependencies(package: Package, model: Model) -> Iterator[Finding]:
                     f" such target.{perhaps(near)}"
                     + (" generate_messages() makes it, where it is called." if of_messages else ""),
                     f"a target {name}",
-                    f"Write {near} for {name}." if near else f"Take {name} out.",
+                    f"Write {near} for {name}." if near else f"Remove {name}.",
                 )
 
 

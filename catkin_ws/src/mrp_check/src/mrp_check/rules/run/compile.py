@@ -67,7 +67,7 @@ def _of_other_machines(case: Case) -> Iterator[Finding]:
                     line,
                     expected="a path that begins with the name of a package",
                     seen=package.line(file, line),
-                    fix="Write the name of the package and of the header alone.",
+                    fix="Write only the names of the package and the header.",
                     packages=(folder,),
                 )
 

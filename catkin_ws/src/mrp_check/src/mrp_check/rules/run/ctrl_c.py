@@ -43,9 +43,9 @@ def _of(case: Case, node: str, place: Place) -> Iterator[tuple[str, str, str]]:
             "Ctrl-C doesn't end the node while it waits for the keyboard: somebody has to press"
             " Enter first.",
             "a parameter or a topic in place of the keyboard",
-            "Let rospy.init_node() have disable_signals=True; or take a parameter."
+            "Give rospy.init_node() disable_signals=True; or take a parameter."
             if is_python
-            else "Let ros::init() have ros::init_options::NoSigintHandler; or take a parameter.",
+            else "Give ros::init() ros::init_options::NoSigintHandler; or take a parameter.",
         )
     elif place.text == "endless":
         right = f"while not {asks}:" if is_python else f"while ({asks})"
@@ -53,7 +53,7 @@ def _of(case: Case, node: str, place: Place) -> Iterator[tuple[str, str, str]]:
         yield said, right, f"Write {right}"
     elif isinstance(place.period, (int, float)) and place.period > case.spec.shutdown.seconds:
         yield (
-            f"This loop doesn't ask {asks}: after Ctrl-C it goes on to its end, which takes up to"
+            f"This loop doesn't ask {asks}: after Ctrl-C it runs to its end, which takes up to"
             f" {place.period:.0f} s.",
             f"{asks} in the loop",
             f"Ask {asks} in each turn, and leave the loop then.",

@@ -97,9 +97,9 @@ def _error(case: Case, launched: Launched, name: str, found: Traceback) -> Itera
 def _died(case: Case, launched: Launched, name: str, code: int) -> Finding:
     return Finding(
         "starts",
-        f"{name} ends {_where(launched)}, {code_text(code)}; by itself it goes on.",
+        f"{name} ends {_where(launched)}, {code_text(code)}; by itself it keeps running.",
         *case.places.of(name, Kind.INIT, Kind.HANDLE),
-        expected="a node that goes on until Ctrl-C",
+        expected="a node that runs until Ctrl-C",
         seen=code_text(code),
         node=name,
     )
@@ -117,7 +117,7 @@ def _gave_up(case: Case, launched: Launched, lines: list[str]) -> Iterator[Findi
         f"roslaunch gives up on {what}: {said[len(_GIVES_UP) :][:300]}",
         *place,
         certainty=HINT,
-        expected="a launch file that goes on until Ctrl-C",
+        expected="a launch file that runs until Ctrl-C",
         seen=said[:300],
     )
 

@@ -41,7 +41,7 @@ def _findings(case: Case) -> Iterator[Finding]:
             call = "get_num_connections()" if case.spec.nodes[run.node].language == "python" else ""
             yield Finding(
                 "topic",
-                f"{run.node} publishes on {outside(one.topic)} at the very moment at which it has"
+                f"{run.node} publishes on {outside(one.topic)} just when it has"
                 f" made its publisher, and never again, {run.where}: no subscriber is connected"
                 " yet, and nobody hears it.",
                 *case.places.of_topic(run.node, Kind.PUBLISHER, one.topic),

@@ -95,7 +95,7 @@ def _launch_findings(package: Package, spec: Spec, seen: Observed) -> Iterator[F
             *place,
             expected="a command that can be run for each node",
             seen=why,
-            fix=f"Take{prefix} away: it starts the node by another program." if prefix else "",
+            fix=f"Remove{prefix}: it starts the node by another program." if prefix else "",
             node=named.group(1) if named else None,
         )
         return

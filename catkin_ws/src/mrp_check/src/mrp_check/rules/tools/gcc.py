@@ -15,7 +15,7 @@ from mrp_check.contract.finding import Finding
 from mrp_check.contract.requirements import ANY, Rule
 from mrp_check.run.case import Case
 
-_FORMAT = "Let each place of the text fit its value, such as %d for an int."
+_FORMAT = "Make each placeholder fit its value, such as %d for an int."
 _VALUE = "Give the variable a value where it is declared."
 _TABLE = {
     "address": Row(
@@ -24,17 +24,17 @@ _TABLE = {
     ),
     "div-by-zero": Row("Here something is divided by 0."),
     "duplicated-cond": Row("This condition was asked before: its branch is never taken."),
-    "empty-body": Row("A semicolon ends this line: what follows is done in each case."),
+    "empty-body": Row("A semicolon ends this line: what follows always runs."),
     "format": Row("The format doesn't fit what it is given: any number may be shown.", _FORMAT),
-    "format-extra-args": Row("The format has no place for all that it is given.", _FORMAT),
+    "format-extra-args": Row("The format has fewer placeholders than values.", _FORMAT),
     "format-security": Row('A text without a format is printed: write "%s" before it.', _FORMAT),
     "maybe-uninitialized": Row("A variable is read here that may have no value.", _VALUE),
     "misleading-indentation": Row("The indented lines don't all belong to the line above them."),
     "overflow": Row("The number is too large for its type."),
-    "parentheses": Row("Perhaps = stands here for ==, or brackets are missing."),
-    "return-type": Row("On some way, this function ends without a return: it gives any value."),
-    "tautological-compare": Row("This comparison is always true, or never."),
-    "type-limits": Row("This comparison is always true, or never."),
+    "parentheses": Row("Perhaps you meant ==, or brackets are missing."),
+    "return-type": Row("On some paths, this function returns nothing: its caller gets any value."),
+    "tautological-compare": Row("This comparison is always true, or always false."),
+    "type-limits": Row("This comparison is always true, or always false."),
     "uninitialized": Row("A variable is read here that has no value.", _VALUE),
     "unused-value": Row("This line computes something, and does nothing with it."),
 }

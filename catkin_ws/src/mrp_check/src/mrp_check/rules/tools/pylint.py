@@ -43,7 +43,7 @@ _TABLE = {
     ),
     "assignment-from-no-return": Row(
         "The function that is called here returns nothing: the variable is None.",
-        "Return a value, or keep nothing of the call.",
+        "Return a value, or don't use the result.",
     ),
     "bad-string-format-type": Row(
         "The format doesn't fit the type of its value: Python ends with a TypeError here.",
@@ -71,8 +71,8 @@ _TABLE = {
         HINT,
     ),
     "inconsistent-return-statements": Row(
-        "Some ways through this function return a value, and others return None.",
-        "Let each way return a value.",
+        "Some paths through this function return a value, and others return None.",
+        "Return a value on each path.",
         HINT,
     ),
     "modified-iterating-list": Row(
@@ -80,7 +80,7 @@ _TABLE = {
         "Loop over a copy: list(...).",
     ),
     "no-member": Row(
-        "This object has nothing of that name: Python ends with an AttributeError here.",
+        "This object has no member of that name: Python ends with an AttributeError here.",
         "Correct the name.",
         READ,
     ),
@@ -96,17 +96,17 @@ _TABLE = {
     ),
     "pointless-statement": Row(
         "This line computes a value, and does nothing with it.",
-        "Call the function, write = for ==, or take the line out.",
+        "Call the function, write = for ==, or remove the line.",
     ),
     "possibly-used-before-assignment": _NO_VALUE,
     "too-few-format-args": Row(
-        "The text has more places than values: Python ends with a TypeError here.",
-        "Give each place its value.",
+        "The text has more placeholders than values: Python ends with a TypeError here.",
+        "Give each placeholder a value.",
         READ,
     ),
     "too-many-format-args": Row(
-        "The text has fewer places than values: Python ends with a TypeError here.",
-        "Write a place such as %s for each value.",
+        "The text has fewer placeholders than values: Python ends with a TypeError here.",
+        "Write a placeholder such as %s for each value.",
         READ,
     ),
     "too-many-function-args": Row(
@@ -115,7 +115,7 @@ _TABLE = {
         READ,
     ),
     "unbalanced-tuple-unpacking": Row(
-        "The number of names isn't that of the values: Python ends with a ValueError here.",
+        "There aren't as many names as values: Python ends with a ValueError here.",
         "Write as many names as there are values.",
         READ,
     ),
@@ -125,7 +125,7 @@ _TABLE = {
         READ,
     ),
     "unpacking-non-sequence": Row(
-        "One value can't be taken apart for several names: Python ends with a TypeError here.",
+        "One value can't be split into several names: Python ends with a TypeError here.",
         "Give each name its value.",
         READ,
     ),
