@@ -293,7 +293,7 @@ def _text(text, **more):
 def _near_problems(text):
     """Return the lines of a text; of a very long one, those with an error and those around them."""
     if len(text) <= _MANY * 100:
-        return [line[:_LONG] for line in text.splitlines()]
+        return _cut(text)
     found, end = {}, 0
     for at in sorted(set().union(*(_places(text, word) for word in _PROBLEMS))):
         if at < end:
@@ -301,9 +301,14 @@ def _near_problems(text):
         before, after = text[max(at - _LONG, 0) : at].split("\n"), text[at : at + _LONG].split("\n")
         line, end = before[-1] + after[0], at + len(after[0])
         found.setdefault(line.translate(_NO_DIGITS), [*before[-3:-1], line, *after[1:3]])
-    parts = [*found.values()] or [text[-_MANY * 100 :].splitlines()]
+    parts = [*found.values()] or [_cut(text[-_MANY * 100 :])]
     shown = parts[: _MANY // 2] + parts[_MANY // 2 :][-_MANY // 2 :]
     return [*itertools.chain.from_iterable(shown)]
+
+
+def _cut(text):
+    """Return the lines of a text, none of them long: the patterns would take minutes."""
+    return [line[:_LONG] for line in text.splitlines()]
 
 
 def _places(text, word):
