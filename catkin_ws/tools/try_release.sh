@@ -29,8 +29,8 @@ catkin_ws/tools/publish_site.sh catkin_ws/build/docs "$version" "$work/published
 echo "Publishing $version at $repository would make:"
 echo "  release notes, $(wc -l < "$work/notes.md") lines"
 (cd "$work" && stat --printf '  %n, %s bytes\n' ./*.deb)
-docker image ls --format '  image {{.Repository}}:{{.Tag}}, {{.Size}}; as :latest, too, with an SBOM, for amd64 and arm64' \
-  "ghcr.io/${owner,,}/*"
+docker image ls --format 'image {{.Repository}}:{{.Tag}}, {{.Size}}; as :latest, too, with an SBOM, for amd64 and arm64' \
+  "ghcr.io/${owner,,}/*" | sed 's/^/  /'
 pages=$(git -C "$work/published" ls-tree -r --name-only gh-pages)
 echo "  branch gh-pages: $(grep -c '^[^0-9].*html$' <<< "$pages") pages, the same in $version/, and" \
   "$(grep -o '<loc>' catkin_ws/build/docs/sitemap.xml | wc -l) addresses in sitemap.xml"

@@ -289,3 +289,7 @@ def test_headers_are_kept_until_others_are_installed(tmp_path, headers, monkeypa
     monkeypatch.setenv("XDG_CACHE_HOME", str(installed))  # a file: nothing can be kept there
     only.unlink()
     assert cpp_headers.make(tmp_path / "fourth").exists()
+    monkeypatch.delenv("XDG_CACHE_HOME")
+    monkeypatch.setenv("HOME", str(tmp_path / "home"))
+    assert cpp_headers.make(tmp_path / "fifth").exists()
+    assert not (tmp_path / "home").exists()

@@ -2,8 +2,9 @@
 """Reads ROS's own C++ headers, and keeps what clang made of them: usage cpp_headers.py FILE.
 
 Almost all of the time in which a source is read goes into them. So they are read once, while CMake
-configures, and kept in the user's cache until other packages are installed. Nothing of a package
-has a part in it, and what runs of one gets a copy.
+configures, and kept in the folder that stays from one check to the next. Checks without such a
+folder share them below XDG_CACHE_HOME, if that is set. Nothing of a package has a part in it, and
+what runs of one gets a copy.
 """
 
 import contextlib
@@ -36,14 +37,15 @@ def make(path: pathlib.Path) -> pathlib.Path:
         return path  # an earlier check has made it
     kept, folder = _in_cache(), os.environ.get(variables.HEADERS)
     of_many = [pathlib.Path(folder, NAME)] if folder else []
-    for earlier in (*of_many, kept):
+    for earlier in (*of_many, *kept):
         if earlier.exists():
             shutil.copyfile(earlier, path)
             return path
     subprocess.run(["/usr/bin/python3", __file__, str(path)], stderr=subprocess.DEVNULL)
     if path.exists():
-        with contextlib.suppress(OSError):  # such as a home that is read-only: nothing is kept
-            _keep(path, kept)
+        for cached in kept:
+            with contextlib.suppress(OSError):  # as where it is read-only
+                _keep(path, cached)
     return path
 
 
@@ -54,11 +56,10 @@ def installed() -> str:
     return hashlib.sha256(known.encode()).hexdigest()[:16]
 
 
-def _in_cache() -> pathlib.Path:
-    """Return the path at which the headers of what is installed now are kept."""
-    name = f"ros_{installed()}.pch"
-    cache = os.environ.get("XDG_CACHE_HOME") or os.path.expanduser("~/.cache")
-    return pathlib.Path(cache, "mrp_check", name)
+def _in_cache() -> list[pathlib.Path]:
+    """Return the path at which the headers of what is installed now are shared, if they are."""
+    cache = os.environ.get("XDG_CACHE_HOME")
+    return [pathlib.Path(cache, "mrp_check", f"ros_{installed()}.pch")] if cache else []
 
 
 def _keep(path: pathlib.Path, kept: pathlib.Path) -> None:
