@@ -26,6 +26,7 @@ def entries(spec):
     yield "install_packages.sh", WORKSPACE / "tools" / "install_packages.sh"
     for name in LISTS:
         yield f"apt/{name}.txt", WORKSPACE / "apt" / f"{name}.txt"
+    yield "mrp_check/package.xml", CHECKER / "package.xml"  # with the address of the pages
     for folder in ("schema", "scripts", "specs", "src", "templates"):
         for path in sorted((CHECKER / folder).rglob("*")):
             if path.is_file() and "__pycache__" not in path.parts:
