@@ -78,13 +78,16 @@ def test_timing_shows_when_each_part_began():
 def test_mrp_check_finds_the_package_and_static_only_reads(tmp_path):
     package = shutil.copytree(WORKSPACE / "src" / "mrp", tmp_path / "src" / "mrp")
     node = package / "src" / "publisher_py_node.py"
-    node.write_text(node.read_text().replace("def main(", "def main"))
+    node.write_text(node.read_text().replace("def main(", "def main" + 9000 * "x"))
+    (package / "launch" / "large.launch").write_text(f"<launch><!-- {1_000_000 * 'x'} --></launch>")
     report = tmp_path / "report.json"
     asked = (tmp_path, "--static", "--timing", "--json", report)
     done = run(*asked, program=CHECK.with_name("mrp-check"))
     data = json.loads(report.read_text())
     found = [(one["id"], one["file"]) for one in data["findings"] if one["severity"] == "error"]
     assert found == [("python-syntax", "src/publisher_py_node.py")], done.stdout
+    assert any("more than 1 MB: launch/large.launch" in one["message"] for one in data["findings"])
+    assert len(done.stdout) < 9000
     assert not {"compile", "values"} & {*data["requirements"]}
     assert done.returncode == 1 and "The package ran" not in data["isolation"]
     assert "reading the sources" in done.stderr and "at the build" not in done.stderr

@@ -78,6 +78,7 @@ class Package:
         if not self.root.is_dir():
             raise PackageError(f"{root} is no folder; expected the folder of a package.")
         self._bytes: dict[str, bytes] = {}
+        self._large: set[str] = set()
         self.left_out: list[str] = []
         self.not_utf8: list[str] = []
         self.siblings: list[Package] = []
@@ -106,6 +107,8 @@ class Package:
                 if size > MAX_BYTES:
                     self.left_out.append(known)
                     continue
+                if size > MAX_TEXT:
+                    self._large.add(known)
                 sizes[known] = size
                 total += size
                 if len(sizes) > MAX_FILES or total > MAX_BYTES:
@@ -141,6 +144,10 @@ class Package:
             with open(self.root / path, "rb") as file:
                 self._bytes[path] = file.read(MAX_TEXT)
         return self._bytes[path]
+
+    def is_cut(self, path: str | None) -> bool:
+        """Return whether this is a source of which only the beginning is read."""
+        return path in self._large and self.kind(path) != "other"
 
     def text(self, path: str) -> str:
         """Return a file's text. What is no UTF-8 is replaced; line ends become newlines."""

@@ -88,6 +88,8 @@ def check(
     return report
 
 
+LONGEST = 2000  # characters of what was seen, such as a line without end
+
 # What the user reads while a stage looks for mistakes.
 _STAGES = {
     "files": "looking at the files",
@@ -134,6 +136,9 @@ class _Examination:
             for need in rule.needs:
                 self._provide(need)
             for finding in rule.ask(self.case):
+                if self.case.package.is_cut(finding.file):
+                    continue  # what its end would say is unknown
+                finding.seen = finding.seen[:LONGEST]
                 finding.severity = severity(finding.certainty, has_contract=True)
                 self.findings.append(finding)
 

@@ -10,7 +10,7 @@ from typing import Iterator
 from mrp_check.contract.finding import CERTAIN, HABIT, HINT, Finding
 from mrp_check.contract.names import printable
 from mrp_check.contract.requirements import Requirement, Rule
-from mrp_check.package.package import MAX_BYTES, Package
+from mrp_check.package.package import MAX_BYTES, MAX_TEXT, Package
 from mrp_check.run import evidence
 from mrp_check.run.case import Case
 
@@ -34,6 +34,9 @@ def _findings(case: Case) -> Iterator[Finding]:
             seen="bytes of another encoding, shown as %FC, for example",
             fix="Rename them. Old zip programs make such names of letters like ü.",
         )
+    if cut := ", ".join(filter(package.is_cut, package.files)):
+        said = f"The check says nothing about files of more than {MAX_TEXT // 10**6} MB: {cut}"
+        yield Finding("text", said, certainty=HINT, fix="Keep long data in a file of its own.")
     relayed = case.model.relayed()
     for path in package.files:
         kind = package.kind(path)
