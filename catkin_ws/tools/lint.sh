@@ -39,7 +39,7 @@ check "ruff check" $tools/ruff check --no-cache --config catkin_ws/pyproject.tom
 check "ruff format" $tools/ruff format --check --no-cache --config catkin_ws/pyproject.toml catkin_ws docker
 # What another program looks at by its name: expat, roslaunch, prompt_toolkit, and the confinement's watcher. What a
 # defect's head says is read by the tests and by the pages.
-check "vulture" $tools/vulture catkin_ws/src/mrp_check/{src,scripts} \
+check "vulture" $tools/vulture catkin_ws/src/mrp_check/{src,scripts} catkin_ws/tools/{doctor,why}.py \
   --ignore-names '*Handler,ignore_unset_args,cpu,open_files,file_size,erratum,breaks,fails,says,finds,tells,missed,why,ttimeoutlen,supported'
 check "mypy" $tools/mypy --no-error-summary --cache-dir $lint/mypy --config-file catkin_ws/pyproject.toml \
   --package mrp_check
