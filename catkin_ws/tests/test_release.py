@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""tools/release.py, on a repository that has the packages' manifests and changelogs alone; and
+"""tools/release.py, on a repository that has README, and the manifests and changelogs; and
 tools/publish_site.sh, on a bare one."""
 
 import shutil
@@ -17,6 +17,7 @@ def release(tmp_path, monkeypatch):
         monkeypatch.setenv(f"GIT_{who}_NAME", "me")
         monkeypatch.setenv(f"GIT_{who}_EMAIL", "me@mrp.example")
     (tmp_path / "catkin_ws/tools").mkdir(parents=True)
+    shutil.copy(WORKSPACE.parent / "README.md", tmp_path)
     script = shutil.copy(WORKSPACE / "tools/release.py", tmp_path / "catkin_ws/tools")
     for manifest in (WORKSPACE / "src").glob("*/package.xml"):
         folder = tmp_path / "catkin_ws/src" / manifest.parent.name
@@ -30,7 +31,7 @@ def release(tmp_path, monkeypatch):
     )
 
 
-def test_release_is_complete_once_tagged(release):
+def test_release_is_complete_once_tagged(release, tmp_path):
     before = release("--check")
     assert before.returncode == 1
     assert '[MISSING] every package.xml has <url type="repository">' in before.stdout
@@ -41,6 +42,9 @@ def test_release_is_complete_once_tagged(release):
     after = release("--check")
     assert (after.returncode, "MISSING" in after.stdout) == (0, False), after.stdout
     assert "### mrp_check\n\n* " in release("--notes").stdout
+    readme = (tmp_path / "README.md").read_text()
+    assert "\ngit clone https://forge.example/Somebody/mrp mrp\n" in readme
+    assert "(https://codespaces.new/Somebody/mrp)" in readme and "ADDRESS" not in readme
 
 
 def test_next_release_needs_its_changes_and_bumps_the_version(release, tmp_path):

@@ -49,6 +49,18 @@ def write_urls(addresses):
         path.write_text(text.replace("</package>", f"\n{lines}</package>"))
 
 
+def write_readme(repository, name):
+    """Say in README.md where to clone it from, and let GitHub open it in a Codespace.
+
+    name: OWNER/NAME
+    """
+    path, badge = ROOT / "README.md", "https://github.com/codespaces/badge.svg"
+    codespace = f"[![Open in GitHub Codespaces]({badge})](https://codespaces.new/{name})"
+    text = path.read_text().replace("git clone ADDRESS mrp", f"git clone {repository} mrp")
+    here = "`ADDRESS` is where you found this page."
+    path.write_text(text.replace(here, f"Or try it in your browser:\n{codespace}"))
+
+
 def release(version, repository, website=""):
     """Commit and tag a version. Raises CalledProcessError if git or catkin refuses."""
     is_new = parse_package(FOLDERS[0]).version != version
@@ -61,6 +73,7 @@ def release(version, repository, website=""):
     website = website or f"https://{owner.lower()}.github.io/{name}"
     addresses = (website, repository, f"{repository}/issues")
     write_urls(dict(zip(URLS, addresses)))
+    write_readme(repository, f"{owner}/{name}")
     if git("status", "--porcelain", "--untracked-files=no"):
         git("commit", "--quiet", "--all", "--message", f"release: publish at {repository}")
     if is_new:
