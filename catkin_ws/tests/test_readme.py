@@ -44,6 +44,18 @@ def test_commands_are_targets_of_make():
     assert {"make run", "make learn", "make why"} <= named <= {*targets}
 
 
+def test_commands_for_other_repositories_are_those_of_the_page():
+    """But for the addresses and the version, which a release writes into the README alone."""
+    of_release = r'(?<=ghcr\.io/)[\w.-]+|(?<=repo: ")[^"]+|(?<=rev: )[\d.]+'
+    page = re.sub(of_release, "#", (ROOT / "catkin_ws/src/mrp/doc/pages/ci.rst").read_text())
+    part = README[README.index("<details><summary>Check the") : README.index("</details>")]
+    commands = "".join(re.findall(r"```\n(.*?)```", part, re.DOTALL)).splitlines()
+    assert len(commands) == 5
+    for command in commands:
+        command = command.removesuffix(" .").replace(", args: [.]", "")
+        assert re.sub(of_release, "#", command) in page
+
+
 @pytest.mark.slow
 def test_ci_and_the_workflow_call_targets_of_the_list():
     workflow = yaml.safe_load((ROOT / ".github" / "workflows" / "ci.yml").read_text())

@@ -44,7 +44,10 @@ def test_release_is_complete_once_tagged(release, tmp_path):
     assert "### mrp_check\n\n* " in release("--notes").stdout
     readme = (tmp_path / "README.md").read_text()
     assert "\ngit clone https://forge.example/Somebody/mrp mrp\n" in readme
-    assert "(https://codespaces.new/Somebody/mrp)" in readme and "ADDRESS" not in readme
+    assert "(https://codespaces.new/Somebody/mrp)" in readme
+    assert f'{{repo: "https://forge.example/Somebody/mrp", rev: {version}, hooks' in readme
+    assert " ghcr.io/somebody/mrp-check " in readme
+    assert not [word for word in ("ADDRESS", "OWNER") if word in readme]
 
 
 def test_next_release_needs_its_changes_and_bumps_the_version(release, tmp_path):

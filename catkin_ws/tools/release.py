@@ -49,16 +49,19 @@ def write_urls(addresses):
         path.write_text(text.replace("</package>", f"\n{lines}</package>"))
 
 
-def write_readme(repository, name):
-    """Say in README.md where to clone it from, and let GitHub open it in a Codespace.
-
-    name: OWNER/NAME
-    """
+def write_readme(version, repository, owner, name):
+    """Name the version and the repository in README.md, and let GitHub open it in a Codespace."""
     path, badge = ROOT / "README.md", "https://github.com/codespaces/badge.svg"
-    codespace = f"[![Open in GitHub Codespaces]({badge})](https://codespaces.new/{name})"
-    text = path.read_text().replace("git clone ADDRESS mrp", f"git clone {repository} mrp")
-    here = "`ADDRESS` is where you found this page."
-    path.write_text(text.replace(here, f"Or try it in your browser:\n{codespace}"))
+    codespace = f"[![Open in GitHub Codespaces]({badge})](https://codespaces.new/{owner}/{name})"
+    text = path.read_text()
+    for placeholder, value in (
+        ("`ADDRESS` is where you found this page.", f"Or try it in your browser:\n{codespace}"),
+        ("ADDRESS", repository),
+        ("https://github.com/OWNER/REPO", repository),
+        ("ghcr.io/OWNER", f"ghcr.io/{owner.lower()}"),
+    ):
+        text = text.replace(placeholder, value)
+    path.write_text(re.sub(r"\brev: [\d.]+", f"rev: {version}", text))
 
 
 def release(version, repository, website=""):
@@ -73,7 +76,7 @@ def release(version, repository, website=""):
     website = website or f"https://{owner.lower()}.github.io/{name}"
     addresses = (website, repository, f"{repository}/issues")
     write_urls(dict(zip(URLS, addresses)))
-    write_readme(repository, f"{owner}/{name}")
+    write_readme(version, repository, owner, name)
     if git("status", "--porcelain", "--untracked-files=no"):
         git("commit", "--quiet", "--all", "--message", f"release: publish at {repository}")
     if is_new:
