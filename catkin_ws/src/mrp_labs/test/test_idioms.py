@@ -8,6 +8,7 @@ They run in the namespace /robot1. Where an idiom goes by a clock, the test turn
 import contextlib
 import itertools
 import os
+import pathlib
 import re
 import signal
 import sys
@@ -94,6 +95,21 @@ class Idiom(Process):
             for topics in (graph.publishers, graph.subscribers)
         )
         return found == TOPICS[self.name.split("/")[-1]]
+
+    def wait_until_in_its_loop(self):
+        """Wait until the idiom has its topics, and then sleeps again and again.
+
+        rospy hangs if Ctrl-C comes while it registers a topic: its handler calls the master, too,
+        and waits for the lock of the call that it has interrupted (_ServerProxy__request, core.py).
+        """
+        self.wait_for(self._has_its_topics, lambda: f"{self.name} has its topics")
+        before = self._sleeps()
+        self.wait_for(lambda: self._sleeps() >= before + 5, lambda: f"{self.name} is in its loop")
+
+    def _sleeps(self):
+        """Return how often the main thread has gone to sleep."""
+        status = pathlib.Path(f"/proc/{self.pid}/task/{self.pid}/status").read_text()
+        return int(re.search(r"^voluntary_ctxt_switches:\s(\d+)$", status, re.MULTILINE)[1])
 
     def wait_until_logged(self, *texts):
         """Wait until the idiom has logged so many lines, and check that they are these."""
@@ -213,8 +229,8 @@ class TestIdioms(unittest.TestCase):
         for idiom, language in itertools.product(
             ("wait_for_subscribers", "queue_for_a_burst"), LANGUAGES
         ):
-            with Idiom(idiom, language):
-                pass
+            with Idiom(idiom, language) as waiting:
+                waiting.wait_until_in_its_loop()
 
     def test_several_threads(self):
         for language in LANGUAGES:
