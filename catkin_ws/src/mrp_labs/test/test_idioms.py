@@ -8,7 +8,6 @@ They run in the namespace /robot1. Where an idiom goes by a clock, the test turn
 import contextlib
 import itertools
 import os
-import pathlib
 import re
 import signal
 import sys
@@ -97,19 +96,9 @@ class Idiom(Process):
         return found == TOPICS[self.name.split("/")[-1]]
 
     def wait_until_in_its_loop(self):
-        """Wait until the idiom has its topics, and then sleeps again and again.
-
-        rospy hangs if Ctrl-C comes while it registers a topic: its handler calls the master, too,
-        and waits for the lock of the call that it has interrupted (_ServerProxy__request, core.py).
-        """
+        """Wait until the idiom has its topics, and then sleeps again and again."""
         self.wait_for(self._has_its_topics, lambda: f"{self.name} has its topics")
-        before = self._sleeps()
-        self.wait_for(lambda: self._sleeps() >= before + 5, lambda: f"{self.name} is in its loop")
-
-    def _sleeps(self):
-        """Return how often the main thread has gone to sleep."""
-        status = pathlib.Path(f"/proc/{self.pid}/task/{self.pid}/status").read_text()
-        return int(re.search(r"^voluntary_ctxt_switches:\s(\d+)$", status, re.MULTILINE)[1])
+        self.wait_until_it_sleeps()
 
     def wait_until_logged(self, *texts):
         """Wait until the idiom has logged so many lines, and check that they are these."""

@@ -40,6 +40,7 @@ class TestRegister(unittest.TestCase):
         process = Process(program(contract.PACKAGE, node.executable), env=env)
         self.addCleanup(process.__exit__)
         process.wait_for(lambda: self.publishes(node), node.name + " is registered")
+        process.wait_until_it_sleeps()
         return process
 
     @staticmethod

@@ -89,6 +89,21 @@ class Process:
         wait_until(met_or_ended, explain)
         assert condition(), "the program ended before: " + explain()
 
+    def wait_until_it_sleeps(self):
+        """Wait until the main thread has gone to sleep a few more times, as in a loop or in spin().
+
+        What has only just registered with the master may still be at it. rospy hangs if Ctrl-C
+        comes then: its handler calls the master, too, and waits for the lock of the call that it
+        has interrupted (_ServerProxy__request in rospy/core.py).
+        """
+        status = pathlib.Path(f"/proc/{self.pid}/task/{self.pid}/status")
+
+        def sleeps():
+            return int(re.search(r"\nvoluntary_ctxt_switches:\s(\d+)", status.read_text())[1])
+
+        before = sleeps()
+        self.wait_for(lambda: sleeps() >= before + 4, "it sleeps")
+
     def stop(self, signal_number=signal.SIGINT):
         """Send a signal, wait for the end and return the exit code (negative: killed by it)."""
         os.kill(self.pid, signal_number)
