@@ -52,16 +52,18 @@ def write_urls(addresses):
 def write_readme(version, repository, owner, name):
     """Name the version and the repository in README.md, and let GitHub open it in a Codespace."""
     path, badge = ROOT / "README.md", "https://github.com/codespaces/badge.svg"
-    codespace = f"[![Open in GitHub Codespaces]({badge})](https://codespaces.new/{owner}/{name})"
-    text = path.read_text()
-    for placeholder, value in (
-        ("`ADDRESS` is where you found this page.", f"Or try it in your browser:\n{codespace}"),
-        ("ADDRESS", repository),
-        ("https://github.com/OWNER/REPO", repository),
-        ("ghcr.io/OWNER", f"ghcr.io/{owner.lower()}"),
+    codespace = f"[![Open in GitHub Codespaces]({badge})](https://codespaces.new/"
+    where = f"Or try it in your browser:\n{codespace}OWNER/REPO)"
+    text = path.read_text().replace("`ADDRESS` is where you found this page.", where)
+    for before, value, after in (
+        (r"git clone ", repository, " mrp\n"),
+        (r"https://codespaces\.new/", f"{owner}/{name}", r"\)"),
+        (r"ghcr\.io/", owner.lower(), "/mrp-check"),
+        (r'repo: "', repository, '"'),
+        (r"rev: ", version, ","),
     ):
-        text = text.replace(placeholder, value)
-    path.write_text(re.sub(r"\brev: [\d.]+", f"rev: {version}", text))
+        text = re.sub(rf"(?<={before})\S+?(?={after})", value, text)
+    path.write_text(text)
 
 
 def release(version, repository, website=""):
