@@ -147,7 +147,7 @@ def test_page_shows_what_a_package_says_as_text():
 
 
 def test_console_shows_verdicts_causes_first_and_pages(monkeypatch):
-    monkeypatch.setattr(resources, "BUILT_SITE", pathlib.Path("/nowhere"))
+    monkeypatch.setattr(resources, "site", lambda: "")
     text = terminal.text(report(HINTED, RESULT, CAUSE), everything=True)
     assert "  [FAIL] Each node waits for callbacks (spin)" in text
     assert "  [--]   Publishers publish the right values (values)" in text
