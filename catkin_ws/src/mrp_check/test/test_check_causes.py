@@ -114,7 +114,7 @@ def findings(*entries):
     ids=range(16),
 )
 def test_consequences(entries, expected):
-    told = causes.told_once(findings(*entries), facts())
+    told = causes.without_repeats(findings(*entries), facts())
     assert [finding.consequence_of for finding in told] == [None, *expected]
 
 
@@ -136,8 +136,8 @@ class Ran:
     ids=range(2),
 )
 def test_what_was_seen_all_the_same_is_no_consequence(cause, result):
-    assert causes.told_once(findings(cause, result), facts())[1].consequence_of == cause[0]
-    seen = causes.told_once(findings(cause, result), facts(), {"a": Ran()})
+    assert causes.without_repeats(findings(cause, result), facts())[1].consequence_of == cause[0]
+    seen = causes.without_repeats(findings(cause, result), facts(), {"a": Ran()})
     assert seen[1].consequence_of is None
 
 
@@ -152,7 +152,7 @@ def test_a_missing_header_follows_from_its_own_package(missing, cause):
         ("compile", "src/a.cpp", 1, "build", None),
     )
     undeclared.packages, failed.packages = ("std_srvs",), missing
-    causes.told_once([undeclared, failed])
+    causes.without_repeats([undeclared, failed])
     assert failed.consequence_of == cause
 
 
@@ -170,23 +170,23 @@ def test_what_stands_behind_a_header_that_is_not_made_stands_for_itself(missing,
         ("messages", file, 9, "files", None), ("compile", "src/a.cpp", 1, "build", None)
     )
     failed.packages = missing
-    causes.told_once([unmade, failed])
+    causes.without_repeats([unmade, failed])
     assert failed.consequence_of == cause
 
 
 def test_what_one_line_lacks_is_told_of_each():
     first, second = findings(*[("dependencies", "package.xml", 9, "files", None)] * 2)
     first.expected, second.expected = "<depend>std_msgs</depend>", "<depend>std_srvs</depend>"
-    assert causes.told_once([first, second]) == [first, second]
+    assert causes.without_repeats([first, second]) == [first, second]
 
 
 def test_the_same_is_told_once():
     entry = ("spin", "src/a.py", 1, "static", "a")
-    assert len(causes.told_once(findings(entry, entry), facts())) == 1
+    assert len(causes.without_repeats(findings(entry, entry), facts())) == 1
     of_no_node = ("spin", "src/a.py", 1, "static", None)
-    assert len(causes.told_once(findings(of_no_node, entry), facts())) == 1
+    assert len(causes.without_repeats(findings(of_no_node, entry), facts())) == 1
     of_another = ("spin", "src/a.py", 1, "static", "b")
-    assert len(causes.told_once(findings(entry, of_another), facts())) == 2
+    assert len(causes.without_repeats(findings(entry, of_another), facts())) == 2
 
 
 def test_last_words_have_no_time():
@@ -195,7 +195,7 @@ def test_last_words_have_no_time():
     assert words.last_words(said) == "ERROR: no"
 
 
-def test_a_node_may_end_before_it_comes_to_a_name_that_lacks():
+def test_a_node_may_end_before_it_gets_to_an_undefined_name():
     entries = ("python-names", "src/a.py", 5, "static", None), ("starts", "src/a.py", 9, "run", "a")
-    told = causes.told_once(findings(*entries), facts(), has_contract=False)
-    assert told[1].consequence_of is None
+    _, end = causes.without_repeats(findings(*entries), facts(), has_contract=False)
+    assert end.consequence_of is None

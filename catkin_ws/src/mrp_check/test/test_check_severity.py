@@ -41,7 +41,7 @@ def test_a_habit_never_becomes_an_error(rule, has_contract):
     habits = [*Rule(rule.stage, (), lambda case: habits, also=rule.ids).ask(None)]
     for one in (*seen, *habits):
         one.stage, one.severity = rule.stage, severity(one.certainty, has_contract=True)
-    known = causes.told_once([*habits, *seen], None, None, has_contract)
+    known = causes.without_repeats([*habits, *seen], None, None, has_contract)
     weigh(known, has_contract)
     assert {one.severity for one in habits} == {"warning"}
 
@@ -75,7 +75,7 @@ def test_only_what_fails_because_of_it_confirms_what_was_read(cause, severity):
     for one in (*read, failed):
         one.severity = "error"
     facts = Facts(sources={"a": ["a.py"]})
-    found = causes.told_once([*read, failed], facts, {}, has_contract=False)
+    found = causes.without_repeats([*read, failed], facts, {}, has_contract=False)
     weigh(found, has_contract=False)
     assert [one.severity for one in read] == [severity, "warning"]
 
@@ -87,7 +87,7 @@ def test_what_was_seen_is_the_cause_before_what_was_only_read():
     for one in (read, seen, failed):
         one.severity = "error"
     facts = Facts(sources={"a": ["a.cpp"]})
-    weigh(causes.told_once([read, seen, failed], facts, {}, False), has_contract=False)
+    weigh(causes.without_repeats([read, seen, failed], facts, {}, False), has_contract=False)
     assert (failed.consequence_of, read.severity) == ("compile", "warning")
 
 

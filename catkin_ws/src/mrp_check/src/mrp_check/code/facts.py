@@ -40,6 +40,14 @@ class Facts:
         found = [p for p in self.places if p.file in files and (not kinds or p.kind in kinds)]
         return sorted(found, key=lambda place: (files.index(place.file), place.line))
 
+    def first(self, *kinds: Kind) -> tuple[str | None, int | None]:
+        """Return the (file, line) of the first of these kinds that any source has."""
+        for kind in kinds:
+            for place in self.places:
+                if place.kind is kind:
+                    return place.file, place.line
+        return None, None
+
     def end_of_main(self, node: str) -> tuple[str, int] | None:
         """Return where the function ends that starts the node: there a call belongs that is
         missing. None if it is no function."""

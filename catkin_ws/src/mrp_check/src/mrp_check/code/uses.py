@@ -149,9 +149,14 @@ def debian_packages() -> set[str]:
     return names if len(names) >= _ALL else set()
 
 
+def is_sibling(package: Package, name: str) -> bool:
+    """Return whether a package of that name is built with the package."""
+    return any(sibling.name == name for sibling in package.siblings)
+
+
 def is_here(package: Package, name: str) -> bool:
     """Return whether a ROS package of that name is on this machine, or beside the package."""
-    return is_installed(name) or any(sibling.name == name for sibling in package.siblings)
+    return is_installed(name) or is_sibling(package, name)
 
 
 @functools.lru_cache(maxsize=None)
@@ -247,7 +252,7 @@ def is_called_so(package: Package, name: str) -> bool:
     elsewhere."""
     is_messages = name.endswith(("_msgs", "_srvs")) and not nearest(name, ["std_msgs"], 0.85)
     is_ros = is_messages or name == "learning_tf" or is_of_ros(name)
-    return is_ros or is_here(package, name)
+    return is_ros or is_sibling(package, name)
 
 
 def of(

@@ -87,6 +87,8 @@ class RunningLaunch:
             return False
         seen = self.observer.seen
         topics = {one.topic: one.time for one in list(seen.subscriptions) if one.node == node.path}
+        if not topics:
+            return False
         heard = (m.time for m in list(seen.messages) if m.time > topics.get(m.topic, m.time))
         first = next(heard, None)
         return first is not None and not is_over(time.monotonic() - first, _CALLS_BACK)

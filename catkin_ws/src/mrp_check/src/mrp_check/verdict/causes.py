@@ -63,7 +63,7 @@ _LATER = {"run", "stop"}
 _OF_ALL = ("CMakeLists.txt", ".cmake", ".xml", ".launch", ".msg")
 
 
-def told_once(findings, facts=None, nodes=None, has_contract=True):
+def without_repeats(findings, facts=None, nodes=None, has_contract=True):
     """Return the findings without repetitions, with consequences marked.
 
     facts: a sources.facts.Facts, which says which files a node is made of; or None
@@ -103,7 +103,7 @@ def told_once(findings, facts=None, nodes=None, has_contract=True):
         for number, cause in ordered:
             if not has_contract and cause.id == "scripts" and finding.id != "configure":
                 continue
-            # Why a node ends, Python says as it ends: it need not come to a name that lacks.
+            # A node may end before it gets to a name that doesn't exist.
             is_read = cause.id == "python-names" and cause.certainty != SEEN
             if not has_contract and is_read and finding.stage in _LATER and finding.id != cause.id:
                 continue

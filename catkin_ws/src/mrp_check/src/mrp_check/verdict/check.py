@@ -88,7 +88,7 @@ def check(
     return report
 
 
-LONGEST = 2000  # characters of what was seen, such as a line without end
+_LONGEST = 2000  # characters of what was seen, such as a line without end
 
 # What the user reads while a stage looks for mistakes.
 _STAGES = {
@@ -138,7 +138,7 @@ class _Examination:
             for finding in rule.ask(self.case):
                 if self.case.package.is_cut(finding.file):
                     continue  # what its end would say is unknown
-                finding.seen = finding.seen[:LONGEST]
+                finding.seen = finding.seen[:_LONGEST]
                 finding.severity = severity(finding.certainty, has_contract=True)
                 self.findings.append(finding)
 
@@ -185,7 +185,7 @@ class _Examination:
         package, known = self.case.package, vars(self.case)
         is_any = isinstance(self.case, AnyCase)
         found = copy.deepcopy(self.findings)  # more may be found: then it is asked for again
-        findings = causes.told_once(found, known.get("facts"), known.get("nodes"), not is_any)
+        findings = causes.without_repeats(found, known.get("facts"), known.get("nodes"), not is_any)
         for finding in findings:
             diff.add(package, finding)
         findings, suppressed = suppression.applied(package, findings, self._open(), not is_any)

@@ -81,7 +81,7 @@ class Names(PythonRule):
         if missing is None:
             return
         self.not_imported.append(name.split(".")[-1])
-        if any(one.name == missing.split(".")[0] for one in self.package.siblings):
+        if uses.is_sibling(self.package, missing.split(".")[0]):
             return  # it is built with the package: the run shows whether it has that
         if missing in OF_PYTHON_2:
             yield self._renamed(node, missing)

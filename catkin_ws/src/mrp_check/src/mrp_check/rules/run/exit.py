@@ -52,8 +52,6 @@ def _of(node: Node, direct: Alone, asked: float, shutdown: Shutdown) -> Iterator
         return node.finding("exit", message, place, expected=expected, seen=seen, fix=fix)
 
     code, traceback = direct.code, places.traceback(lines)
-    if direct.name is None and direct.stopped_in is not None:
-        return  # it was asked before rospy or roscpp listened: a busy machine was still starting it
     if direct.stopped_in is None:
         # If roslaunch could end it, and never had to use force, the machine was too busy.
         force = [_needs_force(name, launch) for name, launch in _runs(node)]
@@ -66,6 +64,8 @@ def _of(node: Node, direct: Alone, asked: float, shutdown: Shutdown) -> Iterator
                 "Let loops end when rospy.is_shutdown() is true or ros::ok() is false, and let no"
                 " thread outlive main().",
             )
+    elif direct.name is None:
+        return  # on a busy machine, it was still starting when it was asked to end
     elif code != shutdown.exit_code and "lock_error" in "\n".join(lines):
         yield finding(*_outlives(node, code), "Let an object in main() own it.")
     elif code != shutdown.exit_code:
@@ -200,8 +200,7 @@ def _leftovers(case: Case) -> Iterator[Finding]:
 def _starts_program(name: str | None, places: Places) -> Where:
     if name:
         return places.of(name, Kind.STARTS, Kind.INIT)
-    found = [place for place in places.facts.places if place.kind is Kind.STARTS]
-    return (found[0].file, found[0].line) if found else (None, None)
+    return places.facts.first(Kind.STARTS)
 
 
 def _findings(case: Case) -> Iterator[Finding]:

@@ -105,13 +105,10 @@ def _killed(facts: Facts, seen: Observed) -> Iterator[Finding]:
     """Yield a Finding if something has killed roslaunch: only the package itself can reach it."""
     code = seen.launch.code if seen.launch else None
     if code is not None and code < 0:
-        places = [one for one in facts.places if one.kind in (Kind.KILLS, Kind.STARTS)]
-        places.sort(key=lambda place: place.kind is not Kind.KILLS)
         yield Finding(
             "starts",
             "A node kills roslaunch, and perhaps the other nodes.",
-            places[0].file if places else None,
-            places[0].line if places else None,
+            *facts.first(Kind.KILLS, Kind.STARTS),
             expected="nodes that end no program but themselves",
             seen=f"roslaunch ended {code_text(code)}",
         )
