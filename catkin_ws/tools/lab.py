@@ -122,7 +122,7 @@ class Run:
     def wait_for_end(self, command):
         """Wait until the newest program of a command has ended by itself.
 
-        roslaunch that is about to end must not be sent Ctrl-C: that has kept one from ending.
+        A roslaunch that was about to end has once hung because it got Ctrl-C, too.
         """
         _, program = self.programs[self._newest(command)]
         try:

@@ -52,9 +52,9 @@ def write_urls(addresses):
 def write_readme(version, repository, owner, name):
     """Name the version and the repository in README.md, and let GitHub open it in a Codespace."""
     path, badge = ROOT / "README.md", "https://github.com/codespaces/badge.svg"
-    codespace = f"[![Open in GitHub Codespaces]({badge})](https://codespaces.new/"
-    where = f"Or try it in your browser:\n{codespace}OWNER/REPO)"
-    text = path.read_text().replace("`ADDRESS` is where you found this page.", where)
+    codespace = f"[![Open in GitHub Codespaces]({badge})](https://codespaces.new/OWNER/REPO)"
+    here = "`ADDRESS` is where you found this page."
+    text = path.read_text().replace(here, f"Or try it in your browser:\n{codespace}")
     for before, value, after in (
         (r"git clone ", repository, " mrp\n"),
         (r"https://codespaces\.new/", f"{owner}/{name}", r"\)"),

@@ -92,9 +92,9 @@ class Process:
     def wait_until_it_sleeps(self):
         """Wait until the main thread has gone to sleep a few more times, as in a loop or in spin().
 
-        What has only just registered with the master may still be at it. rospy hangs if Ctrl-C
-        comes then: its handler calls the master, too, and waits for the lock of the call that it
-        has interrupted (_ServerProxy__request in rospy/core.py).
+        A node that the master knows may still be registering. rospy hangs if Ctrl-C comes then:
+        its handler calls the master, too, and waits for the lock of the call that it has
+        interrupted (_ServerProxy__request in rospy/core.py).
         """
         status = pathlib.Path(f"/proc/{self.pid}/task/{self.pid}/status")
 

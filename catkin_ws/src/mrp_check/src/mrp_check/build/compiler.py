@@ -134,7 +134,7 @@ def _no_return(package: Package, file: str, line: int) -> Finding:
     return Finding(
         "compile",
         f"The function that ends in line {line} of {file} says that it returns a value, and has no"
-        " return: its caller gets any value, and the node may crash.",
+        " return: its caller gets an arbitrary value, and the node may crash.",
         file,
         line,
         expected="return, with a value",

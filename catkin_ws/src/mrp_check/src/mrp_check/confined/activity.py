@@ -17,8 +17,8 @@ from mrp_check.confined.seen import Log, Message, Registration
 
 TICK = 0.02  # seconds between two looks
 _IDLE = 3.0  # seconds in which an idle process uses hardly any processor time, ...
-_HARDLY = 0.05  # ... which is less than this many seconds,
-_STARVED = 0.2  # and is not found to want one in this part of the looks, as on a busy machine
+_HARDLY = 0.05  # ... which is less than this many seconds
+_STARVED = 0.2  # of the looks: a process that wants a processor in more of them isn't idle
 _CALM = 0.5  # seconds after which one that has announced something announces no more
 BUSY = 20.0  # seconds of processor time: a process is no longer starting up, or ending
 _LONGER = 6.0  # times, at most, that a busy machine may take longer
@@ -61,8 +61,10 @@ class Activity:
         return used is None or used > BUSY or self.is_idle(pid)
 
     def is_idle(self, pid: Optional[int]) -> bool:
-        """Return whether a process has used hardly any processor time for a while, or is no more;
-        and neither waited for a processor meanwhile nor for a disk that its modules are on."""
+        """Return whether a process has used hardly any processor time for a while, or is no more.
+
+        One that waits for a processor on a busy machine isn't idle, nor is one that waits for the
+        disk from which it reads its modules."""
         used, now, status = processor_seconds(pid), time.monotonic(), _status(pid)
         if used is None or pid is None:
             return True

@@ -32,7 +32,9 @@ _TABLE = {
     "misleading-indentation": Row("The indented lines don't all belong to the line above them."),
     "overflow": Row("The number is too large for its type."),
     "parentheses": Row("Perhaps you meant ==, or brackets are missing."),
-    "return-type": Row("On some paths, this function returns nothing: its caller gets any value."),
+    "return-type": Row(
+        "On some paths, this function returns nothing: its caller gets an arbitrary value."
+    ),
     "tautological-compare": Row("This comparison is always true, or always false."),
     "type-limits": Row("This comparison is always true, or always false."),
     "uninitialized": Row("A variable is read here that has no value.", _VALUE),
