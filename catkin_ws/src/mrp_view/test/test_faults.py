@@ -5,12 +5,12 @@
 import os
 import signal
 import unittest
+import unittest.mock
 
 import rosgraph
-import rospy
 import rostest
 from mrp_testing.lab import Lab
-from mrp_testing.master import master
+from mrp_testing.master import master, uri_of
 from mrp_testing.nodes import pid_of, program
 from mrp_testing.ports import free_port
 from mrp_testing.process import LIVE, Process
@@ -19,9 +19,13 @@ from mrp_testing.waiting import wait_until
 
 
 class TestFaults(unittest.TestCase):
-    @classmethod
-    def setUpClass(cls):
-        rospy.init_node("test_faults")
+    def setUp(self):
+        """Give each test a master of its own: what a killed node leaves at one stays in its graph."""
+        port = free_port()
+        environment = unittest.mock.patch.dict(os.environ, ROS_MASTER_URI=uri_of(port))
+        environment.start()
+        self.addCleanup(environment.stop)
+        self.addCleanup(master(port).stop)
 
     def test_dropped_messages_are_counted_where_they_are_dropped(self):
         with Viewer() as viewer, Client(viewer.address) as page:
@@ -126,7 +130,7 @@ class TestFaults(unittest.TestCase):
 
     def test_killed_node_is_dead(self):
         """A node that is killed unregisters nothing: the master alone would say that it lives."""
-        env = {"ROS_MASTER_URI": f"http://localhost:{free_port()}"}
+        env = {"ROS_MASTER_URI": uri_of(free_port())}
         with PubSub(extra_env=env), Viewer(extra_env=env) as viewer, Client(viewer.address) as page:
             for name in PUBLISHERS + SUBSCRIBERS:
                 page.wait_for(lambda: page.states().get(name) == "alive", f"{name} alive")
@@ -150,7 +154,7 @@ class TestFaults(unittest.TestCase):
     def test_master_is_restarted(self):
         """The page says so; connected nodes are heard all the time, and those who come later."""
         port = free_port()
-        env = {"ROS_MASTER_URI": f"http://localhost:{port}"}
+        env = {"ROS_MASTER_URI": uri_of(port)}
         with Viewer("--settle", "0", extra_env=env) as viewer, Client(viewer.address) as page:
             page.wait_for(lambda: page.graph, "a page before there is a master")
             self.assertEqual(page.graph["master"]["state"], "never")
@@ -178,7 +182,7 @@ class TestFaults(unittest.TestCase):
 
     def test_whole_system_has_ended(self):
         """After Ctrl-C on roslaunch nothing is called dead, restarted, or still publishing."""
-        env = {"ROS_MASTER_URI": f"http://localhost:{free_port()}"}
+        env = {"ROS_MASTER_URI": uri_of(free_port())}
         with Viewer("--settle", "0", extra_env=env) as viewer, Client(viewer.address) as page:
             with PubSub(extra_env=env) as launched:
                 page.wait_for(lambda: (TOPIC, PUBLISHERS[0]) in page.rows, "messages")
