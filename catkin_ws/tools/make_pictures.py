@@ -39,6 +39,7 @@ THEMES = {  # background, text, and the colours 0 to 7 of a terminal
         "#6e7681 #ff7b72 #56d364 #e3b341 #79c0ff #d2a8ff #76e3ea #e6edf3",
     ),
 }
+HOME = "/home/you"  # stands for the scratch folder on the picture
 _SGR = re.compile(r"\x1b\[([\d;]*)m")
 
 
@@ -81,8 +82,8 @@ def learn(browser, folder):
             f"PYTHONPATH={WORKSPACE}/src/mrp_check/src "
             "/usr/bin/python3 -m mrp_check.cli.learn exercises",
             pathlib.Path(scratch),
-            until="was never closed",
-        )
+            until="SyntaxError",
+        ).replace(scratch, HOME)
     for mode in THEMES:
         browser.driver.get("data:text/html;base64," + base64.b64encode(page(text, mode)).decode())
         save(browser, folder / f"learn-{mode}.webp", "pre")
@@ -100,7 +101,7 @@ def at_terminal(command, folder, until):
             return subprocess.run(shown, check=True, stdout=subprocess.PIPE, text=True).stdout
 
         wait_until(lambda: until in screen(), f"{until!r} on the screen of {command}")
-        return screen("-e")
+        return screen("-e", "-N")
     finally:
         subprocess.run([*tmux, "kill-server"], check=False)
 

@@ -53,7 +53,7 @@ def write_readme(version, repository, owner, name):
     """Name the version and the repository in README.md, and let GitHub open it in a Codespace."""
     path, badge = ROOT / "README.md", "https://github.com/codespaces/badge.svg"
     codespace = f"[![Open in GitHub Codespaces]({badge})](https://codespaces.new/OWNER/REPO)"
-    here = "`ADDRESS` is where you found this page."
+    here = "Replace `ADDRESS` with the address of this page."
     text = path.read_text().replace(here, f"Or try it in your browser:\n{codespace}")
     for before, value, after in (
         (r"git clone ", repository, " mrp\n"),
