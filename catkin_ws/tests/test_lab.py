@@ -27,15 +27,15 @@ def own(folder):
 @pytest.mark.quick
 def test_list_has_every_lab_with_its_claim():
     launch_files = {path.stem: path.read_text() for path in FOLDER.glob("launch/*.launch")}
-    assert len(launch_files) == 50
+    more = f"{len(launch_files) - 10} more"
     printed = make("labs", "ALL=1").stdout
     assert sorted(re.findall(r"^    make lab NAME=(\w+)$", printed, re.MULTILINE)) == sorted(
         launch_files
     )
     assert printed.startswith("Ten to start with:\n\n")
     ten = make("labs").stdout
-    assert ten.count("make lab NAME=") == 10 and printed.startswith(ten.split("40 more")[0])
-    assert ten.endswith("\n40 more: make labs ALL=1\n")
+    assert ten.count("make lab NAME=") == 10 and printed.startswith(ten.split(more)[0])
+    assert ten.endswith(f"\n{more}: make labs ALL=1\n")
     words = " ".join(printed.split())
     for name, text in launch_files.items():
         claim = re.match(r"<!-- (.*) -->\n", text).group(1)
