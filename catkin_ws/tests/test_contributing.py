@@ -123,6 +123,8 @@ def test_a_new_exercise_is_the_last_one(copy):
         [sys.executable, "-c", program], cwd=checker / "src", capture_output=True, text=True
     )
     assert found.stdout == "not_described\n", found.stderr
+    section = TEXT[TEXT.index("## An exercise") : TEXT.index("## A rule")]
+    assert {*re.findall(r"^\w+(?=:)", EXERCISE, re.MULTILINE)} <= {*re.findall(r"`(\w+)`", section)}
 
 
 def check(copy):

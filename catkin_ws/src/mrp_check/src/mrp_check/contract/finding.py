@@ -17,7 +17,7 @@ READ = "read"  # a source says so, and a contract forbids it; nobody has seen it
 HABIT = "habit"  # it works, but it is fragile
 HINT = "hint"  # it works; good to know
 
-# What that means for a package: contract/severity.py says it.
+# What that means for a package: verdict/severity.py says it.
 ERROR, WARNING, NOTE = "error", "warning", "note"
 
 
@@ -25,7 +25,7 @@ ERROR, WARNING, NOTE = "error", "warning", "note"
 class Finding:
     """One thing that is wrong.
 
-    id: the requirement that is not met, a key of requirements.REQUIREMENTS
+    id: the requirement that is not met, a key of rules.REQUIREMENTS
     message: what is wrong, in one or two full sentences that a beginner understands
     file: relative to the package, or None if no file of the package is to blame
     line: of that file, from 1, or None
@@ -33,13 +33,13 @@ class Finding:
     expected, seen: what the contract asks for, and what was found; may be empty
     fix: what to do next; below it a unified diff, where the fix is certain
     why: the entry of the page why about the text that a tool prints then, or empty
-    change: (old, new), a part of the line and what to write for it, if that is certain to mend it;
-            check.py makes the diff of it, and drops a change that is not certain
-    column: of the change in that line, from 1; check.py fills it in
+    change: (old, new), a part of the line and what to write for it, if that is certain to fix it;
+            verdict/check.py makes the diff of it, and drops a change that is not certain
+    column: of the change in that line, from 1; verdict/check.py fills it in
     suppressed: the reason why a comment suppresses it, or empty
     consequence_of: the id of the finding that is the cause of this one, or None
-    stage: which stage found it; check.py fills it in
-    severity: ERROR, WARNING or NOTE; check.py fills it in
+    stage: which stage found it; verdict/check.py fills it in
+    severity: ERROR, WARNING or NOTE; verdict/check.py fills it in
     node: the name of the spec's node that it is about, or None: tells causes from consequences
     packages: the ROS packages that are not named, or whose headers are not found: the same
     """
