@@ -127,7 +127,9 @@ def test_first_exercise_at_a_terminal(tmp_path, env):
     # The test's editor solves it.
     terminal.press("o", "Checking: ")
     terminal.wait_for(
-        f"Passed: 1 of {len(defects.exercises())}. n goes on.", "| 1 passed", "You've learned: Python's last line"
+        f"Passed: 1 of {len(defects.exercises())}. n goes on.",
+        "| 1 passed",
+        "You've learned: Python's last line",
     )
     terminal.press("s", "+++ b/src/subscriber_py_node.py")
     terminal.press("r", "started roslaunch server")

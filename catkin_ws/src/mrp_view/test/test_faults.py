@@ -20,7 +20,7 @@ from mrp_testing.waiting import wait_until
 
 class TestFaults(unittest.TestCase):
     def setUp(self):
-        """Give each test a master of its own: what a killed node leaves at one stays in its graph."""
+        """Give each test a master of its own: a killed node stays in the graph of its master."""
         port = free_port()
         environment = unittest.mock.patch.dict(os.environ, ROS_MASTER_URI=uri_of(port))
         environment.start()
