@@ -156,28 +156,6 @@ def test_another_package_of_the_workspace_is_not_found(tmp_path):
     assert "sibling (not in Debian)" in report.reason
 
 
-def test_a_header_of_another_computer_is_found_where_nothing_can_be_built(tmp_path):
-    cmake = """\
-cmake_minimum_required(VERSION 3.10)
-project(some_pkg)
-find_package(catkin REQUIRED COMPONENTS roscpp nowhere_msgs)
-catkin_package()
-add_executable(talker src/talker.cpp)
-"""
-    source = '#include <ros/ros.h>\n#include "/home/nobody/ws/devel/include/some_pkg/Num.h"\n'
-    main = 'int main(int argc, char** argv) { ros::init(argc, argv, "talker"); }\n'
-    manifest = check_rules.MANIFEST.replace("std_msgs", "nowhere_msgs")
-    package = check_rules.make(
-        tmp_path / "some_pkg",
-        package_DOT_xml=manifest,
-        CMakeLists_DOT_txt=cmake,
-        src__talker_DOT_cpp=source + main,
-    )
-    report = check.check(package, None, ("configure", "compile"), timeout=300)
-    found = [(f.severity, f.file, f.line) for f in report.findings if f.id == "compile"]
-    assert found == [(ERROR, "src/talker.cpp", 2)], shown(report.findings)
-
-
 ALONE = """\
 cmake_minimum_required(VERSION 3.10)
 project(some_pkg)

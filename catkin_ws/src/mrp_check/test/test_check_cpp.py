@@ -92,27 +92,6 @@ BROKEN = {
         "end of main",
     ),
     "spin_once": (SUBSCRIBER, [("ros::spin()", "ros::spinOnce()")], "spin", "spinOnce", "at once"),
-    "local": (
-        PUBLISHER,
-        [(ADVERTISE, "ros::Publisher " + ADVERTISE)],
-        "lifetime",
-        "advertise",
-        "PublisherCppNode",
-    ),
-    "local_of_callback": (
-        PUBLISHER,
-        [
-            ("    " + ADVERTISE + "\n", ""),
-            ("  ros::Publisher publisher_;\n", ""),
-            (
-                "    publisher_.publish",
-                "    ros::Publisher " + ADVERTISE + "\n    publisher_.publish",
-            ),
-        ],
-        "lifetime",
-        "advertise",
-        "timerCallback",
-    ),
     "discarded": (
         SUBSCRIBER,
         [(SUBSCRIBE, "nh_.subscribe")],
@@ -172,7 +151,6 @@ BROKEN = {
     ),
     "short_publisher": (PUBLISHER, [('_topic", 10', '_topic", 1')], "queue", ", 1)", "asks for 10"),
     "long_queue": (SUBSCRIBER, [('_topic", 10', '_topic", 11')], "queue", ", 11,", "asks for 10"),
-    "short_queue": (SUBSCRIBER, [('"great_topic", 10', '"great_topic", 1')], "queue", "1,", "one"),
 }
 
 

@@ -43,13 +43,10 @@ NODE = (
     [
         (NODE.encode(), []),
         ("#!/usr/bin/env python\n# ä\n".encode(), []),
-        (b"\xef\xbb\xbf" + NODE.encode(), [("text", 1)]),
-        (NODE.replace("\n", "\r\n").encode(), [("text", 1)]),
-        (b"#!/usr/bin/env python\n# \xe4\n", [("text", 2)]),
         (b"#!/usr/bin/env python\n# coding: latin-1\n# \xe4\n", []),
         (NODE.encode("utf-16"), [("text", 1)]),
     ],
-    ids=range(7),
+    ids=range(4),
 )
 def test_text(content, expected, tmp_path):
     package = check_rules.make(tmp_path, CMakeLists_DOT_txt="", src__odd_DOT_py=content)
@@ -78,11 +75,10 @@ def test_windows_line_ends_of_cpp_are_a_note(tmp_path):
         (' email="someone@some.example"', "", 6, "email"),
         ("<depend>rospy", "<dependd>rospy", 10, "dependd"),
         ("<depend>rospy</depend>", "<run_depend>rospy</run_depend>", 10, "run_depend"),
-        ("  <buildtool_depend>catkin</buildtool_depend>\n", "", 8, "catkin"),
         ("buildtool_depend>catkin<", "buildtool_depend>ament_cmake<", 8, "is of ROS 2"),
         ("</description>", "</description> -->", 5, "nothing reads it: -->"),
     ],
-    ids=range(10),
+    ids=range(9),
 )
 def test_broken_manifest(old, new, line, says, tmp_path):
     assert MANIFEST.count(old) == 1
@@ -108,13 +104,6 @@ def dependency_findings(folder, manifest_text=MANIFEST, cmake_text=CMAKE, **file
 
 def test_what_is_declared_is_no_finding(tmp_path):
     assert told(dependency_findings(tmp_path), "error", "warning", "note") == []
-
-
-def test_missing_dependency_in_the_manifest(tmp_path):
-    text_ = MANIFEST.replace("  <depend>rospy</depend>\n", "")
-    (finding,) = dependency_findings(tmp_path, text_)
-    assert (finding.file, finding.line, finding.severity) == ("package.xml", 9, "error")
-    assert "rospy" in finding.message
 
 
 def test_all_that_is_missing_is_one_finding(tmp_path):
@@ -156,12 +145,6 @@ def test_misspelt_dependency_is_its_own_lines_fault(tmp_path):
     assert (finding.line, finding.fix) == (10, "Write rospy for rosppy.")
 
 
-def test_missing_component(tmp_path):
-    text_ = CMAKE.replace("COMPONENTS roscpp", "COMPONENTS")
-    (finding,) = dependency_findings(tmp_path, cmake_text=text_)
-    assert (finding.file, finding.line, finding.severity) == ("CMakeLists.txt", 3, "error")
-
-
 def test_package_that_nobody_declares_is_the_using_lines_fault(tmp_path):
     source = "#include <ros/ros.h>\n#include <ros/package.h>\n"
     (finding,) = dependency_findings(tmp_path, src__a_DOT_cpp=source)
@@ -185,12 +168,11 @@ def test_comment_uses_nothing(source, tmp_path):
     ("old", "new", "line", "says"),
     [
         ("find_package(catkin REQUIRED COMPONENTS roscpp rospy std_msgs)\n", "", 2, "find_package"),
-        ("catkin_package(CATKIN_DEPENDS roscpp rospy std_msgs)\n", "", 3, "catkin_package"),
         ("catkin_package(", "add_executable(b src/a.cpp)\ncatkin_package(", 5, "comes after"),
         ("catkin_install", "add_executable(b src/aa.cpp)\ncatkin_install", 5, "src/a.cpp is meant"),
         ("catkin_package(", "catkin_package(INCLUDE_DIRS include ", 4, "no such folder"),
     ],
-    ids=range(5),
+    ids=range(4),
 )
 def test_broken_cmake(old, new, line, says, tmp_path):
     assert CMAKE.count(old) == 1

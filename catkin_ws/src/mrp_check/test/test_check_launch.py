@@ -60,7 +60,6 @@ def replaced(old, new):
 
 PUBLISHER_PY = 'type="publisher_py_node.py" name="publisher_py_node"'
 BROKEN = {
-    "not_closed": ("  </group>\n", "", [("launch-file", 3)], "group"),
     "no_type": ('type="publisher_cpp_node" ', "", [("launch-file", 4)], "type="),
     "no_such_package": (
         "  <arg name",
@@ -74,45 +73,11 @@ BROKEN = {
         [("launch-file", 2)],
         "not there: nowhere",
     ),
-    "no_such_argument": ("$(arg group)", "$(arg robot)", [("launch-file", 3)], "robot"),
     "name_twice": (
         PUBLISHER_PY,
         'type="publisher_py_node.py" name="publisher_cpp_node"',
         [("launch-file", 5)],
         "publisher_cpp_node",
-    ),
-    "other_name": (
-        PUBLISHER_PY,
-        'type="publisher_py_node.py" name="talker"',
-        [("launch-nodes", 5)],
-        "talker",
-    ),
-    "not_started": (NODES[1], "", [("launch-nodes", 6)], "publisher_py_node"),
-    "no_ending": (
-        PUBLISHER_PY,
-        PUBLISHER_PY.replace(".py", ""),
-        [("launch-nodes", 5)],
-        "publisher_py_node.py",
-    ),
-    "other_package": (
-        NODES[3],
-        NODES[3].replace("some_pkg", "sone_pkg"),
-        [("package-name", 7)],
-        "some_pkg",
-    ),
-    "to_the_log": (
-        NODES[2],
-        NODES[2].replace(' output="screen"', ""),
-        [("launch-output", 6)],
-        "log",
-    ),
-    "renamed": (
-        NODES[1],
-        NODES[1].replace(
-            "/>", '>\n      <remap from="great_topic" to="small_topic"/>\n    </node>'
-        ),
-        [("topic", 6)],
-        "small_topic",
     ),
     "other_group": ('default="mrp"', 'default="mpr"', [("launch-group", 2)], "mpr"),
     "no_group": ('<group ns="$(arg group)">', "<group>", [("launch-group", 3)], "mrp"),

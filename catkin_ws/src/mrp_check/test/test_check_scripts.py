@@ -76,15 +76,6 @@ def test_script_that_is_not_executable(by, severity, tmp_path):
     assert told(file_findings(scripts, package), severity) == [("scripts", 1)]
 
 
-def test_script_that_is_not_there(tmp_path):
-    text_ = CMAKE.replace("src/odd.py", "src/od.py")
-    source = NODE.replace("env python", "env python3")
-    package = check_rules.make(tmp_path, src__odd_DOT_py=source, CMakeLists_DOT_txt=text_)
-    (finding,) = file_findings(scripts, package)
-    assert (finding.file, finding.line) == ("CMakeLists.txt", 5)
-    assert "src/odd.py" in finding.fix
-
-
 def test_script_that_hides_a_module_of_rospys(tmp_path):
     source = NODE.replace("env python", "env python3")
     package = check_rules.make(tmp_path, src__logging_DOT_py=source, src__odd_DOT_py=source)
