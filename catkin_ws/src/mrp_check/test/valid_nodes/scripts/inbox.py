@@ -5,13 +5,13 @@
 import queue
 
 import rospy
-from std_msgs.msg import UInt32
+from std_msgs.msg import String
 
 
 def main():
     rospy.init_node("inbox")
     inbox = queue.Queue()
-    rospy.Subscriber("own_loop", UInt32, inbox.put)
+    rospy.Subscriber("pattern", String, inbox.put)
     while not rospy.is_shutdown():
         try:
             message = inbox.get(timeout=0.2)
