@@ -1,19 +1,19 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A class in which many submissions mean harm, and one whose workers are killed at random."""
+"""A class in which many submissions mean harm.
+
+What one program may take, and how it is ended, is test_check_confine's.
+"""
 
 import contextlib
 import csv
-import random
-import signal
 import socket
-import subprocess
 import textwrap
 
 import pytest
 from check_rules import hand_in
 from check_sets import DEFECTS, break_, lay_out
 from mrp_check import sandbox
-from mrp_testing.cluster import cluster, worker
+from mrp_testing.cluster import cluster
 from mrp_testing.process import processes_with
 from mrp_testing.waiting import wait_until
 from test_check_class import BROKEN
@@ -49,12 +49,6 @@ def write(path): path.write_text("{{}}")
 # What it does -> when (see STAGES), and how.
 HARM = {
     "forks": ("configures", "for _ in range(9): os.fork()\ntime.sleep(60)"),
-    "forks_as_it_builds": ("builds", "for _ in range(9): os.fork()\ntime.sleep(60)"),
-    "forks_as_it_runs": ("runs", "for _ in range(9): os.fork()\ntime.sleep(60)"),
-    "starts_threads": (
-        "runs",
-        "for _ in range(600): threading.Thread(target=time.sleep, args=(60,), daemon=True).start()",
-    ),
     "stays": (
         "configures",
         "if not os.fork():\n    os.setsid(); os.closerange(0, 99); run('sh', '-c', 'sleep 600')",
@@ -63,13 +57,6 @@ HARM = {
         "runs",
         "run('env', '-i', 'sh', '-c', 'setsid sh -c \"sleep 600; exit\" $0 < /dev/null &')",
     ),
-    "hangs": ("configures", "run('sh', '-c', 'sleep 600')"),
-    "ignores_signals": (
-        "runs",
-        "[signal.signal(n, signal.SIG_IGN) for n in (1, 2, 3, 15)]",
-    ),
-    "burns": ("configures", "for _ in range(2): os.fork()\nwhile time.process_time() < 3: pass"),
-    "takes_memory": ("configures", "x = [bytearray(2**26) for _ in range(64)]"),
     "takes_memory_together": (
         "builds",
         "for _ in range(2): os.fork()\nx = b'x' * 900_000_000\ntime.sleep(20)",
@@ -82,14 +69,8 @@ HARM = {
         "configures",
         "for n in range(5): os.posix_fallocate(os.open(f'{n}', 66), 0, 250_000_000)\ntime.sleep(9)",
     ),
-    "fills_the_disk_with_one_file": ("builds", "open('x', 'w').truncate(10**11)"),
-    "makes_many_files": ("configures", "for n in range(5_000): open(f'{n}', 'w').close()"),
-    "digs": ("configures", "for _ in range(3000): os.mkdir('d'); os.chdir('d')"),
     "locks": ("configures", "try_all(lambda path: os.chmod(path, 0), [*os.walk('.')][0][1])"),
     "has_odd_names": ("configures", "open(b'\\xff\\n\\x1b[2J', 'w'); open('-rf', 'w')"),
-    "prints": ("configures", "for _ in range(200): os.write(1, b'x' * 2**20)"),
-    "prints_as_it_runs": ("runs", "for _ in range(200): print('x' * 2**20)"),
-    "publishes": ("runs", "for _ in range(10**5): publisher.publish('x')"),
     "deletes_home": ("sets_up", "shutil.rmtree(HOME)"),
     "deletes_its_own_home": ("sets_up", "shutil.rmtree(own_home())"),
     "deletes_uploads": ("configures", "shutil.rmtree(UPLOADS)"),
@@ -253,46 +234,3 @@ def test_a_hostile_class_harms_nobody(tmp_path, monkeypatch, quiet, port, where)
         row["submission"] for row in rows
     }
     assert not [path for path in kept if b"a secret" in path.read_bytes()]
-
-
-# Two of 20 submissions run nodes. The others have one of these as their CMakeLists.txt.
-FAULTS = ["", "project(", CMAKE, f"{CMAKE}find_package(nothing REQUIRED)\n", f"{CMAKE}catkin()\n"]
-SEED, MOST_KILLED = 22, 20
-
-
-def make_one(folder, name, kind):
-    """Make a submission; kind: from 0 to 19."""
-    if kind % 10:
-        hand_in(folder, name, FAULTS[kind % len(FAULTS)])
-        return
-    pair(folder / name)
-    if kind:
-        break_(folder / name, next(one for one in DEFECTS if one.base == PAIR))
-
-
-def test_workers_killed_at_random_change_no_mark(tmp_path, monkeypatch):
-    """How often Dask gives a submission to another worker is another test's matter."""
-    monkeypatch.setenv("DASK_DISTRIBUTED__SCHEDULER__ALLOWED_FAILURES", "99")
-    kinds = [number % 20 for number in range(100)]
-    for kind in range(20):
-        make_one(tmp_path / "quiet" / "class", f"{kind:02}", kind)
-    for number, kind in enumerate(kinds):
-        make_one(tmp_path / "killed" / "class", f"{number:02}", kind)
-    quiet = checked(tmp_path / "quiet" / "class")[2]
-    chance, killed, table = random.Random(SEED), 0, tmp_path / "killed" / "table.csv"
-    options = ("--class", table.with_name("class"), "--csv", table, *SPEC, "--scheduler")
-    with cluster(tmp_path) as (_, address, workers), contextlib.ExitStack() as stack:
-        with command(*options, address) as checker:
-            while checker.poll() is None:
-                with contextlib.suppress(subprocess.TimeoutExpired):
-                    checker.wait(chance.uniform(2, 6))
-                if killed < MOST_KILLED:
-                    killed += 1
-                    workers.pop(chance.randrange(len(workers))).stop(signal.SIGKILL)
-                    workers.append(stack.enter_context(worker(address, tmp_path)))
-            said = checker.stderr.read()
-    rows = list(csv.DictReader(table.read_text().splitlines()))
-    expected = [{**quiet[kind], "submission": f"{n:02}"} for n, kind in enumerate(kinds)]
-    assert len(rows) == len(expected)
-    assert [row for row in rows if row not in expected] == []
-    assert killed > 10, said
