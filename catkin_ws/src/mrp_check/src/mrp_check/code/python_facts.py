@@ -8,7 +8,7 @@ import re
 from typing import Any, Callable, Iterable, Iterator, Sequence, Union
 
 from mrp_check.code.python_source import Source
-from mrp_check.code.python_text import GAP, UNKNOWN, percent
+from mrp_check.code.python_text import GAP, UNKNOWN
 from mrp_check.confined.places import Kind, Place
 
 Definition = Union[ast.FunctionDef, ast.ClassDef]
@@ -298,11 +298,7 @@ class _Node:
         yield self.place(Kind.SPIN)
 
     def print(self, node: ast.Call) -> Iterator[Place]:
-        texts = [self.source.value(argument) for argument in node.args]
-        yield self.place(Kind.PRINT, " ".join(t if isinstance(t, str) else GAP for t in texts))
-
-    def write(self, node: ast.Call) -> Iterator[Place]:
-        yield self.place(Kind.PRINT, self.value(0, "s"))
+        yield self.place(Kind.PRINT)
 
     def exit(self, node: ast.Call) -> Iterator[Place]:
         code = self.value(0, "status")
@@ -329,14 +325,8 @@ class _Node:
 
     def log(self, node: ast.Call, function: str) -> Iterator[Place]:
         plain = re.sub("(_throttle_identical|_throttle|_once)$", "", function)
-        if plain not in LEVELS:
-            return
-        first = 1 if "throttle" in function else 0
-        text = self.source.value(argument(node, first, "msg"))
-        values = [self.source.value(one) for one in node.args[first + 1 :]]
-        if isinstance(text, str) and values:
-            text = percent(text, values)
-        yield self.place(Kind.LOG, text)
+        if plain in LEVELS:
+            yield self.place(Kind.LOG)
 
 
 _LOOKS: Sequence[tuple[Any, Callable[[_Node, Any], Iterable[Place]]]] = (
@@ -356,8 +346,7 @@ _CALLS = (
     (("rospy.Rate", "rospy.timer.Rate"), _Node.rate),
     (("rospy.sleep", "time.sleep"), _Node.sleep),
     (("rospy.spin",), _Node.spin),
-    (("print",), _Node.print),
-    (("sys.stdout.write",), _Node.write),
+    (("print", "sys.stdout.write"), _Node.print),
     (
         ("sys.exit", "os._exit", "exit", "quit", "SystemExit", "rospy.signal_shutdown"),
         _Node.exit,

@@ -10,9 +10,11 @@ import re
 import types
 from typing import Any, Callable, Iterator, Sequence
 
-from mrp_check.confined.cpp_text import GAP, arithmetic, number
 from mrp_check.confined.places import Kind, Place, Plain
+from mrp_check.confined.seen import Number
 
+GAP = "{}"  # what stands in a text for a part that the source does not say plainly
+_LARGEST = 2**70  # of a number that is still counted with
 # A message's type, as clang spells it.
 MESSAGE = re.compile(r"\b(\w+)::(\w+?)_<")
 _NAMES_ALONE = {"TYPE_REF", "NAMESPACE_REF", "TEMPLATE_REF"}
@@ -132,7 +134,7 @@ class Unit:
             return None
 
     def _number(self, cursor: Cursor, depth: int) -> Plain:
-        return number(self._first_token(cursor).replace("'", ""))
+        return _number(self._first_token(cursor).replace("'", ""))
 
     def _truth(self, cursor: Cursor, depth: int) -> bool:
         return self._first_token(cursor) == "true"
@@ -153,7 +155,7 @@ class Unit:
         if len(children) != 2:
             return None
         left, right = (self.value(child, depth) for child in children)
-        return arithmetic(self.operator(cursor, children), left, right)
+        return _arithmetic(self.operator(cursor, children), left, right)
 
     def _call(self, cursor: Cursor, depth: int) -> Plain:
         children = list(cursor.get_children())
@@ -242,6 +244,33 @@ class Unit:
             return False
         first = next((token.spelling for token in cursor.get_tokens()), "")
         return first in ("while", "do", "for")
+
+
+def _number(token: str) -> Number | None:
+    """Return the number that a C++ literal stands for, or None."""
+    text = token.lower()
+    text = text.rstrip("ul" if text.startswith("0x") else "ulf")
+    try:
+        return int(text, 0) if re.fullmatch(r"0x[0-9a-f]+|\d+", text) else float(text)
+    except ValueError:
+        return None
+
+
+def _arithmetic(operator: str, left: Plain, right: Plain) -> Number | None:
+    if not isinstance(left, (int, float)) or not isinstance(right, (int, float)):
+        return None
+    if max(abs(left), abs(right)) >= _LARGEST:
+        return None
+    if operator == "+":
+        return left + right
+    if operator == "-":
+        return left - right
+    if operator == "*":
+        return left * right
+    if operator == "/" and right:
+        whole = isinstance(left, int) and isinstance(right, int)
+        return left // right if whole else left / right
+    return None
 
 
 # kind of an expression -> what finds its value

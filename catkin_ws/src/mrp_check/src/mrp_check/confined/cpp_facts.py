@@ -22,7 +22,6 @@ from mrp_check.confined import crossing
 from mrp_check.confined.cpp_counters import Counters
 from mrp_check.confined.cpp_expressions import Cursor
 from mrp_check.confined.cpp_habits import SLEEPS, Habits
-from mrp_check.confined.cpp_text import logged, percent
 from mrp_check.confined.places import Kind, Plain, Said, Task
 
 _LOG = re.compile(r"ROS_(?:DEBUG|INFO|WARN|ERROR|FATAL)(?:_STREAM)?(?:_\w+)?$")
@@ -153,10 +152,6 @@ class _Source(Counters, Habits):
     def add_publish(self, kind: Kind, call: Cursor, arguments: Arguments) -> None:
         if self.scope(call) == "Publisher" or "Publisher" in self.type_of(self.base(call)):
             self.add(call, kind)
-
-    def add_print(self, kind: Kind, call: Cursor, arguments: Arguments) -> None:
-        text = self.optional(arguments, 0)
-        self.add(call, kind, percent(text) if isinstance(text, str) else None)
 
     def optional(self, arguments: Arguments, index: int) -> Plain:
         return self.value(arguments[index]) if index < len(arguments) else None
@@ -293,13 +288,11 @@ class _Source(Counters, Habits):
                 at.setdefault((place.file.name, place.offset), cursor)
         for file in {name for name, _ in at}:
             extent = self.unit.get_extent(file, (0, os.path.getsize(file)))
-            tokens = list(self.unit.get_tokens(extent=extent))
-            words = [token.spelling for token in tokens]
-            for number, word in enumerate(words):
-                found = _LOG.match(word)
-                cursor = found and at.get((file, tokens[number].location.offset))
+            for token in self.unit.get_tokens(extent=extent):
+                found = _LOG.match(token.spelling)
+                cursor = found and at.get((file, token.location.offset))
                 if cursor:
-                    self.add(cursor, Kind.LOG, logged(word, words[number:]))
+                    self.add(cursor, Kind.LOG)
 
 
 # kind of a cursor -> what looks at it
@@ -348,7 +341,7 @@ _CALLS = (
     (("",), ("kill", "killpg"), Kind.KILLS, _Source.add_call),
     (None, _FAIL, Kind.IGNORED, _Source.look_at_ignored),
     (("ServiceClient",), ("call",), Kind.IGNORED, _Source.look_at_ignored),
-    (("", "std"), ("printf", "puts"), Kind.PRINT, _Source.add_print),
+    (("", "std"), ("printf", "puts"), Kind.PRINT, _Source.add_call),
 )
 
 
