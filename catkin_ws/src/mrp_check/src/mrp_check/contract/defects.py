@@ -32,7 +32,7 @@ import dataclasses
 import pathlib
 import re
 import textwrap
-from typing import Iterator, Mapping, Sequence
+from typing import Mapping, Sequence
 
 from mrp_check.contract import resources
 
@@ -41,32 +41,7 @@ from mrp_check.contract import resources
 KINDS = ("read", "fix", "complete", "write")
 
 _FIELD = re.compile(r"([A-Z][\w-]*):(?: (.*))?")
-# A patch has all fields of a group, or none.
-_GROUPS = (
-    ("Fails", "Says"),
-    ("Finds", "In", "Tells"),
-    ("Order", "Kind", "Task", "Hint", "Learned"),
-)
 _WHY = ("Shows", "Also", "Why", "Fix", "Page", "General", "Try", "Needs")
-_FIELDS = (
-    *("Base", "Breaks", "Erratum", "Missed", "Severity"),
-    *(field for group in _GROUPS for field in group),
-    *_WHY,
-)
-_SEVERAL = ("In", "Shows", "Also")
-_FORMS = {
-    "Erratum": (r"[EP][1-9]\d*", "the number of an erratum, such as E5"),
-    "Fails": (r"\w+\.test \w+", "a rostest and a test case of it"),
-    "In": (r"\S+: .+", "a file, a colon, and a regular expression"),
-    "Kind": ("|".join(KINDS), f"one of {', '.join(KINDS)}"),
-    "Order": (r"[1-9]\d*", "a number from 1 on"),
-    "Severity": (r"warning", "warning, or no such line for an error"),
-    "Task": (
-        r"# .+\n\n(?s:.+)The page: `\w+`(?s:.*)",
-        "a title such as '# A title', an empty line, a text, and 'The page: `queues`.'",
-    ),
-}
-_PATTERNS = ("Says", "Finds", "In", "Tells")
 
 
 class DefectError(Exception):
@@ -147,54 +122,22 @@ def _text(first: str, *others: str) -> str:
 def read(path: pathlib.Path) -> Defect:
     """Return the Defect of a patch. Raises DefectError if its head is not as it must be."""
     found = fields(path)
-    for fault in _faults(found):
-        raise DefectError(f"{path.name}: {fault}.")
     pairs = (value.partition(": ") for value in found.pop("In", ()))
     why = {field: found.pop(field) for field in _WHY if field in found}
-    values = {field.lower(): value for field, (value,) in found.items()}
-    return Defect(
-        path=path,
-        places=tuple((file, pattern) for file, _, pattern in pairs),
-        why=why,
-        fails=tuple(values.pop("fails", "").split()),
-        order=int(values.pop("order", 0)),
-        **values,
-    )
-
-
-def _faults(found: Mapping[str, Sequence[str]]) -> Iterator[str]:
-    """Yield what is wrong with a head, each fault as a sentence without its full stop."""
-    for field, values in found.items():
-        if field not in _FIELDS:
-            yield f"there is no field {field}: expected one of {', '.join(_FIELDS)}"
-        elif len(values) > 1 and field not in _SEVERAL:
-            yield f"expected the field {field} once; found it {len(values)} times"
-        for value in values:
-            yield from _faults_of_value(field, value)
-    if "Breaks" not in found:
-        yield "the field Breaks is missing"
-    if "Fails" not in found and "Finds" not in found:
-        yield "one of the fields Fails and Finds is missing: nobody would find the defect"
-    for group in _GROUPS:
-        if not set(group) & set(found):
-            continue
-        # The checker checks an exercise.
-        needed = (*group, "Finds") if "Order" in group else group
-        for missing in (field for field in needed if field not in found):
-            yield f"the field {missing} is missing, as one of {', '.join(group)} is there"
-    if found.get("Base", ["mrp"]) != ["mrp"] and "Fails" in found:
-        yield "a patch with the field Fails breaks mrp: expected no other Base"
-
-
-def _faults_of_value(field: str, value: str) -> Iterator[str]:
-    form, meaning = _FORMS.get(field, (r"(?s).+", "a value"))
-    if not re.fullmatch(form, value):
-        yield f"expected {meaning}, in the field {field}; found {value!r}"
-    elif field in _PATTERNS:
-        try:
-            re.compile(value.split(": ", 1)[-1] if field == "In" else value)
-        except re.error as error:
-            yield f"expected a regular expression in the field {field}; found {value!r}: {error}"
+    try:
+        values = {field.lower(): value for field, (value,) in found.items()}
+        return Defect(
+            path=path,
+            places=tuple((file, pattern) for file, _, pattern in pairs),
+            why=why,
+            fails=tuple(values.pop("fails", "").split()),
+            order=int(values.pop("order", 0)),
+            **values,
+        )
+    except (TypeError, ValueError) as error:
+        raise DefectError(
+            f"{path.name}: expected the fields that defects.py explains, each once; found: {error}."
+        ) from None
 
 
 def read_all(folder: pathlib.Path | None = None) -> list[Defect]:
@@ -206,13 +149,6 @@ def read_all(folder: pathlib.Path | None = None) -> list[Defect]:
     found = [read(path) for path in sorted(folder.glob("*.patch"))]
     if not found:
         raise DefectError(f"Expected patches in {folder}; there is none.")
-    orders: dict[int, Defect] = {}
-    for one in found:
-        if one.order and orders.setdefault(one.order, one) is not one:
-            raise DefectError(
-                f"{orders[one.order].path.name} and {one.path.name} are both exercise {one.order}: "
-                "expected one exercise for each number."
-            )
     return found
 
 
