@@ -43,7 +43,7 @@ PACKAGES_view := $(PACKAGES_run) view
 PACKAGES_debug := $(PACKAGES_run) debug
 PACKAGES_test := $(PACKAGES_build) check learn view bench test
 PACKAGES_test-all := $(PACKAGES_test) docs debug cluster test-all
-PACKAGES_test-browser := $(PACKAGES_build) view check docs cluster test browser
+PACKAGES_test-browser := $(PACKAGES_build) view check docs test browser
 PACKAGES_bench := $(PACKAGES_build) bench
 PACKAGES_docs := docs
 PACKAGES_docs-book := docs book
@@ -218,13 +218,8 @@ docs-book: packages-docs-book  ## make a book of the pages, as EPUB and as PDF
 docs-record: packages-test-all  ## do what the pages say, and record what they show; PAGE=latch: of one page
 	@$(IN_WORKSPACE) $(WITH_TESTING) /usr/bin/python3 tools/record_pages.py $(PAGE)
 
-# What draws the dashboard of Debian's Dask, and Debian does not have.
-catkin_ws/build/dask/bin/bokeh:
-	@/usr/bin/python3 -m venv --system-site-packages catkin_ws/build/dask
-	@catkin_ws/build/dask/bin/pip --quiet install 'dask[diagnostics]'
-
 .PHONY: test-browser
-test-browser: packages-test-browser $(BUILT_WHOLE) docs catkin_ws/build/dask/bin/bokeh  ## open every page in Chromium and in Firefox
+test-browser: packages-test-browser $(BUILT_WHOLE) docs  ## open every page in Chromium and in Firefox
 	@catkin_ws/tools/install_others.sh
 	@rm -rf $(SCREENSHOTS)
 	@$(IN_WORKSPACE) $(ALONE) source devel/setup.bash; \

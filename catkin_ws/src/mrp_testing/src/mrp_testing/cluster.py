@@ -8,20 +8,19 @@ import uuid
 from mrp_testing.process import Process
 from mrp_testing.waiting import wait_until
 
-DASK = ("/usr/bin/dask",)
 _COMMON = ("--no-dashboard", "--host", "127.0.0.1")  # of a scheduler and of a worker
 
 
 @contextlib.contextmanager
-def cluster(folder, workers=2, options=(), dask=DASK, **worker_env):
+def cluster(folder, workers=2, options=(), **worker_env):
     """Yield a scheduler, its address, and its workers.
 
     folder: where they may write
-    options: the scheduler's; dask: the program that it is started with
+    options: the scheduler's
     worker_env: the workers' environment, beside that of this process
     """
     file = folder / f"scheduler_{uuid.uuid4().hex}.json"
-    asked = (*dask, "scheduler", *_COMMON, "--port", "0", "--scheduler-file", str(file))
+    asked = ("/usr/bin/dask", "scheduler", *_COMMON, "--port", "0", "--scheduler-file", str(file))
     with contextlib.ExitStack() as stack:
         scheduler = stack.enter_context(Process(*asked, *options))
         scheduler.wait_for(file.is_file, "the scheduler listens")
@@ -39,5 +38,5 @@ def cluster(folder, workers=2, options=(), dask=DASK, **worker_env):
 
 def worker(address, folder, **env):
     """Start a worker of the scheduler at an address; folder: where it may write."""
-    asked = (*DASK, "worker", address, *_COMMON, "--nthreads", "1", "--no-nanny")
+    asked = ("/usr/bin/dask", "worker", address, *_COMMON, "--nthreads", "1", "--no-nanny")
     return Process(*asked, "--local-directory", str(folder / "space"), extra_env=env)
