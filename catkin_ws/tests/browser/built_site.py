@@ -5,7 +5,6 @@ import contextlib
 import re
 import sys
 
-import pytest
 from mrp_testing.process import Process
 from mrp_testing.workspace import WORKSPACE
 
@@ -14,24 +13,15 @@ PAGES = sorted(path.relative_to(SITE).as_posix() for path in SITE.rglob("*.html"
 assert PAGES, f"there is no page in {SITE}: run make docs"
 
 
-def pages_with(text):
-    """Return the pages in whose HTML a text is."""
-    pages = [page for page in PAGES if text in (SITE / page).read_text()]
-    assert pages, f"no page has {text}"
-    return pages
-
-
-def by_page(values):
-    """Return the values, pages or tuples that end in one, as parameters of tests.
-
-    Those of a page run in one worker, which need not open it again for each of them.
-    """
-    return [
-        pytest.param(
-            value, marks=pytest.mark.xdist_group(value if isinstance(value, str) else value[-1])
-        )
-        for value in values
-    ]
+def with_each_kind():
+    """Return short pages that together have each kind of thing to press, known by its class."""
+    found = {}
+    for page in sorted(PAGES, key=lambda page: (SITE / page).stat().st_size):
+        text = (SITE / page).read_text()
+        for tag in re.findall("<(?:a|button|input|label|summary)[ >][^>]*", text):
+            kind = tag.split()[0], *re.findall('class="([^"]*)"', tag)
+            found.setdefault(kind, page)
+    return sorted({*found.values()})
 
 
 @contextlib.contextmanager

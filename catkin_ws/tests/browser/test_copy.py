@@ -2,10 +2,14 @@
 """The copy buttons: what they copy is the code, to the last character."""
 
 import pytest
-from built_site import by_page, pages_with
+
+pytestmark = pytest.mark.xdist_group("copy")
+
+# With tabs, what is folded, proofs, files, and what was printed; and one without proofs.
+PAGES = ("pages/cpp.html", "pages/latch.html", "pages/tldr.html")
 
 
-@pytest.fixture(scope="module", params=by_page(pages_with('class="highlight"')))
+@pytest.fixture(scope="module", params=PAGES)
 def page(request, browser, addresses):
     # A browser lets no script read the clipboard from a file.
     browser.open(addresses["served"] + request.param)

@@ -1,10 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Without a mouse: the Tab key reaches all there is to press, and the phone's menu opens."""
 
-import re
-
 import pytest
-from built_site import PAGES, SITE
+from built_site import with_each_kind
 from selenium.webdriver.common.keys import Keys
 
 AT_ONCE = 100  # presses of the Tab key
@@ -19,17 +17,6 @@ document.addEventListener("focusin", (event) => missed.delete(event.target));
 return document.querySelectorAll("a, button, input, pre, [tabindex]").length;
 """
 _MISSED = "return [...missed].map((one) => one.outerHTML.slice(0, 200))"
-
-
-def with_each_kind():
-    """Return short pages that together have each kind of thing to press, known by its class."""
-    found = {}
-    for page in sorted(PAGES, key=lambda page: (SITE / page).stat().st_size):
-        text = (SITE / page).read_text()
-        for tag in re.findall("<(?:a|button|input|label|summary)[ >][^>]*", text):
-            kind = tag.split()[0], *re.findall('class="([^"]*)"', tag)
-            found.setdefault(kind, page)
-    return sorted({*found.values()})
 
 
 @pytest.mark.parametrize("page", with_each_kind())
