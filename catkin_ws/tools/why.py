@@ -20,9 +20,9 @@ _TRACEBACK = 5000  # characters above an exception
 _WIDE = 300  # characters of a line that is quoted
 _OF_PYTHON = re.compile(r"\b(?:Index|Key|Type|Value|Attribute)Error\b")
 # The last place of a traceback is in a file of ROS: what was given to it is wrong, not its code.
+_PLACE = re.compile(r'^[ \t]*File "([^"\n]*)", line \d', re.MULTILINE)
 _IN_ROS = re.compile(
-    r'File "[^"\n]*/(?:dist|site)-packages/((?:ros\w+|genpy|genmsg|tf2?\w*|actionlib|\w+_msgs)/'
-    r'[^"\n]*)", line \d+[^\n]*\n(?:(?![ \t]*File ")[^\n]*\n?)*\Z'
+    r".*/(?:dist|site)-packages/((?:ros\w+|genpy|genmsg|tf2?\w*|actionlib|\w+_msgs)/.*)"
 )
 
 
@@ -35,7 +35,8 @@ def answer(found, text=""):
         )
     parts, before = [], ()
     for number, one in enumerate(found, 1):
-        shown = ["Or, for the same lines:"] if one.lines == before else one.lines
+        lines = [*one.lines, one.below] if one.below else one.lines
+        shown = ["Or, for the same lines:"] if one.lines == before else lines
         parts.append(_one_answer(number, one, shown, text))
         before = one.lines
     return "\n\n".join(parts)
@@ -48,7 +49,8 @@ def _one_answer(number, one, shown, text):
         lines.append(f"   I'm not sure, but it looks like: {shown_on(one.entry.shows[0])[0]}")
     lines += [f"   why:  {one.entry.why}", f"   fix:  {one.entry.fix}"]
     at = text.find(one.lines[0])
-    inside = _IN_ROS.search(text[max(at - _TRACEBACK, 0) : max(at, 0)])
+    places = _PLACE.findall(text[max(at - _TRACEBACK, 0) : max(at, 0)])
+    inside = _IN_ROS.fullmatch(places[-1]) if places else None
     if inside and _OF_PYTHON.search("\n".join(one.lines)):
         lines.append(f"   note: It happened in ROS's own {inside[1]}: look at what you gave to it.")
     return "\n".join([*lines, f"   page: {_link(one.entry.address)}"])
