@@ -9,7 +9,8 @@ mrp_check/defects/. Its fields:
     Why: The terminal ...          the cause, in one or two sentences
     Fix: Source ...                what to do, in one or two sentences
     Page: wrong#there-is-no-master where the pages say more
-    Above: yes                     the cause is above: such an entry comes last
+    Above: yes                     the cause is above: such an entry comes last; with "only", it's
+                                   left out if there is another
     General: yes                   right for any name, where other entries need a certain one
     Try: rostopic list             the commands that make ROS print it
     Needs: master                  what they need: see tests/test_why.py, or docker/test/test_why.py

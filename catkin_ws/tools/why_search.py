@@ -18,7 +18,8 @@ ANSWERS = 3
 
 # A colour code may have lost its first character on its way through a browser.
 COLOURS = re.compile(
-    r"(?:\x1b|\^\[|\\x1b|\\033|\\u001b|\\e|\uFFFD)\[[0-9;]*[mK]|\[\d[0-9;]*m|\x1b\][^\x07]*\x07"
+    r"(?:\x1b|\^\[|\\x1b|\\033|\\u001b|\\e|\uFFFD)\[[0-9;]*[mK]|\[\d[0-9;]*m"
+    r"|\x1b\][^\x07\n]{0,120}\x07"
 )
 # What differs from one run to the next, and from one machine to another. An exit code stays: it
 # says what happened.
@@ -26,8 +27,8 @@ _MASKS = (
     (COLOURS, ""),
     (re.compile("[‘’`´]"), "'"),
     (re.compile("[“”]"), '"'),
-    (re.compile(r"\bCMake [\w ]+(?: \(dev\))? at \S+:\d+ \(\w+\):"), ""),
-    (re.compile(r"\S+\.(?:cpp|cc|cxx|c|hpp|hh|h):\d+(?::\d+)?:"), ""),
+    (re.compile(r"\bCMake [\w ]{1,30}(?: \(dev\))? at \S+:\d+ \(\w+\):"), ""),
+    (re.compile(r"(?<!\S)\S+\.(?:cpp|cc|cxx|c|hpp|hh|h):\d+(?::\d+)?:"), ""),
     (re.compile(r" ?\{aka [^}]*\}|\b_Z\w+"), ""),
     (re.compile(r"(?<![\w.])~?/[^\s:;,'\"()\[\]<>]+"), "/#"),
     (re.compile(r"\b(?:0x[0-9a-f]+|[0-9a-f]{32,})\b"), "#"),
@@ -68,14 +69,15 @@ _ENGLISH = {
 }
 # Only the last part of a path counts, and whether the path is one of ROS's own.
 _FOLDERS = re.compile(r"(?<![\w.])~?(/opt/ros/\w+)?/(?:[^\s/:;,'\"()\[\]<>]+/)*")
-# What only ROS 2 prints: an entry must have such a word, too. The names of its packages, such as
-# ament_cmake, turn up in what ROS 1 prints.
+# What a text of ROS 2 has: advice for ROS 1 would send its reader astray.
 _ROS2 = re.compile(
-    r"(?<![\w/-])ros2(?![\w/.-])|rosbag2|\brcl(?:cpp|py)?\b|\brmw_\w+|\bcolcon\b|\[rviz2"
+    r"(?<![\w/@-])ros2(?![\w/.-])|\brosbag2(?:_[a-z]\w*)?\b(?!\.)"
+    r"|\brcl(?:cpp|py)?\b|\brmw_\w+|\bcolcon\b|\bament_\w+|\blaunch_ros\b|\] \[launch\]: |\[rviz2"
     r"|/opt/ros/(?:foxy|galactic|humble|iron|jazzy)\b"
     r"|(?<![\w/])[a-z]\w*/(?:msg|srv|action)/[A-Z]\w*\b(?!\.)"
 )
 _OF_ROS2 = "rosii"  # the word that stands for it
+_ROS2_ENTRY = "package-of-ros2"  # the answer to it, if none is nearer
 # Other languages and programs, and what shows that a text is about ROS all the same.
 _OTHERS = re.compile(
     r"\.(?:[cm]?js|jsx|tsx?|java|kt|rs|rb|php|cs|swift|c):[\d(]|\.go:\d+:\d"
@@ -90,7 +92,7 @@ _OTHERS = re.compile(
     r"|\b(?:systemd(?:-\w+)?\[|systemctl|journalctl|kubelet|kubectl|ansible|terraform)"
     r"|(?<![\w/.-])(?i:psql|postgres\w*|psycopg\w*|mysql|mongodb?|redis|amqp|nginx|apache2?)(?![\w/])"
     r"|\b[A-Z]:\\\w|[A-Z]:/(?:Program|Users|Windows)|^fatal: Could not "
-    r"|\berror: (?:linker|linking with|could not compile) `",
+    r"|\berror: (?:linker|linking with|could not compile) `|\*\*\* \[makefile:",  # not CMake's
     re.MULTILINE,
 )
 _ROS = re.compile(
@@ -106,8 +108,10 @@ _WORD = re.compile(r"[^\W\d_]+|\d+")
 _NAME = re.compile(
     r"""'[^'\s]+'|"[^"\s]+"|\[[^][\s]+\]|'(?:[\w:]+ )?~?\w+(?:::|[(<])[^'\n]*'"""
     r"|\b[A-Z]+(?:_[A-Z]+){2,}\b|\b(?:ros|python3?|lib\w+)-[\w.-]+"
-    r"|[^\s:]+(?=: command not found)|(?<=: #: )[^\s:]+(?=: not found)|(?<=command not found: )\S+"
+    r"|(?<![^\s:])[^\s:]+(?=: command not found)|(?<=: #: )[^\s:]+(?=: not found)"
+    r"|(?<=command not found: )\S+"
 )
+_CMAKE_RULE = re.compile(r"'[^'\s]*CMakeFiles/[^'\s]+\.dir/build'")  # no name of the reader's
 _NO_MODULE = re.compile(r"No module named ([\w.]+)")  # Python 2 has no quotes
 _KIND = re.compile("'(module|NoneType)' object")  # no name, though in quotes
 # How much of an entry's words a text must have, or how much of the text's words the entry must
@@ -119,15 +123,22 @@ _RARE, _CANDIDATES = 80, 60  # texts of entries
 _TOGETHER = 2  # lines: messages are broken into that many
 _LONG = 2000  # characters: a line is cut there
 _MANY = 500  # lines: of a longer text, only those around an error are searched
+_MOST = 100_000  # characters around errors, at each end of a very long text
 _AT_EACH_END = 2_000  # places of a word, at each end of a very long text
 _NO_DIGITS = dict.fromkeys(map(ord, "0123456789"))
 _PROBLEMS = ("rror", "RROR", "xception", "ail", "atal", "FATAL", "arning", "WARN", "not ", "died")
+# Why the system refuses something. A text and an entry that give different reasons aren't near.
+_REASON = re.compile(
+    r"permission denied|no such file or directory|operation not permitted|connection refused"
+    r"|address already in use|no space left|exec format error|executable file not found"
+)
 # The last lines of roslaunch, make and catkin: the cause is above them. A negative exit code, or
 # one of a shell (128 and the signal), does say something.
 _ENDING = re.compile(
     r".*process has died \[pid \d+, exit code (?!-|13[2-9])\d+\b.*|log files?: .*"
     r"|.*process has finished cleanly"
-    r"|=*(?:REQUIRED )?process \[.*\] has died!|Initiating shutdown!"
+    r"|=*(?:REQUIRED )?process \[.*\] has died!|(?i:initiating shutdown)!?|=+"
+    r"|=*REQUIRED process \[.*\] .*initiating shutdown!?"
     r"|.*make(?:\[\d+\])?: \*\*\* .*(?:Error \d+|Waiting for unfinished jobs.*)"
     r"|.*recipe for target .* failed|compilation terminated\.?"
     r"|.*collect2: error: ld returned \d+ exit status|-- Configuring incomplete, errors occurred!"
@@ -138,7 +149,10 @@ _EVERYWHERE = re.compile(
     r"Traceback \(most recent call last\):|\.\.\. logging to .*|Checking log directory .*"
     r"|Press Ctrl-C to interrupt|Done checking log file .*|The traceback for the exception .*"
     r"|auto-starting new master|started (?:roslaunch server|core service) .*|ROS_MASTER_URI=.*"
-    r"|process\[.*\]: started with pid .*|.*: In (?:\w+ )*(?:function|constructor) .*:"
+    r"|process\[.*\]: started with pid .*|\[\S+\] killing on exit|done"
+    r"|all processes on machine have died, roslaunch will exit"
+    r"|(?:\.\.\. )?shutting down processing monitor(?:\.\.\.| complete)"
+    r"|\S+:\d+ \(\w+\)|.*: In (?:\w+ )*(?:function|constructor) .*:"
 )
 # What begins a warning; indented lines below belong to it. That the standard of C++ is too old is a
 # cause, though g++ only warns.
@@ -157,25 +171,29 @@ def mask(text):
 @dataclasses.dataclass(frozen=True)
 class Answer:
     """An entry that is near to a text, the lines it explains, and how near it is. doubtful: the two
-    have little in common."""
+    have little in common. warns: the lines are only a warning. below: the line after a colon."""
 
     entry: object
     lines: tuple
     score: float
     doubtful: bool
+    warns: bool = False
+    below: str = ""
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class _Text:
     """One text of an entry, or some lines of what the reader asks about. words: outside of names.
-    ends: only the last lines of roslaunch or make."""
+    reasons: of the system. ends: only the last lines of roslaunch or make."""
 
     words: frozenset
     names: frozenset
+    reasons: frozenset
     ends: bool
     entry: object = None
     lines: tuple = ()
     warns: bool = False
+    below: str = ""
 
 
 class Index:
@@ -206,11 +224,17 @@ class Index:
             if any(words <= text.words for words in general)
         }
         self._sums = {text: self._sum(text.words) for text in self._texts}
+        of_ros2 = [text.entry for text in self._texts if _OF_ROS2 in text.words]
+        self._of_ros2 = {entry.name: entry for entry in of_ros2}
 
     def nearest(self, text, count=ANSWERS):
         """Return the answers to a text, the nearest one first. Entries that only say that the cause
         is above come last."""
         text = COLOURS.sub("", "\n".join(_near_problems(text)))
+        ros2 = next((line.strip() for line in text.splitlines() if _ROS2.search(line)), None)
+        if ros2:
+            found = [a for a in self._answers(text.splitlines()) if a.entry.name in self._of_ros2]
+            return found[:1] or [Answer(self._of_ros2[_ROS2_ENTRY], (ros2,), 0.0, False)]
         if _OTHERS.search(text) and not _ROS.search(text):
             return []
         for words, others in _ENGLISH.items():
@@ -219,8 +243,9 @@ class Index:
         found = self._answers(line for line in lines if not _ENDING.fullmatch(line.strip()))
         found = found or self._answers(lines)
         found = [a for a in found if not any(_outdoes(better, a) for better in found)]
-        last = [answer for answer in found if answer.entry.above][:1]
         causes = [answer for answer in found if not answer.entry.above]
+        of_errors = [answer for answer in causes if not answer.warns]
+        last = [a for a in found if a.entry.above == "yes" or (a.entry.above and not of_errors)][:1]
         return [*causes[: count - len(last)], *last]
 
     def _answers(self, lines):
@@ -244,7 +269,7 @@ class Index:
             same = passage.names & text.names
             if passage.ends != text.ends or (text in self._special and not same):
                 continue
-            if _OF_ROS2 in passage.words and _OF_ROS2 not in text.words:
+            if passage.reasons and text.reasons and passage.reasons.isdisjoint(text.reasons):
                 continue
             if (of_entry < 0.99 or of_text < 0.7) and not passage.ends:
                 if max(of_entry / _OF_ENTRY, of_text / _OF_TEXT) < 1 or shared < _LEAST:
@@ -256,7 +281,7 @@ class Index:
             if text in self._special:
                 score *= 0.7 + 0.3 * len(same) / len(text.names)
             doubtful = min(of_entry, of_text) < 0.3 or of_entry + of_text < 0.9
-            yield Answer(text.entry, passage.lines, score, doubtful)
+            yield Answer(text.entry, passage.lines, score, doubtful, passage.warns, passage.below)
 
     def _candidates(self, words):
         """Return the texts that share the rarest words: all of them would take too long."""
@@ -270,14 +295,17 @@ class Index:
 
 
 def _outdoes(better, answer):
-    """Say whether an answer explains lines of another one much better."""
-    return answer.score < _NEAR * better.score and not {*better.lines}.isdisjoint(answer.lines)
+    """Say whether an answer explains lines of another one much better, or the line below them."""
+    if not {*better.lines}.isdisjoint(answer.lines):
+        return answer.score < _NEAR * better.score
+    return answer.below in better.lines and answer.score < better.score / 2
 
 
 def _text(text, **more):
     """Return the words of a text, with pairs of words, and the words of its names."""
     readable = _NO_MODULE.sub(r"No module named '\1'", text)
     readable = _KIND.sub(r"\1 object", readable)
+    readable = _CMAKE_RULE.sub("CMakeFiles dir build", readable)
     readable = _ROS2.sub(f" {_OF_ROS2} ", readable)
     readable = mask(_FOLDERS.sub(lambda match: " optros " if match[1] else "", readable))
     names = {name.strip("'\"[]").lower() for name in _NAME.findall(readable)} - {""}
@@ -286,8 +314,9 @@ def _text(text, **more):
     for part in _NAME.split(readable):
         found = _WORD.findall(part.lower())
         words.update(found, (f"{first} {second}" for first, second in itertools.pairwise(found)))
+    reasons = frozenset(_REASON.findall(text.lower()))
     ends = all(_ENDING.fullmatch(line.strip()) for line in text.splitlines())
-    return _Text(frozenset(words), frozenset(names), ends, **more)
+    return _Text(frozenset(words), frozenset(names), reasons, ends, **more)
 
 
 def _near_problems(text):
@@ -302,8 +331,15 @@ def _near_problems(text):
         line, end = before[-1] + after[0], at + len(after[0])
         found.setdefault(line.translate(_NO_DIGITS), [*before[-3:-1], line, *after[1:3]])
     parts = [*found.values()] or [_cut(text[-_MANY * 100 :])]
-    shown = parts[: _MANY // 2] + parts[_MANY // 2 :][-_MANY // 2 :]
-    return [*itertools.chain.from_iterable(shown)]
+    first = _fitting(parts)
+    last = _fitting(parts[: len(first) - 1 : -1])[::-1]
+    return [*itertools.chain.from_iterable(first + last)]
+
+
+def _fitting(parts):
+    """Return the first parts of a long text: those that can be searched within a second."""
+    sizes = itertools.accumulate(sum(map(len, part)) for part in parts)
+    return [part for part, size in zip(parts, sizes) if size < _MOST][: _MANY // 2]
 
 
 def _cut(text):
@@ -338,4 +374,7 @@ def _passages(lines):
             if key and key not in seen:
                 seen.add(key)
                 warning = any(warns for _, warns in together)
-                yield _text(passage, lines=tuple(line for line, _ in together), warns=warning)
+                shown = tuple(line for line, _ in together)
+                after = kept[begin + length : begin + length + 1] if key.endswith(":") else []
+                below = after[0][0] if after else ""
+                yield _text(passage, lines=shown, warns=warning, below=below)
