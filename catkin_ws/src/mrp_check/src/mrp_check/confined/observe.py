@@ -51,6 +51,9 @@ _OF_ROSCORE = {
     "/rosdistro": os.environ.get("ROS_DISTRO", "Debian") + "\n",
     "/rosversion": importlib.metadata.version("rosmaster") + "\n",
 }
+# rospy asks for this parameter before each line of log, until it is set. If Ctrl-C comes meanwhile,
+# rospy doesn't end: so the nodes run as with a master at which somebody has set it.
+_NOT_ASKED_AGAIN = "/rosout_disable_topics_generation"
 _LEVELS = {
     LogMessage.DEBUG: "DEBUG",
     LogMessage.INFO: "INFO",
@@ -89,6 +92,7 @@ class Observer:
         self._handler = _Master(self)
         for name, value in _OF_ROSCORE.items():
             self._handler.param_server.set_param(name, value)
+        self._handler.param_server.set_param(_NOT_ASKED_AGAIN, False)
         self._server = rosgraph.xmlrpc.XmlRpcNode(0, self._handler)
         self._server.start()
         while not self._server.uri:

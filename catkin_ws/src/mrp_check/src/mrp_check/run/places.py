@@ -205,6 +205,21 @@ class Places:
                 return own, int(frame["line"])
         return None
 
+    def waits_in_rospys_end(self, lines: Iterable[str]) -> bool:
+        """Return whether faulthandler printed that rospy's own handler of Ctrl-C waits, in no line
+        of the package.
+
+        If Ctrl-C comes while rospy asks the master for something, such as in each line of log, its
+        handler waits for ever for the lock of the call that it has interrupted.
+        """
+        for text in lines:
+            frame = _FRAME.match(text)
+            if frame and self.own(frame["path"]):
+                return False
+            if frame and text.endswith("in signal_shutdown"):
+                return True
+        return False
+
     def own(self, path: str) -> str | None:
         """Return a path relative to the package, if it is the package's own, or None."""
         return path[len(self.copy) :] if path.startswith(self.copy) else None

@@ -53,6 +53,8 @@ def _of(node: Node, direct: Alone, asked: float, shutdown: Shutdown) -> Iterator
 
     code, traceback = direct.code, places.traceback(lines)
     if direct.stopped_in is None:
+        if places.waits_in_rospys_end(lines):
+            return
         # If roslaunch could end it, and never had to use force, the machine was too busy.
         force = [_needs_force(name, launch) for name, launch in _runs(node)]
         if True in force or False not in force:
