@@ -187,15 +187,15 @@ class TestRospy(unittest.TestCase):
         with run("""
             import rospy, time
             rospy.init_node("sleeps_on")
-            print("sleeps")
             while not rospy.is_shutdown():
                 begin = time.monotonic()
+                print("sleeps")
                 rospy.Rate(1).sleep()
             print("whole" if time.monotonic() - begin >= 0.9 else "cut short")
         """) as process:
             process.wait_for(lambda: "sleeps" in process.lines, "it sleeps")
             self.assertEqual(process.stop(), 0, str(process))
-        self.assertEqual(process.lines, ["sleeps", "whole"])
+        self.assertEqual(process.lines[-1], "whole")
 
     def check_sleeps_until_there_is_a_clock(self, sleep):
         with contextlib.ExitStack() as stack:
