@@ -172,15 +172,12 @@ exercise: packages-check  ## show the next exercise, or check it; HINT=1 gives a
 	@$(IN_ENVIRONMENT) PYTHONPATH=catkin_ws/src/mrp_check/src /usr/bin/python3 -m mrp_check.cli.learn --once \
 	  $(if $(HINT),--hint) $(if $(RESET),--reset) catkin_ws/exercises || [ $$? = 1 ]
 
-# What else runs on this machine shows in the figures: end it before.
+# What else runs on this machine shows in the figures: end it before. The page on speed shows a whole
+# run: copy catkin_ws/build/bench/results.json to catkin_ws/src/mrp/doc/recorded.
 .PHONY: bench
 bench: packages-bench $(BUILT_WHOLE)  ## measure how fast nodes are; QUICK=1: less of it
 	@$(IN_WORKSPACE) $(ALONE) source devel/setup.bash; \
 	exec rosrun mrp_bench bench.py $(if $(QUICK),--quick) $(BENCH)
-
-.PHONY: bench-record
-bench-record:  ## put what `make bench` measured into the pages
-	@/usr/bin/python3 catkin_ws/tools/record_bench.py $(BENCH)
 
 # It has no C++ and no messages of its own, so it runs from its sources. It links to the pages, once
 # `make docs` has built them.

@@ -12,7 +12,6 @@ import pytest
 import rosgraph
 import yaml
 from mrp_bench import launches, plans, rounds
-from mrp_bench.comparisons import COMPARISONS
 from mrp_bench.launched import Console
 from mrp_bench.master import Master
 from mrp_bench.processes import cpu
@@ -105,37 +104,6 @@ def test_nodelets_are_loaded_by_one_manager(master, tmp_path):
         nodes = subprocess.check_output(["rosnode", "list"], text=True).split()
     assert yaml.safe_load(listed) == {"nodelets": [manager + "_Receiver", manager + "_Sender"]}
     assert nodes == [manager, "/rosout"]
-
-
-@pytest.mark.parametrize("name", COMPARISONS)
-def test_comparison_has_ways_that_exist(name):
-    _, (size, rate, count), ways = COMPARISONS[name]
-    assert size >= 8 and rate >= 0 and count > 0
-    assert set(ways) <= set(WAYS) and len(ways) >= 2
-
-
-@pytest.mark.slow
-def test_comparison_prints_a_table():
-    with Process("rosrun", "mrp_bench", "compare.py", "direct_queue") as comparing:
-        assert comparing.wait() == 0, str(comparing)
-    lines = [line for line in comparing.lines if line.startswith("| C++")]
-    texts = [WAYS[name].text for name in ("cpp_cpp", "cpp_direct")]
-    assert [line.split(" | ")[0] for line in lines] == ["| " + text for text in texts]
-    assert all(line.split(" | ")[7:9] == ["0", "kept"] for line in lines), lines
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    "arguments", ["", "direct", "8 9 x cpp_cpp", "8 9 5 cpp_cppp", "7 9 5 cpp_cpp"]
-)
-def test_compare_says_what_it_expects(arguments):
-    command = ["rosrun", "mrp_bench", "compare.py", *arguments.split()]
-    done = subprocess.run(command, stderr=subprocess.PIPE, text=True)
-    assert done.returncode == 1
-    assert "Usage: compare.py NAME, as in `compare.py direct_queue`\n" in done.stderr
-    assert "\n  unqueued         rospy's queue_size=None: " in done.stderr
-    assert "The ways are: raw_cpp, raw_py, cpp_cpp, " in done.stderr
-    assert "Traceback" not in done.stderr
 
 
 @pytest.mark.slow

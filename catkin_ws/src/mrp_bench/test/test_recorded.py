@@ -1,11 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The page on speed says what the recorded figures say, recorded/results.json; and how they get
-there."""
+"""The page on speed says what the recorded figures say, recorded/results.json."""
 
 import json
 
 import pytest
-import record_bench
 from mrp_testing.workspace import WORKSPACE
 
 pytestmark = pytest.mark.quick
@@ -59,28 +57,3 @@ def test_four_subscribers(rows):
 def test_memory_of_a_node(results):
     (fifty,) = (figure for figure in results["robots"]["figures"] if figure["robots"] == 50)
     assert fifty["py"] > 20 * fifty["cpp"]
-
-
-def results_of(folder, rounds_measured=6, verdict=None):
-    """Make a folder as `make bench` leaves it."""
-    folder.mkdir()
-    content = {"verdict": verdict, "rows": [{"rounds": rounds_measured}]}
-    (folder / "results.json").write_text(json.dumps(content))
-    return folder
-
-
-def test_record_for_the_page(tmp_path):
-    folder, recorded = results_of(tmp_path / "bench"), tmp_path / "results.json"
-    record_bench.record(folder, recorded)
-    assert recorded.read_text() == (folder / "results.json").read_text()
-
-
-def test_no_record_of_a_noisy_or_quick_or_missing_run(tmp_path):
-    recorded = tmp_path / "recorded.json"
-    with pytest.raises(SystemExit, match="found none: run make bench"):
-        record_bench.record(tmp_path, recorded)
-    with pytest.raises(SystemExit, match="error: too noisy"):
-        record_bench.record(results_of(tmp_path / "noisy", verdict="too noisy"), recorded)
-    with pytest.raises(SystemExit, match="expected 6 rounds, found 3: run make bench without"):
-        record_bench.record(results_of(tmp_path / "quick", rounds_measured=3), recorded)
-    assert not recorded.exists()

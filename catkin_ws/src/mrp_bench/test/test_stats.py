@@ -90,22 +90,6 @@ def test_ratio_needs_the_same_rounds():
         stats.ratio([[1], []], [[1], [1]])
 
 
-def test_exponent_of_known_growth():
-    sizes = [1, 2, 5, 10, 20, 50]
-    found = stats.exponent(sizes, [3 * size**1.5 for size in sizes])
-    assert found == pytest.approx((1.5, 1.5, 1.5))
-    random = numpy.random.default_rng(2)
-    noisy = [3 * size * random.lognormal(sigma=0.1) for size in sizes]
-    found = stats.exponent(sizes, noisy)
-    assert found.low < 1 < found.high
-    assert found.value == pytest.approx(1, abs=0.1)
-
-
-def test_exponent_needs_three_sizes():
-    with pytest.raises(ValueError, match="three different sizes"):
-        stats.exponent([1, 1, 2], [1, 1, 2])
-
-
 def test_noise_is_the_time_in_long_gaps():
     steady = list(range(0, 1_000_000, 100))
     assert noise.lost_share(steady) == 0

@@ -56,7 +56,6 @@ class Tables(SphinxDirective):
         # Not the table's own title: the theme would write its id twice.
         yield nodes.paragraph("", "", nodes.strong("", table.title))
         yield nodes.table("", group, classes=["figures"])
-        yield from map(paragraph, table.after)
 
     def row(self, cells):
         return nodes.row("", *(nodes.entry("", paragraph(cell)) for cell in cells))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Starts and stops of the four nodes for many robots: what each costs, and how that grows."""
+"""Starts and stops of the four nodes for many robots: what each costs."""
 
 import collections
 import json
@@ -84,7 +84,7 @@ def load(results):
     )
 
 
-# What is fitted: a name, and how it follows from what was measured.
+# What is tabled: a name, and how it follows from what was measured.
 _FIGURES = {
     "up": lambda launch: launch["up"],
     "down": lambda launch: launch["end"] - launch["stop"],
@@ -115,35 +115,8 @@ def medians(launches):
     }
 
 
-def exponents(figures):
-    """Return a figure's name -> stats.Estimate of how it grows with the robots; see medians().
-
-    Empty if there are fewer than three numbers of robots.
-    """
-    if len(figures) < 3:
-        return {}
-    return {
-        name: stats.exponent(list(figures), [of[name] for of in figures.values()])
-        for name in _FIGURES
-    }
-
-
-def most(figures, cores, megabytes):
-    """Return how many robots of four nodes fill so many cores, and how many so many megabytes.
-
-    It goes on from the largest number that was measured, with the exponent of exponents() for the
-    cores, and the same memory for each node.
-    """
-    largest, of = max(figures.items())
-    by_cores = largest * (cores / of["cores"]) ** (1 / exponents(figures)["cores"].value)
-    return round(by_cores), round(megabytes / (2 * of["cpp"] + 2 * of["py"]))
-
-
-def summarise(launches, cores, megabytes):
-    """Return what results.json says of many robots. cores, megabytes: of this machine.
-
-    most: of most(), or None if there are too few numbers of robots
-    """
+def summarise(launches):
+    """Return what results.json says of many robots."""
     figures = medians(launches)
     lost = collections.Counter()
     for launch in launches:
@@ -152,6 +125,4 @@ def summarise(launches, cores, megabytes):
         "figures": [
             {"robots": robots, **of, "lost": lost[robots]} for robots, of in figures.items()
         ],
-        "exponents": exponents(figures),
-        "most": most(figures, cores, megabytes) if len(figures) > 2 else None,
     }

@@ -19,14 +19,12 @@ _ABOUT_MESSAGES = (
 def measured(results):
     """Return what results.json says of a folder of results (rounds.Results)."""
     probes = results.noise()
-    facts = machine.describe()
-    cores, megabytes = int(facts["cores"]), 1e3 * int(facts["gigabytes"])
     return {
-        "machine": facts,
+        "machine": machine.describe(),
         "noise": {"least": min(probes), "most": max(probes), "probes": len(probes)},
         "verdict": noise.verdict(probes),
         "rows": [row._asdict() for row in summary.summarise(results.measurements())],
-        "robots": launches.summarise(launches.load(results), cores, megabytes),
+        "robots": launches.summarise(launches.load(results)),
     }
 
 
@@ -60,7 +58,7 @@ def markdown(content):
 def _table(table):
     lines = [_line(table.header), "| --- " + "| ---: " * (len(table.header) - 1) + "|"]
     lines += map(_line, table.rows)
-    return [f"### {table.title}", *table.before, "\n".join(lines), *table.after]
+    return [f"### {table.title}", *table.before, "\n".join(lines)]
 
 
 def _line(cells):

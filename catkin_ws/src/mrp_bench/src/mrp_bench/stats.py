@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Statistics of latencies: percentiles, ratios with a confidence interval, exponents of growth."""
+"""Statistics of latencies: percentiles, and ratios with a confidence interval."""
 
 import collections
 
@@ -91,24 +91,3 @@ def _resampled_medians(values, random):
         raise ValueError("expected at least one value in each round, found none")
     size = min(values.size, _MOST_SAMPLES)
     return numpy.median(random.choice(values, size=(_RESAMPLES, size)), axis=1)
-
-
-def exponent(sizes, costs, seed=0):
-    """Fit costs = factor * sizes ** exponent; return the exponent as an Estimate.
-
-    A least squares line through the logarithms; the bounds are those of a bootstrap of the points.
-    sizes, costs: equally many numbers above 0, of at least three different sizes
-    Raises ValueError if there are fewer sizes, or one number is not above 0.
-    """
-    points = numpy.array([sizes, costs], dtype=float)
-    if numpy.unique(points[0]).size < 3 or (points <= 0).any():
-        raise ValueError("expected numbers above 0, of at least three different sizes")
-    x, y = numpy.log(points)
-    random = numpy.random.default_rng(seed)
-    slopes = []
-    while len(slopes) < _RESAMPLES:
-        chosen = random.integers(x.size, size=x.size)
-        if numpy.unique(x[chosen]).size > 1:
-            slopes.append(numpy.polyfit(x[chosen], y[chosen], 1)[0])
-    low, high = numpy.percentile(slopes, _CONFIDENCE)
-    return Estimate(float(numpy.polyfit(x, y, 1)[0]), float(low), float(high))

@@ -15,13 +15,12 @@ _WIDEST_INTERVAL = 2
 
 
 class Table(NamedTuple):
-    """rows, header: lists of texts. before, after: the paragraphs around it."""
+    """rows, header: lists of texts. before: the paragraphs above it."""
 
     title: str
     header: list
     rows: list
     before: tuple = ()
-    after: tuple = ()
 
 
 def machine(content):
@@ -161,20 +160,12 @@ def robots(content):
         [str(figure["robots"]), *_costs(figure, ROBOTS, noisy), str(figure["lost"])]
         for figure in of["figures"]
     ]
-    after = []
-    if of["most"] and not noisy:
-        by_cores, by_memory = of["most"]
-        after = [
-            f"If that goes on, {by_cores} robots fill the {content['machine']['cores']} cores, "
-            f"and {by_memory} fill the memory."
-        ]
     return [
         Table(
             "Many robots of four nodes each",
             ["robots", *ROBOTS.values(), "lost"],
-            rows + _exponents(of["exponents"], ROBOTS, noisy),
+            rows,
             ["The latencies are those of 8 bytes at 100 Hz, from C++ to C++, beside the robots."],
-            after,
         )
     ]
 
@@ -184,12 +175,6 @@ def _costs(figure, names, noisy):
         NOISY if noisy else f"{figure[name]:.0f}" if name in _WHOLE else f"{figure[name]:.2f}"
         for name in names
     ]
-
-
-def _exponents(found, names, noisy):
-    """Return the row of the exponents, if there are any."""
-    cells = [NOISY if noisy else _interval(found[name]) for name in names if name in found]
-    return [["exponent", *cells, ""]] if cells else []
 
 
 def _interval(estimate):
