@@ -24,7 +24,7 @@ from typing import NamedTuple
 WORKSPACE = pathlib.Path(__file__).resolve().parents[4]
 ROOT = WORKSPACE.parent
 RESULTS = WORKSPACE / "build" / "test_results"
-PASSED = pathlib.Path(__file__).resolve().parents[1] / "proofs" / "passed.csv"
+PASSED = pathlib.Path(__file__).resolve().parents[1] / "proofs" / "passed_on"
 _FILES = {
     "broken": ["catkin_ws/src/mrp_check/defects/{}.patch"],
     "docker": ["docker/test/{}.py"],
@@ -120,9 +120,19 @@ def result(name):
     return min(ends, key=lambda one: worst.index(one[0]), default=None)
 
 
-def recorded():
-    """Return name -> the day on which a test had passed when these pages were last recorded."""
-    return dict(line.split()[::-1] for line in PASSED.read_text().splitlines())
+def is_of_test_all(name):
+    """Say whether `make test-all` runs a test: by its mark, or by that of its file."""
+    case = find(name)
+    if case is None or name.startswith("docker/"):
+        return False
+    marks = re.findall(r"\bmark\.(quick|slow|sets)\b", case.source)
+    of_file = re.findall(r"^pytestmark = .*\bmark\.(\w+)", case.path.read_text(), re.MULTILINE)
+    return "sets" not in (marks or of_file)
+
+
+def recorded(name):
+    """Return the day of the last complete `make test-all`, "" if that did not run this test."""
+    return PASSED.read_text().strip() if is_of_test_all(name) else ""
 
 
 @functools.lru_cache

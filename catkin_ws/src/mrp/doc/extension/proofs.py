@@ -83,7 +83,7 @@ def _box(app, number, claims):
 
 def _ended(name):
     """Return how a test ended here; or else, when these pages were recorded."""
-    ended, day = cases.result(name) or ("passed", cases.recorded().get(name))
+    ended, day = cases.result(name) or ("passed", cases.recorded(name))
     return f"{ended} on {day}" if day else ""
 
 
