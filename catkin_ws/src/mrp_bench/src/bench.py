@@ -13,7 +13,7 @@ import sys
 import time
 
 from mrp_bench import launches, plans, report
-from mrp_bench.master import Master
+from mrp_bench.processes import Master
 from mrp_bench.programs import ProgramError
 from mrp_bench.rounds import Results, run
 

@@ -4,14 +4,7 @@
 import json
 
 import pytest
-from mrp_bench import (
-    launches,
-    noise,
-    report,
-    rounds,
-    summary,
-    tables,
-)
+from mrp_bench import launches, machine, report, rounds, summary, tables
 from mrp_bench.programs import Measurement
 
 pytestmark = pytest.mark.quick
@@ -88,7 +81,7 @@ def test_table_says_what_was_measured(measurements):
 
 
 def test_table_has_no_figures_of_a_noisy_machine(measurements):
-    text = report.markdown(content_of(measurements, verdict=noise.verdict([0.5])))
+    text = report.markdown(content_of(measurements, verdict=machine.verdict([0.5])))
     assert "**This machine is too noisy: others took 50% of the processors' time" in text
     cells = ["C++ to C++", *["too noisy"] * 5, "", "6 of 300", "kept", *["too noisy"] * 2]
     assert "| " + " | ".join(cells) + " |\n" in text

@@ -13,8 +13,7 @@ import rosgraph
 import yaml
 from mrp_bench import launches, plans, rounds
 from mrp_bench.launched import Console
-from mrp_bench.master import Master
-from mrp_bench.processes import cpu
+from mrp_bench.processes import Master, cpu
 from mrp_bench.programs import ProgramError, Running
 from mrp_bench.ways import LIMITS, WAYS, Way
 from mrp_testing.process import Process, processes_with
@@ -185,7 +184,7 @@ def test_ros_spin_takes_a_core_while_its_node_ends(master):
 
 BENCH_THAT_WAITS = """
 import pathlib, signal, sys
-from mrp_bench.master import Master
+from mrp_bench.processes import Master
 from mrp_bench.programs import Running
 from mrp_bench.ways import WAYS
 

@@ -3,7 +3,7 @@
 
 import numpy
 import pytest
-from mrp_bench import noise, stats, tables
+from mrp_bench import machine, stats, tables
 
 pytestmark = pytest.mark.quick
 
@@ -92,11 +92,11 @@ def test_ratio_needs_the_same_rounds():
 
 def test_noise_is_the_time_in_long_gaps():
     steady = list(range(0, 1_000_000, 100))
-    assert noise.lost_share(steady) == 0
+    assert machine.lost_share(steady) == 0
     interrupted = steady + [moment + 2_000_000 for moment in steady]
-    assert noise.lost_share(interrupted) == pytest.approx(1 / 3, abs=0.001)
+    assert machine.lost_share(interrupted) == pytest.approx(1 / 3, abs=0.001)
 
 
 def test_noise_is_judged_by_most_probes():
-    assert noise.verdict([0.0, 0.01, 0.9]) is None
-    assert "others took 60% of the processors' time" in noise.verdict([0.5, 0.6, 0.9])
+    assert machine.verdict([0.0, 0.01, 0.9]) is None
+    assert "others took 60% of the processors' time" in machine.verdict([0.5, 0.6, 0.9])

@@ -6,7 +6,7 @@ results.json says all that the tables show. The tutorial's pages are made of it,
 
 import json
 
-from mrp_bench import launches, machine, noise, summary, tables
+from mrp_bench import launches, machine, summary, tables
 
 _ABOUT_MESSAGES = (
     "A latency is the time from just before a message is published until its callback begins. "
@@ -22,7 +22,7 @@ def measured(results):
     return {
         "machine": machine.describe(),
         "noise": {"least": min(probes), "most": max(probes), "probes": len(probes)},
-        "verdict": noise.verdict(probes),
+        "verdict": machine.verdict(probes),
         "rows": [row._asdict() for row in summary.summarise(results.measurements())],
         "robots": launches.summarise(launches.load(results)),
     }

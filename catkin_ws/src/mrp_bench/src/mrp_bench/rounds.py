@@ -11,7 +11,7 @@ import json
 import pathlib
 import time
 
-from mrp_bench import noise
+from mrp_bench import machine
 from mrp_bench.programs import Running, Stream
 from mrp_bench.ways import WAYS, size_text
 
@@ -77,7 +77,7 @@ def run(plan, rounds, results, say):
             for programs in running.values():
                 programs.connect()
             for number in range(first, min(first + _ROUNDS_PER_START, rounds)):
-                results.keep_noise(noise.measure())
+                results.keep_noise(machine.noise())
                 for step in plan:
                     results.keep(number, step, running[step.way].measure(step.stream))
                     done += 1
@@ -87,7 +87,7 @@ def run(plan, rounds, results, say):
                         f"[{done}/{count}] round {number + 1} of {rounds}: {step.way}, "
                         f"{describe(step.stream)}; {left:.0f} s left"
                     )
-            results.keep_noise(noise.measure())
+            results.keep_noise(machine.noise())
 
 
 def describe(stream):
