@@ -234,8 +234,8 @@ int main(int argc, char** argv)
   }
 }
 """
-# No launch file starts it: so all run together once more. It holds the lock that rospy holds while it
-# asks the master for something: if Ctrl-C comes then, rospy's own handler waits for it for ever.
+# No launch file starts it: so all run together once more. It holds the lock that rospy holds while
+# it asks the master for something: if Ctrl-C comes then, rospy's own handler waits for it for ever.
 _UNLAUNCHED = """\
 rospy.init_node("unlaunched")
 with rospy.get_master().target._lock:

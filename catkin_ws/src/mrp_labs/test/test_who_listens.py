@@ -77,7 +77,7 @@ class TestWhoListens(unittest.TestCase):
                 talker.publish(1)
                 received(node, 1)
                 clock.turn_until(node, TURN, lambda: len(log_line.texts(node.lines)) >= 2)
-                # The loop is late after such a turn, and may not sleep before its next wait, either.
+                # The loop is late after such a turn, and may not sleep before its next wait.
                 self.assertEqual({*log_line.texts(node.lines)}, {"received 1"}, str(node))
                 self.assertEqual(node.errors, [], str(node))
 
