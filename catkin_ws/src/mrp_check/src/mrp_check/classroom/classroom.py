@@ -73,7 +73,12 @@ class Classroom:
         self._machines = cluster or marking
         jobs = self.jobs or (cluster.threads if cluster else JOBS)
         self.results.mkdir(parents=True, exist_ok=True)
-        self._common, self._begun = self._depended_on(), time.monotonic()
+        contract = repr(spec.read(self.spec_file).without_marks())
+        self._common = {  # what all reports depend on
+            "contract": hashlib.sha256(contract.encode()).hexdigest(),
+            "checker": marking.checker(),
+        }
+        self._begun = time.monotonic()
         self.progress(f"at most {jobs} at a time", 0, len(self.entries))
         with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
             futures = [pool.submit(self._checked, entry) for entry in self.entries]
@@ -134,14 +139,6 @@ class Classroom:
 
     def _package(self, entry, scratch):
         return Package(submissions.package_in(entry, scratch, self.package))
-
-    def _depended_on(self):
-        """Return what all reports depend on: a text that changes with it."""
-        contract = repr(spec.read(self.spec_file).without_marks())
-        return {
-            "contract": hashlib.sha256(contract.encode()).hexdigest(),
-            "checker": marking.checker(),
-        }
 
     def _fingerprint(self, packed, package):
         """Return a text that changes with the package.

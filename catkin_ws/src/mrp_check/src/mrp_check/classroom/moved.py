@@ -26,8 +26,10 @@ def compare(folder, submissions, spec):
     """Say in each submission's `moved` how its mark has moved; keep the marks in the folder."""
     file, now = folder / _FILE, _marks(submissions, spec)
     last, before = json_.kept(file) or (None, None)
-    if last and not _goes_on(last, now):
-        before = last
+    if last:
+        same = all(now["students"].get(name) == one for name, one in last["students"].items())
+        if not same or last["points"] != now["points"]:  # not only others have been added
+            before = last
     json_.keep(file, [now, before])
     for one in submissions:
         if before and one.name in before["students"]:
@@ -84,12 +86,6 @@ def _marks(submissions, spec):
         for submission in submissions
     }
     return {"points": {id_: spec.points_of(id_) for id_ in OF_CONTRACT}, "students": students}
-
-
-def _goes_on(last, now):
-    """Return whether nothing of what was there has changed: at most, others have been added."""
-    same = all(now["students"].get(name) == one for name, one in last["students"].items())
-    return same and last["points"] == now["points"]
 
 
 def _moved(before, now, name):

@@ -7,7 +7,7 @@ machine has cost a node, and by how much all takes longer.
 
 import glob
 import time
-from typing import Callable, Dict, Iterable, List, Optional, Tuple, TypeVar, Union
+from typing import Callable, Dict, Iterable, Iterator, List, Optional, Tuple, TypeVar, Union
 
 import psutil
 
@@ -107,15 +107,18 @@ def processor_seconds(pid: Optional[int]) -> Optional[float]:
 
 def runnable(pid: Optional[int]) -> Dict[str, float]:
     """Return for how many seconds each thread of a process ran, or waited for a processor."""
-    found = {}
+    return {path: ran + waited for path, ran, waited in _threads(pid)}
+
+
+def _threads(pid: Union[int, str, None]) -> Iterator[Tuple[str, float, float]]:
+    """Yield for each thread the seconds that it ran, and that it waited for a processor."""
     for path in glob.glob(f"/proc/{pid}/task/*/schedstat"):
         try:
             with open(path) as file:
                 ran, waited, _ = file.read().split()
         except OSError:
             continue  # the thread has ended
-        found[path] = (int(ran) + int(waited)) / 1e9
-    return found
+        yield path, int(ran) / 1e9, int(waited) / 1e9
 
 
 def _status(pid: Optional[int]) -> Optional[str]:
@@ -127,15 +130,8 @@ def _status(pid: Optional[int]) -> Optional[str]:
 
 def _processor_of(pid: Union[int, str, None]) -> Tuple[float, float]:
     """Return the seconds that a process ran, and that it waited for a processor meanwhile."""
-    ran = waited = 0
-    for path in glob.glob(f"/proc/{pid}/task/*/schedstat"):
-        try:
-            with open(path) as file:
-                numbers = file.read().split()
-        except OSError:
-            continue  # the thread has ended
-        ran, waited = ran + int(numbers[0]), waited + int(numbers[1])
-    return ran / 1e9, waited / 1e9
+    threads = [*_threads(pid)]
+    return sum(ran for _, ran, _ in threads), sum(waited for _, _, waited in threads)
 
 
 def is_over(passed: float, seconds: float) -> bool:

@@ -176,12 +176,7 @@ def finding_lines(finding, report):
     cause = finding.consequence_of
     if cause:
         return [*lines, f"  This follows from: {REQUIREMENTS[cause].title} ({cause})"]
-    return [*lines, *page_lines(finding)]
-
-
-def page_lines(finding):
-    """Return the lines that name the places of the pages that explain a finding."""
-    return [f"  {name + ':':<10}{address_of(page)}" for name, page in pages(finding)]
+    return lines + [f"  {name + ':':<10}{address_of(page)}" for name, page in pages(finding)]
 
 
 def pages(finding):

@@ -270,8 +270,12 @@ class _Slot:
         self.value = _number(held)
 
     def set(self, number: int) -> bool:
+        held = self._held
         try:
-            self._put(_like(self._held, number))
+            if isinstance(held, itertools.count):
+                self._put(itertools.count(number, *held.__reduce__()[1][1:]))
+            else:
+                self._put(type(held)(number))
             return True
         except Exception:
             return False
@@ -292,12 +296,6 @@ def _number(held: Any) -> Optional[int]:
     if isinstance(held, ctypes._SimpleCData) and isinstance(held.value, int):
         return held.value
     return None
-
-
-def _like(held: Any, number: int) -> Any:
-    if isinstance(held, itertools.count):
-        return itertools.count(number, *held.__reduce__()[1][1:])
-    return type(held)(number)
 
 
 def _slots(frames: List[types.FrameType]) -> Iterator["_Slot"]:
