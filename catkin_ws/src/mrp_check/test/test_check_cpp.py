@@ -121,13 +121,6 @@ BROKEN = {
         "int counter_",
         "undefined",
     ),
-    "float_counter": (
-        PUBLISHER,
-        [("uint32_t counter_", "float counter_")],
-        "wrap",
-        "float",
-        "never wraps",
-    ),
     "starts_anew": (
         PUBLISHER,
         [(COUNT, COUNT + " if (counter_ > 100) { counter_ = 2; }")],

@@ -75,10 +75,11 @@ def test_windows_line_ends_of_cpp_are_a_note(tmp_path):
         (' email="someone@some.example"', "", 6, "email"),
         ("<depend>rospy", "<dependd>rospy", 10, "dependd"),
         ("<depend>rospy</depend>", "<run_depend>rospy</run_depend>", 10, "run_depend"),
+        ("  <buildtool_depend>catkin</buildtool_depend>\n", "", 8, "catkin"),
         ("buildtool_depend>catkin<", "buildtool_depend>ament_cmake<", 8, "is of ROS 2"),
         ("</description>", "</description> -->", 5, "nothing reads it: -->"),
     ],
-    ids=range(9),
+    ids=range(10),
 )
 def test_broken_manifest(old, new, line, says, tmp_path):
     assert MANIFEST.count(old) == 1
@@ -109,6 +110,7 @@ def test_what_is_declared_is_no_finding(tmp_path):
 def test_all_that_is_missing_is_one_finding(tmp_path):
     text_ = re.sub(r"  <depend>(rospy|std_msgs)</depend>\n", "", MANIFEST)
     (finding,) = dependency_findings(tmp_path, text_)
+    assert (finding.file, finding.line, finding.severity) == ("package.xml", 9, "error")
     assert "rospy (used in src/odd.py:2) and std_msgs (used in src/odd.py:3)." in finding.message
     assert finding.change[1].endswith("<depend>rospy</depend>\n  <depend>std_msgs</depend>")
 
@@ -168,11 +170,12 @@ def test_comment_uses_nothing(source, tmp_path):
     ("old", "new", "line", "says"),
     [
         ("find_package(catkin REQUIRED COMPONENTS roscpp rospy std_msgs)\n", "", 2, "find_package"),
+        ("catkin_package(CATKIN_DEPENDS roscpp rospy std_msgs)\n", "", 3, "catkin_package"),
         ("catkin_package(", "add_executable(b src/a.cpp)\ncatkin_package(", 5, "comes after"),
         ("catkin_install", "add_executable(b src/aa.cpp)\ncatkin_install", 5, "src/a.cpp is meant"),
         ("catkin_package(", "catkin_package(INCLUDE_DIRS include ", 4, "no such folder"),
     ],
-    ids=range(4),
+    ids=range(5),
 )
 def test_broken_cmake(old, new, line, says, tmp_path):
     assert CMAKE.count(old) == 1

@@ -79,6 +79,7 @@ BROKEN = {
         [("launch-file", 5)],
         "publisher_cpp_node",
     ),
+    "not_started": (NODES[1], "", [("launch-nodes", 6)], "publisher_py_node"),
     "other_group": ('default="mrp"', 'default="mpr"', [("launch-group", 2)], "mpr"),
     "no_group": ('<group ns="$(arg group)">', "<group>", [("launch-group", 3)], "mrp"),
     "own_group": (

@@ -21,12 +21,6 @@ from mrp_check.verdict.severity import weigh
 
 pytestmark = pytest.mark.quick
 
-RUNNING = """#!/usr/bin/env python
-import rospy
-rospy.init_node("publisher_py_node")
-rospy.spin()
-"""
-
 
 def examined(folder, rules, monkeypatch, only=(), **files):
     """Return the Report of a package of Python nodes, by these rules alone."""
