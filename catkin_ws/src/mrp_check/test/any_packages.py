@@ -2,87 +2,24 @@
 """Packages without a contract: one as beginners write it, one with several defects, and one of
 which another machine may say more."""
 
+import pathlib
+import tempfile
+
 import check_rules
-
-_TALKER = """\
-#!/usr/bin/env python
-import rospy
-from std_msgs.msg import String
+from mrp_check.contract import packages
 
 
-def talk():
-    publisher = rospy.Publisher("chatter", String, queue_size=10)
-    rospy.init_node("talker", anonymous=True)
-    rate = rospy.Rate(10)
-    while not rospy.is_shutdown():
-        publisher.publish("hello at %s" % rospy.get_time())
-        rate.sleep()
+def _of_styles():
+    """Return the sources of a talker and a listener, in Python and in C++."""
+    with tempfile.TemporaryDirectory() as folder:
+        place = pathlib.Path(folder)
+        for style in ("talker_listener_py", "talker_listener_cpp"):
+            packages.lay_out(style, place)
+        names = ("scripts/talker.py", "scripts/listener.py", "src/talker.cpp", "src/listener.cpp")
+        return [(place / name).read_text() for name in names]
 
 
-if __name__ == "__main__":
-    try:
-        talk()
-    except rospy.ROSInterruptException:
-        pass
-"""
-_LISTENER = """\
-#!/usr/bin/env python
-import rospy
-from std_msgs.msg import String
-
-
-def hear(message):
-    rospy.loginfo("%s heard %s", rospy.get_caller_id(), message.data)
-
-
-def listen():
-    rospy.init_node("listener", anonymous=True)
-    rospy.Subscriber("chatter", String, hear)
-    rospy.spin()
-
-
-if __name__ == "__main__":
-    listen()
-"""
-_CPP_TALKER = """\
-#include <ros/ros.h>
-#include <std_msgs/String.h>
-
-int main(int argc, char** argv)
-{
-  ros::init(argc, argv, "talker");
-  ros::NodeHandle n;
-  ros::Publisher publisher = n.advertise<std_msgs::String>("chatter", 1000);
-  ros::Rate rate(10);
-  while (ros::ok())
-  {
-    std_msgs::String message;
-    message.data = "hello";
-    publisher.publish(message);
-    ros::spinOnce();
-    rate.sleep();
-  }
-  return 0;
-}
-"""
-_CPP_LISTENER = """\
-#include <ros/ros.h>
-#include <std_msgs/String.h>
-
-void hear(const std_msgs::String::ConstPtr& message)
-{
-  ROS_INFO("I heard: [%s]", message->data.c_str());
-}
-
-int main(int argc, char** argv)
-{
-  ros::init(argc, argv, "listener");
-  ros::NodeHandle n;
-  ros::Subscriber subscriber = n.subscribe("chatter", 1000, hear);
-  ros::spin();
-  return 0;
-}
-"""
+_TALKER, _LISTENER, _CPP_TALKER, _CPP_LISTENER = _of_styles()
 # It wants numbers on its command line, and a service that no other node has to offer.
 _CLIENT = """\
 #!/usr/bin/env python3
@@ -184,7 +121,7 @@ def correct(folder):
         "package_DOT_xml": manifest,
         "CMakeLists_DOT_txt": _CMAKE,
         "msg__Num_DOT_msg": "int64 num\n",
-        "scripts__talker_DOT_py": _TALKER.replace("env python", "python"),
+        "scripts__talker_DOT_py": _TALKER.replace("env python3", "python"),
         "scripts__listener_DOT_py": _LISTENER.split("\n", 1)[1],
         "scripts__talker_DOT_py_DOT_save_DOT_1": "print 'an old one'\n",
         "src__talker_DOT_cpp": _CPP_TALKER,
@@ -226,23 +163,23 @@ _LAUNCH = """\
 
 def faulty(folder):
     """Make a package of scripts; each of them but the talker has one defect."""
-    python3 = _LISTENER.replace("env python", "env python3")
+    python = _LISTENER.replace("env python3", "env python")
     files = {
         "package_DOT_xml": check_rules.MANIFEST.replace("<depend>std_msgs</depend>", ""),
         "CMakeLists_DOT_txt": _CMAKE_OF_SCRIPTS,
         "launch__all_DOT_launch": _LAUNCH,
         "launch__asks_DOT_launch": '<launch>\n  <param name="a" value="$(arg who)"/>\n</launch>\n',
         "launch__broken_DOT_launch": "<launch>\n  <node>\n</launch>\n",
-        "scripts__talker_DOT_py": _TALKER.replace("env python", "env python3"),
-        "scripts__near_DOT_py": python3.replace('"chatter"', '"chater"').replace(
+        "scripts__talker_DOT_py": _TALKER,
+        "scripts__near_DOT_py": _LISTENER.replace('"chatter"', '"chater"').replace(
             "    rospy.spin", '    rospy.get_param("~limit")\n    rospy.spin'
         ),
-        "scripts__raises_DOT_py": python3.replace("message.data)", "message.text)"),
-        "scripts__number_DOT_py": python3.replace("String", "Int32"),
-        "scripts__ends_DOT_py": python3.replace("    rospy.spin()\n", ""),
-        "scripts__old_DOT_py": _LISTENER,
-        "scripts__print_DOT_py": _LISTENER.replace("    rospy.spin()", "    print 'ready'"),
-        "scripts__stays_DOT_py": python3.replace(
+        "scripts__raises_DOT_py": _LISTENER.replace("message.data)", "message.text)"),
+        "scripts__number_DOT_py": _LISTENER.replace("String", "Int32"),
+        "scripts__ends_DOT_py": _LISTENER.replace("    rospy.spin()\n", ""),
+        "scripts__old_DOT_py": python,
+        "scripts__print_DOT_py": python.replace("    rospy.spin()", "    print 'ready'"),
+        "scripts__stays_DOT_py": _LISTENER.replace(
             "    rospy.spin()",
             "    import time\n    while True:\n        try:\n"
             "            time.sleep(1)\n        except KeyboardInterrupt:\n            pass",
@@ -264,9 +201,7 @@ def tested(folder):
             "</package>", "  <test_depend>mrp_check</test_depend>\n</package>"
         ),
         "CMakeLists_DOT_txt": _CMAKE_OF_TESTED,
-        "scripts__ends_DOT_py": _LISTENER.replace("env python", "env python3").replace(
-            "    rospy.spin()\n", ""
-        ),
+        "scripts__ends_DOT_py": _LISTENER.replace("    rospy.spin()\n", ""),
     }
     check_rules.make(folder, **files)
     return folder
