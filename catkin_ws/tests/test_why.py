@@ -259,7 +259,8 @@ def test_names_paths_and_numbers_do_not_count(expected, text, index):
             "name-not-legal",
             "terminate called after throwing an instance of 'ros::InvalidNameException'\n"
             "  what():  Character [;] at element [1] is not valid in Graph Resource Name [a;].\n"
-            "[a-1] process has died [pid 1, exit code -6, cmd a __name:=a __log:=/a.log].",
+            "[a-1] process has died [pid 1, exit code -6, cmd a __name:=a __log:=/a.log].\n"
+            "[b-9] process has died",
         ),
         (
             "launch-node-not-found",
@@ -287,6 +288,11 @@ def test_names_paths_and_numbers_do_not_count(expected, text, index):
             "Invalid number of arguments, args should be [] args are(<class 'a.EmptyResponse'>,)",
         ),
         ("package-of-ros2", "$ ros2 launch a b.py\nModuleNotFoundError: No module named 'black'"),
+        (
+            "rosdep-key",
+            "ERROR: the following packages/stacks could not have their rosdep keys resolved\n"
+            "to system dependencies:\na: Cannot locate rosdep definition for [stdmsgs]",
+        ),
         ("tutorial-not-built", "ModuleNotFoundError: No module named 'mrp_check.cli'"),
     ],
 )

@@ -69,10 +69,11 @@ _ENGLISH = {
 }
 # Only the last part of a path counts, and whether the path is one of ROS's own.
 _FOLDERS = re.compile(r"(?<![\w.])~?(/opt/ros/\w+)?/(?:[^\s/:;,'\"()\[\]<>]+/)*")
-# What a text of ROS 2 has: advice for ROS 1 would send its reader astray.
+# What a text of ROS 2 has: advice for ROS 1 would send its reader astray. The names of packages,
+# such as ament_cmake, turn up in what ROS 1 prints.
 _ROS2 = re.compile(
     r"(?<![\w/@-])ros2(?![\w/.-])|\brosbag2(?:_[a-z]\w*)?\b(?!\.)"
-    r"|\brcl(?:cpp|py)?\b|\brmw_\w+|\bcolcon\b|\bament_\w+|\blaunch_ros\b|\] \[launch\]: |\[rviz2"
+    r"|\brcl(?:cpp|py)?\b|\brmw_\w+|\bcolcon\b|\blaunch_ros\b|\] \[launch\]: |\[rviz2"
     r"|/opt/ros/(?:foxy|galactic|humble|iron|jazzy)\b"
     r"|(?<![\w/])[a-z]\w*/(?:msg|srv|action)/[A-Z]\w*\b(?!\.)"
 )
@@ -135,7 +136,7 @@ _REASON = re.compile(
 # The last lines of roslaunch, make and catkin: the cause is above them. A negative exit code, or
 # one of a shell (128 and the signal), does say something.
 _ENDING = re.compile(
-    r".*process has died \[pid \d+, exit code (?!-|13[2-9])\d+\b.*|log files?: .*"
+    r".*process has died(?: \[pid \d+, exit code (?!-|13[2-9])\d+\b.*)?|log files?: .*"
     r"|.*process has finished cleanly"
     r"|=*(?:REQUIRED )?process \[.*\] has died!|(?i:initiating shutdown)!?|=+"
     r"|=*REQUIRED process \[.*\] .*initiating shutdown!?"
