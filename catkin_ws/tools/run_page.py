@@ -244,7 +244,7 @@ class Reader:
         """Return the graph once it has all nodes that roslaunch has started."""
         started = {"/" + name for name in _STARTED.findall("\n".join(printed))} - {"/rosout"}
         end = time.monotonic() + SECONDS
-        while not started <= set(graph(self._master)["nodes"]):
+        while not started <= _nodes(graph(self._master)):
             if time.monotonic() > end:
                 raise StepError(f"expected the nodes {started}, found {graph(self._master)}")
             time.sleep(0.1)
@@ -373,22 +373,24 @@ def only(pattern, lines):
 
 
 def graph(master_uri):
-    """Return the nodes and topics that a master knows, without those of the log."""
+    """Return the topics that a master knows, and who is at them, without those of the log."""
     master = rosgraph.Master("/run_page", master_uri=master_uri)
-    publishers, subscribers, _ = master.getSystemState()
-    edges = {
-        kind: sorted(
-            [node, topic] for topic, nodes in state if topic != "/rosout" for node in nodes
-        )
-        for kind, state in (("publishers", publishers), ("subscribers", subscribers))
-    }
-    edges = {
-        kind: [edge for edge in pairs if edge[0] != "/rosout"] for kind, pairs in edges.items()
-    }
-    pairs = edges["publishers"] + edges["subscribers"]
+    publishers, subscribers = map(_pairs, master.getSystemState()[:2])
     types = dict(master.getTopicTypes())
     return {
-        "nodes": sorted({node for node, _ in pairs}),
-        "topics": {topic: types.get(topic) for topic in sorted({topic for _, topic in pairs})},
-        **edges,
+        "topics": {topic: types.get(topic) for _, topic in publishers + subscribers},
+        "publishers": [f"{node} -> {topic}" for node, topic in publishers],
+        "subscribers": [f"{topic} -> {node}" for node, topic in subscribers],
     }
+
+
+def _pairs(state):
+    """Return (node, topic) of one kind of what a master knows."""
+    pairs = sorted((node, topic) for topic, nodes in state for node in nodes)
+    return [pair for pair in pairs if "/rosout" not in pair]
+
+
+def _nodes(found):
+    """Return the nodes of a graph()."""
+    publishers = {edge.split(" -> ")[0] for edge in found["publishers"]}
+    return publishers | {edge.split(" -> ")[1] for edge in found["subscribers"]}

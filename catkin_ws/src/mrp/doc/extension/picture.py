@@ -55,14 +55,16 @@ class Graph(Picture):
         lines.append('node [fontname="sans-serif"]')
         for topic, type_ in graph["topics"].items():
             lines.append(f'"topic {topic}" [shape=box label="{topic}\\n{type_}"]')
-        for node in graph["nodes"]:
+        publishers = [edge.split(" -> ") for edge in graph["publishers"]]
+        subscribers = [edge.split(" -> ") for edge in graph["subscribers"]]
+        for node in sorted({node for node, _ in publishers} | {node for _, node in subscribers}):
             # On two lines, so that a phone has room for all of it.
             group, _, name = node.rpartition("/")
             label = f"{group}/\\n{name}" if group else node
             lines.append(f'"{node}" [shape=ellipse label="{label}"]')
-        for node, topic in graph["publishers"]:
+        for node, topic in publishers:
             lines.append(f'"{node}" -> "topic {topic}"')
-        for node, topic in graph["subscribers"]:
+        for topic, node in subscribers:
             lines.append(f'"topic {topic}" -> "{node}"')
         drawn = subprocess.run(
             ["dot", "-Tsvg"],
@@ -81,11 +83,10 @@ class Graph(Picture):
     def alt(self, graph):
         """Say of each topic which nodes publish it, and which ones subscribe to it."""
         sentences = []
+        ends = [edge.split(" -> ") for edge in graph["publishers"] + graph["subscribers"]]
         for topic, type_ in graph["topics"].items():
-            publish, subscribe = (
-                ", ".join(node for node, other in graph[kind] if other == topic) or "no node"
-                for kind in ("publishers", "subscribers")
-            )
+            publish = ", ".join(node for node, end in ends if end == topic) or "no node"
+            subscribe = ", ".join(node for begin, node in ends if begin == topic) or "no node"
             who = f"published by {publish}; subscribed to by {subscribe}"
             sentences.append(f"Topic {topic}, type {type_}: {who}.")
         return " ".join(sentences)
