@@ -24,7 +24,7 @@ private:
     msg.data = counter_;
     publisher_.publish(msg);
 
-    // After 2^32-2 comes 0: unsigned numbers wrap round, and even ones stay even.
+    // After 2^32-2 comes 0: C++'s unsigned numbers wrap around, and stay even.
     counter_ += 2;
   }
 
@@ -40,7 +40,7 @@ int main(int argc, char* argv[])
 {
   ros::init(argc, argv, "publisher_cpp_node");
 
-  // The handle "~" is the node's own namespace: the group's, and then the node's name.
+  // The handle "~" is in the node's private namespace, such as /mrp/publisher_cpp_node.
   ros::NodeHandle nh("~");
   ROS_INFO_STREAM("[PUBLISHER CPP NODE] namespace of nh = " << nh.getNamespace());
 

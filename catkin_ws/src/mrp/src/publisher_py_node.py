@@ -23,15 +23,15 @@ class PublisherPyNode:
         msg.data = self.counter
         self.publisher.publish(msg)
 
-        # After 2^32-1 comes 1: Python's numbers do not wrap round by themselves,
-        # and a UInt32 cannot hold a larger one.
+        # A UInt32 can't go past 2^32-1, and Python's own numbers never wrap around,
+        # so start over at 1.
         self.counter = (self.counter + 2) % 2**32
 
 
 def main():
     rospy.init_node("publisher_py_node")
 
-    # The node's name is also its own namespace: the group's, and then the node's name.
+    # The full name, such as /mrp/publisher_py_node; it's also the node's private namespace.
     rospy.loginfo("[PUBLISHER PY NODE] namespace of node = " + rospy.get_name())
 
     node = PublisherPyNode()

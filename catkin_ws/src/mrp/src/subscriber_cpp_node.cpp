@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Prints every number that arrives on "great_topic", whoever published it.
+// Prints every number that arrives on "great_topic", no matter who published it.
 
 #include <ros/ros.h>
 #include <std_msgs/UInt32.h>
@@ -32,7 +32,7 @@ int main(int argc, char* argv[])
 {
   ros::init(argc, argv, "subscriber_cpp_node");
 
-  // The handle "~" is the node's own namespace: the group's, and then the node's name.
+  // The handle "~" is in the node's private namespace, such as /mrp/subscriber_cpp_node.
   ros::NodeHandle nh("~");
   ROS_INFO_STREAM("[SUBSCRIBER CPP NODE] namespace of nh = " << nh.getNamespace());
 

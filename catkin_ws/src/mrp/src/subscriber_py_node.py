@@ -1,6 +1,6 @@
 #!/usr/bin/env python
 # SPDX-License-Identifier: BSD-3-Clause
-"""Prints every number that arrives on "great_topic", whoever published it."""
+"""Prints every number that arrives on "great_topic", no matter who published it."""
 
 import rospy
 from std_msgs.msg import UInt32
@@ -21,7 +21,7 @@ class SubscriberPyNode:
 def main():
     rospy.init_node("subscriber_py_node")
 
-    # The node's name is also its own namespace: the group's, and then the node's name.
+    # The full name, such as /mrp/subscriber_py_node; it's also the node's private namespace.
     rospy.loginfo("[SUBSCRIBER PY NODE] namespace of node = " + rospy.get_name())
 
     node = SubscriberPyNode()
