@@ -79,9 +79,9 @@ class _Heard:
 class Listener:
     """The viewer as a subscriber.
 
-    settle: seconds for which nobody must have come to a topic or left it before the viewer
-        subscribes to it. A publisher that waits for its subscribers counts the viewer, too: so the
-        others go first.
+    settle: the viewer subscribes to a topic once nobody has joined or left it for this many
+        seconds. A publisher that waits for its subscribers counts the viewer, too: so the others
+        go first.
 
     lines: the last log lines, (number, dict), the number counting from 1
     refusals: as in graph.Observation

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What a node says of itself: its connections, and how many messages went over each.
+"""What a node reports about itself: its connections, and how many messages went over each.
 
 It comes from the slave API (http://wiki.ros.org/ROS/Slave_API): getBusInfo and getBusStats. In
 getBusStats the two client libraries differ, from that page and from one another:
 
-- roscpp counts what a subscriber has received, and what its queue has dropped, but of several
-  publishers of a topic it reports the last one alone;
+- roscpp counts what a subscriber has received, and what its queue has dropped, but if a topic has
+  several publishers, it only reports the last one;
 - rospy counts what is left after the queue has dropped, and not what it has dropped.
 """
 
