@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The lists in apt/ against what rosdep says of every package.xml, and against this system."""
+"""Compares the lists in apt/ with what rosdep says of every package.xml, and with this system."""
 
 import os
 import subprocess
@@ -81,7 +81,7 @@ def test_list_says_first_what_it_is_for(stage):
 
 @pytest.mark.place
 def test_installer_has_nothing_to_do_where_the_tests_run(tmp_path):
-    """As nothing is missing, neither apt-get nor sudo is called: the guard would refuse them."""
+    """Nothing is missing, so it calls neither apt-get nor sudo: the guard would refuse them."""
     lists = [str(LISTS[stage]) for stage in TEST]
     done = install(lists, tmp_path)
     assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
@@ -97,7 +97,7 @@ def test_installer_takes_any_alternative(tmp_path):
 @pytest.mark.place
 @pytest.mark.parametrize("user", ["root", "other"])
 def test_installer_says_what_it_installs_what_for_and_how_much(tmp_path, user):
-    """apt-get stands in: it says how much it would be, then that it fetches and installs."""
+    """A stand-in for apt-get says how much it would install, then that it does."""
     become(tmp_path, user)
     script = """case "$*" in
   *--print-uris*) echo '0 upgraded, 3 newly installed, 0 to remove'

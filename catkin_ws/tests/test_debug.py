@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""make debug: at a terminal, gdb and pdb stop in a callback of a node, and leave nothing behind."""
+"""Runs make debug at a terminal: gdb and pdb stop in a callback, and leave nothing behind."""
 
 import re
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The site that `make docs` builds: its links. What needs a browser is in tests/browser/."""
+"""Follows the links of the site that `make docs` builds. tests/browser/ opens it in a browser."""
 
 import html.parser
 import re
@@ -83,7 +83,7 @@ _CODE = re.compile(r"^ *\.\. (excerpt|file|literalinclude|code-block|original|ou
 
 @pytest.mark.quick
 def test_every_line_of_code_comes_from_a_file():
-    """What is typed into a page is a command. The directives check that the files are there.
+    """Pages hold commands only; their code comes from files, which the directives check.
 
     Only ci.rst shows what goes into the files of another repository.
     """

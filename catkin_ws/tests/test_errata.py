@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the original page prints, read and compiled: the number in a test's name is the defect's.
+"""Reads and compiles the code of the original page: the number in a test's name is the defect's.
 
 test_errata_run.py has what shows only when it runs. The page "Errata" describes both.
 """
@@ -21,7 +21,7 @@ PAGE = WORKSPACE / "src" / "mrp" / "doc" / "pages" / "errata.rst"
 
 @pytest.mark.quick
 def test_page_has_every_defect():
-    """A link leads to each by its number alone."""
+    """A link can lead to each by its number."""
     terms = re.findall(r"^_`([EP]\d+)`: .+\n {3}\S", PAGE.read_text(), re.MULTILINE)
     assert sorted(terms) == sorted(NUMBERS)
 
@@ -95,7 +95,7 @@ def test_e11_semicolon_changes_nothing(package):
 
 @pytest.mark.quick
 def test_e12_interpreter_that_debian_has_not(tmp_path):
-    """PATH has no program named python here, as Debian has none."""
+    """There's no program named python on this PATH, as on Debian."""
     done = subprocess.run(
         [str(ORIGINAL / "src" / "publisher_py_node.py")],
         env={"PATH": str(tmp_path), "LC_ALL": "C"},
@@ -189,7 +189,7 @@ def test_e16_timer_and_subscriber_are_not_kept(package):
 
 @pytest.mark.quick
 def test_e17_indentation_here_is_of_one_width():
-    """Python: the lines that begin a statement, as others may stand further in. C++: all lines."""
+    """Python: the lines that begin a statement, as others may be indented more. C++: all lines."""
     sources = scratch.WORKSPACE / "src" / contract.PACKAGE / "src"
     for path in sources.glob("*.py"):
         nodes = ast.walk(ast.parse(path.read_text()))

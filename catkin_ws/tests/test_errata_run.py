@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the original page prints, built and run: the number in a test's name is the defect's."""
+"""Builds and runs the code of the original page: the number in a test's name is the defect's."""
 
 import re
 import shutil
@@ -87,7 +87,7 @@ def published(topics):
 
 
 def test_e05_two_nodes_of_one_name(package, master):
-    """The name that the Python subscriber gives itself is another node's: it ends that one."""
+    """The Python subscriber takes another node's name, and so ends that node."""
     node = package / "src" / "subscriber_py_node.py"
     with run(sys.executable, node) as first:
         first.wait_for(lambda: "/plain_py_node" in Graph().nodes, "the node is registered")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The tutorial from an install space alone: what catkin_make install gives is complete."""
+"""Runs the tutorial from an install space, without its sources: nothing is missing there."""
 
 import shutil
 

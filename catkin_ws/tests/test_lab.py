@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""`make labs` and `make lab`: every lab shows what labs.yaml says."""
+"""Runs `make labs` and `make lab`: every lab shows what labs.yaml says."""
 
 import re
 
@@ -95,7 +95,7 @@ def test_what_the_twin_says_is_marked_once(capsys):
 @pytest.mark.slow
 @pytest.mark.parametrize("name", LABS)
 def test_lab_shows_its_claim(name, tmp_path):
-    """It marks each line of labs.yaml, prints none that must not come, sums up, and ends."""
+    """It marks each line of labs.yaml, prints none that must not come, sums up, and stops."""
     with Process(LAB, name, extra_env=own(tmp_path)) as lab:
         while lab.code is None:  # a lab may take long, but each line must come in time
             count = len(lab.lines)

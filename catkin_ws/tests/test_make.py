@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The Makefile, in a copy of the repository that has one package, and in which nothing is built."""
+"""Uses the Makefile in a copy of the repository with one package, in which nothing is built yet."""
 
 import json
 import pathlib

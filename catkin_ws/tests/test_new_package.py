@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""`make new`: what it writes builds, passes its own test and the checkers; what it refuses."""
+"""Runs `make new`: what it writes builds, and passes its own test and the checkers."""
 
 import subprocess
 

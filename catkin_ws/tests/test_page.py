@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The pages: what they tell the reader to do works, and prints what they show."""
+"""Does what the pages say, command by command, and compares what they show."""
 
 import json
 

@@ -74,7 +74,7 @@ class TestOne:
     def test_publisher_py(self):
         pass
 ''',
-    "catkin_ws/src/mrp/test/test_one.cpp": "// Blocks.\nTEST(One, publisherCpp)\n{\n}\n",
+    "catkin_ws/src/mrp/test/test_one.cpp": "// SPDX\n// Blocks.\n\nTEST(One, publisherCpp)\n{\n}\n",
     "catkin_ws/src/mrp_check/defects/one.patch": (
         "Breaks: it\nFails: one.test test_both\nSays: it\n\n--- a/src/one.cpp\n+++ b/src/one.cpp\n"
     ),

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the README shows, against what happens."""
+"""Compares what the README shows with what happens."""
 
 import os
 import re

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""make run ROOTLESS=1: which way it takes. Programs stand in for what a machine has or has not."""
+"""Runs make run ROOTLESS=1 with stand-ins for what a machine has: which route does it take?"""
 
 import shutil
 import subprocess
@@ -54,7 +54,7 @@ done
 
 
 def test_packages_are_unpacked_in_the_folder_that_is_built_in(tmp_path):
-    """The last program of all is the one that lays what was unpacked over the system."""
+    """The last program of all puts what was unpacked on top of the system."""
     (tmp_path / "list").write_text("# to run\nroslaunch\npython3 | python\n")
     (tmp_path / "share").mkdir()
     unpacked = tmp_path / "catkin_ws" / "build" / "rootless" / "root"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The stubs that make build writes for editors, and the settings by which editors find them."""
+"""Reads the stubs that make build writes for editors, and the settings that lead to them."""
 
 import json
 import re

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Two workspaces with a package of the same name, and one terminal."""
+"""Sources two workspaces with a package of the same name in one terminal."""
 
 import subprocess
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The list of error texts: each is printed by the real tool, and found by what people see of it."""
+"""Has the real tools print each error text, and looks it up by what people see of it."""
 
 import contextlib
 import itertools

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""One container per node, and two robots on one master."""
+"""Runs one container per node, and two robots on one master."""
 
 import re
 
@@ -83,7 +83,7 @@ def test_stop_and_down_are_clean(compose):
 
 
 def test_two_robots_never_mix():
-    """Each subscriber hears one sequence of each parity: another robot's values would break it."""
+    """A subscriber hears one even and one odd sequence: another robot's values would break it."""
     with Composition(compose_commands()[0], "two_robots.yaml", services=["robot1"]) as robots:
         for subscriber in contract.SUBSCRIBERS:
             robots.wait_until_received(subscriber, "robot1")

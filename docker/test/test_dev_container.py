@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The Dev Container: the Dev Containers CLI makes and starts it, as editors and Codespaces do.
+"""Makes and starts the Dev Container with its CLI, as editors and Codespaces do.
 
 `make docker-dev` runs this; `make docker-containers` does not, as its image takes minutes.
 """

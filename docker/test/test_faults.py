@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the containers of compose.yaml survive: the death of a node, of the network, of the master.
+"""Kills nodes, the network and the master of compose.yaml: what do the containers survive?
 
 The page "In containers" says in words what is asserted here.
 """

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the image consists of: every layer, so that nothing is hidden below a later one."""
+"""Looks into every layer of the image, so that nothing is hidden below a later one."""
 
 import json
 import re

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The Makefile's targets for containers, as a user calls them.
+"""Calls the Makefile's targets for containers, as a user does.
 
 What they start has fixed names, so these tests run one after the other, in one worker.
 """

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The image as a student runs it."""
+"""Runs the image as a student does."""
 
 import re
 

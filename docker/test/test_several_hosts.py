@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The laptop and the robot of several_hosts/: what is right, and each setting that is wrong."""
+"""Connects the laptop and the robot of several_hosts/, with right settings and each wrong one."""
 
 import re
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The error texts that Docker prints: those of the list in mrp/doc/why that need it."""
+"""Has Docker print its error texts: those of the list in mrp/doc/why that need it."""
 
 import os
 import pathlib

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""roslaunch mrp pub_sub.launch, through a pipe, in the ways in which a user may start it."""
+"""Runs roslaunch mrp pub_sub.launch through a pipe, in the ways a user may start it."""
 
 import subprocess
 import unittest
@@ -19,12 +19,12 @@ class TestLaunch(unittest.TestCase):
         check_console(contract.GROUP, *LAUNCH)
 
     def test_group_is_an_argument(self):
-        """By the file's path, which is the other way to name it."""
+        """Starts the file by its path, as you also can, with another group."""
         path = rospkg.RosPack().get_path(contract.PACKAGE) + "/launch/" + contract.LAUNCH_FILE
         check_console("/robot1", "roslaunch", path, "group:=robot1")
 
     def test_cmake_names_every_node(self):
-        """rosrun would find a script in the sources, too, but not in an install space."""
+        """Looks where CMake puts programs: rosrun would find a script in the sources, too."""
         for node in contract.NODES:
             found = find_in_workspaces(["libexec"], contract.PACKAGE, node.executable)
             self.assertTrue(found, f"CMakeLists.txt makes no {node.executable}")

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""The nodes under a bare rosrun: their own names, and the names that a user gives them."""
+"""Starts the nodes with plain rosrun: under their own names, and under names a user chooses."""
 
 import contextlib
 import unittest

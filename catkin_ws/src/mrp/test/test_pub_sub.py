@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""pub_sub.launch as a whole: who talks to whom, and that every value gets through."""
+"""Runs the whole launch file: who talks to whom, and does every value arrive?"""
 
 import unittest
 

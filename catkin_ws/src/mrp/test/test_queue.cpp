@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The queue sizes of the C++ nodes, as roscpp itself knows them.
+// Asks roscpp for the queue sizes of the C++ nodes.
 
 // The nodes' sources, each with its main under another name. CMakeLists.txt compiles this file with
 // -fno-access-control, so that the test can look into roscpp.

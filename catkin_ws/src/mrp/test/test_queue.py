@@ -1,8 +1,8 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Queues of 10: their size, and that ten values that come all at once are all received, in order.
+"""Queues of 10: their size, and that ten values sent at once all arrive, in order.
 
-The node is stopped (SIGSTOP) while they are sent, so that it finds all of them on going on.
+The node is paused (SIGSTOP) while they are sent, so it finds all ten when it runs again.
 """
 
 import os

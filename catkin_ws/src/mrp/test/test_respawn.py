@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""One node is killed and comes back: the flow to and from the others has no gap."""
+"""Kills one node, which roslaunch restarts: between the others, no value is lost."""
 
 import os
 import signal

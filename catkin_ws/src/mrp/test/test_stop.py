@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""How each node ends: its exit code, its last words, and what it leaves at the master."""
+"""Stops each node: its exit code, what it prints, and whether the master still lists it."""
 
 import pathlib
 import signal

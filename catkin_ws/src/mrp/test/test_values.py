@@ -1,9 +1,9 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Each publisher's first values and its period, on a clock that the test itself turns.
+"""Checks each publisher's first values and its period.
 
-On the wall's clock the first message may be lost, while publisher and subscriber still connect.
-Here no time passes, and so nothing is published, until they have.
+Uses a simulated clock, so nothing is published before everyone is connected. In real time, the
+first message may be lost while publisher and subscriber still connect.
 """
 
 import unittest

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The C++ publisher past 2^32-1: the tutorial's class itself, near the end of its numbers.
+// Runs the C++ publisher up to 2^32-1 and beyond: which numbers come next?
 
 // The node's source, with its main under another name. CMakeLists.txt compiles this file with
 // -fno-access-control, so that the test can set the counter and stop the timer.

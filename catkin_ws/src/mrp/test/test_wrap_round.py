@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""The Python publisher past 2^32-1: the tutorial's class itself, near the end of its numbers."""
+"""Runs the Python publisher up to 2^32-1 and beyond: which numbers come next?"""
 
 import os
 import sys

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""make bench: what its tables make of known measurements."""
+"""make bench: gives it known measurements, and checks its tables."""
 
 import json
 

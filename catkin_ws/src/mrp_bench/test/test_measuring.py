@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""make bench: every way's messages, and what is left when a measurement ends."""
+"""make bench: does every message arrive, whatever carries it, and is nothing left running?"""
 
 import os
 import signal
@@ -159,7 +159,7 @@ def mark(monkeypatch):
 
 @pytest.mark.slow
 def test_ros_spin_takes_a_core_while_its_node_ends(master):
-    """And mrp_bench's spin() does not. A master that stands still keeps both from ending."""
+    """mrp_bench's own spin() doesn't. A master that stands still keeps both from ending."""
     core = rosgraph.Master("/test_bench")
     with Process("rosrun", "mrp", "subscriber_cpp_node") as plain:
         with Process("rosrun", "mrp_bench", "bench_node", "subscribe=1", "only_small=1") as calm:
@@ -210,7 +210,7 @@ def test_nothing_outlives_a_bench_that_is_killed(mark, tmp_path):
 
 
 def test_rospy_sleeps_after_each_message_that_it_queues(monkeypatch):
-    """What the page says of time.sleep(0)."""
+    """Counts the sleeps: time.sleep(0) after each message that waits in the queue."""
 
     class Connection:
         done = False

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Packages without a contract: what works is not reported, and what fails is, at its place."""
+"""Checks packages without a contract: reports what fails, at its place, and nothing that works."""
 
 import json
 import re

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""autograder.zip, unpacked and run as Gradescope does it, with nothing else of the workspace.
+"""Unpacks and runs autograder.zip as Gradescope does, without the rest of the workspace.
 
 https://gradescope-autograders.readthedocs.io/en/latest/specs/#file-hierarchy
 """

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A class at once: one table, and a broken submission never stops the rest."""
+"""Checks a class at once: one table, and a broken submission never stops the rest."""
 
 import csv
 import dataclasses

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A class on a Dask cluster: a scheduler and workers, real ones, that listen on loopback."""
+"""Checks a class on a real Dask cluster: a scheduler and workers on this machine."""
 
 import contextlib
 import csv
@@ -108,7 +108,7 @@ def test_marks_are_those_of_one_machine(tmp_path):
 
 
 def test_a_worker_that_hangs_takes_no_marks(tmp_path, monkeypatch, second):
-    """Of two workers, one is stopped while it checks."""
+    """Stops one of two workers while it checks."""
     hand_in(tmp_path / "class", "anna", hanging(second))
     monkeypatch.setenv("DASK_DISTRIBUTED__SCHEDULER__WORKER_TTL", "1s")
     with cluster(tmp_path, workers=2) as (_, address, workers):
@@ -123,7 +123,7 @@ def test_a_worker_that_hangs_takes_no_marks(tmp_path, monkeypatch, second):
 
 
 def test_when_all_workers_are_gone_it_says_so_and_waits(tmp_path, second):
-    """Two die and are one loss, what they ran ends, and a third one checks what is left."""
+    """Kills both workers: what they ran ends too, and a third one checks the rest."""
     hand_in(tmp_path / "class", "anna", hanging(second))
     hand_in(tmp_path / "class", "berta", hanging(second))
     asked = (

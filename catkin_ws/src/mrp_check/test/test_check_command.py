@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The command `check`: its exit codes and messages."""
+"""Runs the command `check`: its exit codes and messages."""
 
 import json
 import os

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The diffs of the checker's fixes: patch takes them, and the finding is gone."""
+"""Applies the checker's own fixes with patch, and checks again: the finding is gone."""
 
 import subprocess
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What students hand in: the package in it is found, or one sentence says why it is not."""
+"""Checks what students hand in: it finds the package, or one sentence says why not."""
 
 import os
 import stat

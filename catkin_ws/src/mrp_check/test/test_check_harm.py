@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A package that does harm when it is built or run: it is reported, and goes no further."""
+"""Builds and runs packages that try to do harm: they're reported, and get no further."""
 
 import textwrap
 

@@ -44,8 +44,8 @@ def checked(tmp_path, programs):
 
 
 def test_second_check_makes_nothing_again_and_follows_no_link(checked, temporary, tmp_path):
-    """What a change makes again, test_learn.py sees. A package can change its copy: the next check
-    must not write through it to the user's."""
+    """A package can change its copy: the next check must not write through it into the user's
+    files. What a change makes again is in test_learn.py."""
     assert checked(static=True) == ([], True)
     assert checked(static=True) == ([], False)
     assert checked() == ([], False)

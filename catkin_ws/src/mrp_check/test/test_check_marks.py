@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The marks of a class: what a person sets stands apart, and what has moved has its reason."""
+"""Marks a class: what a person sets is kept apart, and each change has its reason."""
 
 import csv
 import dataclasses
@@ -175,7 +175,7 @@ def test_what_a_student_or_a_person_has_changed_moves_a_mark_too(tmp_path):
 
 
 def test_progress_since_an_earlier_hand_in(tmp_path):
-    """Moodle has another number for each hand-in, and an archive may become a folder."""
+    """Hands in twice: Moodle gives each another number, and an archive may become a folder."""
     contract, all_ = spec.read(SPEC_FILE), len(ASKED)
     first, second = tmp_path / "1.checked", tmp_path / "2.checked"
     for folder in (first, second):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Names that are not UTF-8, as old zip programs make them: in packages, classes and archives."""
+"""Uses names that aren't UTF-8, as old zip programs write them."""
 
 import csv
 import dataclasses

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What Gradescope and Moodle take, and that no student sees a hidden requirement."""
+"""Writes the files for Gradescope and Moodle: no student sees a hidden requirement."""
 
 import csv
 import dataclasses

@@ -59,7 +59,7 @@ def test_nothing_of_the_users_environment(confined, monkeypatch):
 
 
 def test_what_only_namespaces_promise(tmp_path):
-    """No network but lo, no process to be seen but one's own, no file to be written elsewhere."""
+    """Tries the network, other processes and other files: only loopback and its own are there."""
     outside = tmp_path / "outside"
     outside.mkdir(mode=0o777)
     outside.chmod(0o777)
@@ -125,8 +125,8 @@ USERS = [None, ANOTHER] if os.getuid() == 0 else [None]
 
 @pytest.mark.parametrize("user", USERS)
 def test_nothing_of_the_host_is_within_reach(tmp_path, user):
-    """No socket, be it in a file or not; no file of the user's; no setting of the kernel's.
-    Without namespaces, root still promises all that has an owner."""
+    """Tries sockets, the user's files and the kernel's settings: none can be reached.
+    Without namespaces, root still promises this for all that has an owner."""
     code, scratch, secret = tmp_path / "code", tmp_path / "scratch", tmp_path / "secret"
     shutil.copytree(pathlib.Path(confine.__file__).parents[1], code / "mrp_check")
     scratch.mkdir()

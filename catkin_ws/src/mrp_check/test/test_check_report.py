@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The checker's reports: JSON, JUnit, a page, and the console."""
+"""Reads the checker's reports: JSON, JUnit, a page, and the console."""
 
 import dataclasses
 import html.parser

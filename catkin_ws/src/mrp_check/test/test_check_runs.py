@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What only a run shows is reported at its place, and nothing of the same nodes without a fault."""
+"""Runs nodes with a fault that only shows in a run, and the same nodes without it."""
 
 import pytest
 import run_packages

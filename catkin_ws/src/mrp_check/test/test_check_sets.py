@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The checker on packages whose defect is known (check_sets.py says where they are).
+"""Checks packages whose defect is known (check_sets.py says where they are).
 
-Each correct package must be met, whatever its style; in each broken one the one defect must be
-found, with its id, at its place, and nothing else but its consequences.
+Each correct package must meet its contract, whatever its style. In each broken one, the checker
+must find the one defect, at its place, and nothing else but its consequences.
 """
 
 import json
@@ -158,7 +158,7 @@ WRITTEN = {
 
 @pytest.mark.parametrize("style", WRITTEN)
 def test_a_contract_is_written_from_a_correct_package(style, tmp_path, run_check):
-    """The package meets it, and the broken one does not: for what the defect breaks."""
+    """The correct package meets it, and the broken one fails for what the defect breaks."""
     folder = tmp_path / "package"
     check_sets.lay_out(style, folder)
     done = called(folder, "--write-contract", cwd=tmp_path)

@@ -35,7 +35,7 @@ def test_a_certainty_has_one_severity(certainty, with_contract, without):
 @pytest.mark.parametrize("rule", rules.RULES, ids=lambda rule: rule.findings.__module__)
 @pytest.mark.parametrize("has_contract", [True, False])
 def test_a_habit_never_becomes_an_error(rule, has_contract):
-    """Not even beside the same fault that was seen, whatever the rule is."""
+    """Not even next to the same fault that was seen, whatever the rule."""
     habits = [Finding(id_, "It works.", "a.py", 1, HABIT) for id_ in rule.ids]
     seen = [Finding(id_, "It fails.", "a.py", 1, SEEN) for id_ in rule.ids]
     habits = [*Rule(rule.stage, (), lambda case: habits, also=rule.ids).ask(None)]

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A workspace's packages are reported one by one, each built with those of the same repository that
-it needs."""
+"""Checks a workspace: one report for each package, which is built with those of the same repository
+that it needs."""
 
 import json
 

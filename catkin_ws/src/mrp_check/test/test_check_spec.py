@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The checker's specs: ours can be read, and a wrong one is told by file, line and place."""
+"""Reads specs: ours are right, and for a wrong one the error names file, line and key."""
 
 import json
 import re

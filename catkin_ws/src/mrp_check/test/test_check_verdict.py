@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What a check concludes of each requirement: met, broken, or not known, and why not."""
+"""Checks what becomes of each requirement: met, not met, or unknown, and why."""
 
 import dataclasses
 import json
@@ -109,7 +109,7 @@ def test_one_requirement_alone_is_checked_as_among_all(id_):
 
 
 def test_what_was_never_seen_is_neither_met_nor_paid(tmp_path, monkeypatch):
-    """A package without sources: nobody can say anything of its nodes."""
+    """Checks a package without sources: nobody can know what its nodes do."""
     one = examined(tmp_path, STATIC, monkeypatch, only=STATIC_IDS)
     never = {"dependencies", "python-syntax", "node-start", "spin", "lifetime", "queue"}
     assert {id_ for id_ in never if one.requirements[id_] != check.UNCHECKED} == set()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The defects in mrp_check/defects/: each can be injected, and its head says who must find it.
+"""Reads the defects in mrp_check/defects/: each applies, and its head says who must find it.
 
 test_broken.py and test_check_sets.py see whether it is found.
 """

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the exercises do and say, from the first on; the check itself is not made here."""
+"""Works through the exercises, and compares what they say; no package is checked here."""
 
 import shutil
 import subprocess

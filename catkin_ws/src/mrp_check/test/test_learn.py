@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""`make learn` as somebody sees it who sits at a terminal, or who reads its lines; and what several
-checks of one package share. The checks are real ones."""
+"""Runs `make learn` at a terminal and through a pipe, with real checks; and looks at what several
+checks of one package share."""
 
 import os
 import signal
@@ -161,10 +161,10 @@ def test_lines_without_a_terminal_and_the_end_by_a_signal(tmp_path, env):
 
 
 def test_what_has_not_changed_is_not_built_again(tmp_path, monkeypatch, programs):
-    """An old file that is put back is new to make; and an executable of the build before does not
-    stand in for one that cannot be built now. What a Python file says reaches neither make nor
-    roslaunch, unless a file of theirs runs a command of its own; and what CMakeLists.txt says
-    reaches neither roslaunch nor clang, unless it has files written."""
+    """Puts an old file back, which is new to make, and breaks what was built before: no old
+    executable replaces one that can't be built now. A changed Python file starts neither make nor
+    roslaunch, unless a file of theirs runs a command of its own; a changed CMakeLists.txt starts
+    neither roslaunch nor clang, unless it has files written."""
     monkeypatch.setenv(variables.CCACHE, CACHE)
     source, script, cmake, launch = (
         tmp_path / "package" / path

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""What a bag has of a latched topic, who gets it when the bag is played, and by which clock."""
+"""Records and plays bags: who gets a latched message, and which clock counts?"""
 
 import contextlib
 import glob

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Callbacks that share a value, wait for each other or call themselves; and what publish takes."""
+"""Runs callbacks that share a value, wait for each other or call themselves."""
 
 import contextlib
 import re
@@ -81,7 +81,7 @@ class TestCallbacks(unittest.TestCase):
                 wait_until(lambda: values == [2], lambda: f"2, which it never published: {values}")
 
     def test_what_publish_takes(self):
-        """The short forms of publish, and what rospy says of wrong ones."""
+        """Calls publish in its short forms, and in wrong ones: what does rospy say?"""
         number = rospy.Publisher("/number", UInt32, queue_size=10)
         text = rospy.Publisher("/text", String, queue_size=10)
         self.addCleanup(number.unregister)

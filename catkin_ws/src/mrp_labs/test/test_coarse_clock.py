@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""A loop that is faster than the clock, which the test turns, by ten periods at a time."""
+"""Runs a loop that is faster than its clock: the test moves the clock ten periods at a time."""
 
 import collections
 import unittest

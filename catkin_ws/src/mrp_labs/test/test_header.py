@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""What becomes of a message's header: seq is overwritten, and stamp stays as it was."""
+"""Sends headers: seq is overwritten on the way, and stamp arrives as it was set."""
 
 import unittest
 

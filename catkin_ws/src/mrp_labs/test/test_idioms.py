@@ -1,8 +1,8 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Each idiom does what its head says, the same in C++ and in Python.
+"""Runs each idiom, in C++ and in Python: both do what the first lines of the file say.
 
-They run in the namespace /robot1. Where an idiom goes by a clock, the test turns it.
+They run in the namespace /robot1. Where an idiom needs a clock, the test moves it.
 """
 
 import contextlib

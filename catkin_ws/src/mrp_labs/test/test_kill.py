@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Nodes and masters that die: what goes on, what comes back, and what never does."""
+"""Kills nodes and masters: what keeps running, what recovers, and what doesn't?"""
 
 import itertools
 import os

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Which lines a node shows, where it shows them, and when the log files are too many."""
+"""Which lines does a node show, and where? And when are there too many log files?"""
 
 import os
 import pathlib

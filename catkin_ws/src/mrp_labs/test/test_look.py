@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""One graph, looked at with the very commands that a student types."""
+"""Looks at a running graph with the very commands that a student types."""
 
 import os
 import re

@@ -1,8 +1,8 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Loops in place of a timer: which of them drift, and what spinOnce costs that comes too seldom.
+"""Runs loops instead of timers: which ones drift, and what if spinOnce comes too rarely?
 
-The test itself turns the clock, and waits for the nodes at each turn: so nothing depends on how
+The test itself moves the clock, and waits for the nodes each time: so nothing depends on how
 fast the machine is.
 """
 

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Every type of message gets through whole, at its extremes too; what happens out of its range."""
+"""Sends every type of message, with its smallest and largest values, and values out of range."""
 
 import unittest
 

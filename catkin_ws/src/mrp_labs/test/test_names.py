@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Who goes on when two nodes have one name, and what a name with a number behind it costs."""
+"""Starts two nodes with one name: who keeps running? And what does an anonymous name cost?"""
 
 import contextlib
 import re

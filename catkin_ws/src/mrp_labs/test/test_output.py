@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Where a node's lines go: into roslaunch's log file, onto its console, or late into a pipe."""
+"""Follows a node's lines: into roslaunch's log file, onto its console, or late into a pipe."""
 
 import pathlib
 import tempfile

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Which parameter reaches which node, when it is read, and how long it stays."""
+"""Sets parameters: which node gets which, when does it read them, and how long do they stay?"""
 
 import pathlib
 import signal

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""A publisher's queue while the connection is full: 5 drops the oldest, 0 grows, None waits."""
+"""Fills a publisher's queue: 5 drops the oldest message, 0 grows, None waits."""
 
 import re
 import unittest

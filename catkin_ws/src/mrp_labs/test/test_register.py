@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""What stands between a node and its master: addresses, ports, waiting, and being taken off."""
+"""Watches nodes register with their master: addresses, ports, waiting, and leaving."""
 
 import os
 import pathlib

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Which names a <remap> of a launch file reaches, and which it does not."""
+"""Remaps names in a launch file: which ones does <remap> reach, and which not?"""
 
 import re
 import unittest

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What roscpp does by itself, asked of roscpp alone. test_rospy.py is the same of rospy.
+// Asks roscpp itself what it does. test_rospy.py asks rospy the same.
 
 #include <gtest/gtest.h>
 #include <ros/callback_queue.h>

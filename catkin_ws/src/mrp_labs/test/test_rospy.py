@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""What rospy does by itself. test_roscpp.cpp is the same of roscpp."""
+"""Asks rospy itself what it does. test_roscpp.cpp asks roscpp the same."""
 
 import contextlib
 import gc

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""A publisher with a fair and a slow subscriber: a queue for each, and without a queue."""
+"""Publishes to a fast and a slow subscriber, with a queue for each and without queues."""
 
 import contextlib
 import os

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""A subscriber's queue while its callback is busy: what is kept, for whom, and what 0 means."""
+"""Keeps a callback busy: what stays in its queue, from whom, and what does a size of 0 mean?"""
 
 import unittest
 

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Who calls back in which thread, and what a slow callback therefore holds up."""
+"""Finds out which thread runs each callback, and what a slow one holds up."""
 
 import re
 import unittest

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Which timers go by a simulated clock: when there is none, when it is fast, when it jumps."""
+"""Runs timers by a simulated clock: without one, with a fast one, and with one that jumps."""
 
 import inspect
 import re

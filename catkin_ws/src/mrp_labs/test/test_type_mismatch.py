@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""A subscriber of another type is refused by the publishers, and gets nothing; the others go on."""
+"""Subscribes with another type: the publishers refuse it, and the others keep running."""
 
 import re
 import unittest

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""What one message at a time misses, and when a publisher knows that somebody listens."""
+"""Waits for one message at a time: what's missed? And when does a publisher know who listens?"""
 
 import contextlib
 import signal

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""The page reports what is wrong in a graph, and what soon will be."""
+"""Breaks a graph in many ways: the page reports what's wrong, and what soon will be."""
 
 import os
 import signal
@@ -56,7 +56,7 @@ class TestFaults(unittest.TestCase):
                     page.wait_for_finding(kind)
 
     def test_other_type_is_told_with_its_reason(self):
-        """The reason of a refusal is known if it was heard; else it is not, and not guessed."""
+        """The page gives the reason if it heard one; otherwise it says so, and doesn't guess."""
         topic = "/mismatch/great_topic"
         publishers = ("/mismatch/publisher_cpp", "/mismatch/publisher_py")
         other = "/mismatch/other_subscriber_cpp"
@@ -129,7 +129,7 @@ class TestFaults(unittest.TestCase):
                 )
 
     def test_killed_node_is_dead(self):
-        """A node that is killed unregisters nothing: the master alone would say that it lives."""
+        """Kills a node, which can't sign off: going by the master, it would still be alive."""
         env = {"ROS_MASTER_URI": uri_of(free_port())}
         with PubSub(extra_env=env), Viewer(extra_env=env) as viewer, Client(viewer.address) as page:
             for name in PUBLISHERS + SUBSCRIBERS:
@@ -152,7 +152,7 @@ class TestFaults(unittest.TestCase):
             page.wait_for(lambda: page.states()[SUBSCRIBERS[1]] == "alive", "it answers again")
 
     def test_master_is_restarted(self):
-        """The page says so; connected nodes are heard all the time, and those who come later."""
+        """Restarts the master: the page says so, and still hears old connections and new ones."""
         port = free_port()
         env = {"ROS_MASTER_URI": uri_of(port)}
         with Viewer("--settle", "0", extra_env=env) as viewer, Client(viewer.address) as page:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""When the viewer subscribes to a topic: the others go first."""
+"""Checks when the viewer subscribes to a topic: all others go first."""
 
 import types
 

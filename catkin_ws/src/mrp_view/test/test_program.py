@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""The viewer as a program: its port, its name, its part in the graph; any text, any browser."""
+"""Runs the viewer: its port, its name, its part in the graph; with any text, in any browser."""
 
 import http.client
 import re

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""The page of a healthy graph shows what the nodes themselves report."""
+"""Opens the page of a healthy graph: it shows what the nodes themselves report."""
 
 import http.client
 import unittest
@@ -46,7 +46,7 @@ class TestView(unittest.TestCase):
             self.assertNotIn("Traceback", str(viewer))
 
     def test_counts_are_those_of_the_nodes(self):
-        """The page's counts, against what a subscriber has received that counts by itself."""
+        """Compares the page's counts with those of a subscriber that counts for itself."""
         received = []
         publisher = rospy.Publisher("counted", UInt32, queue_size=1000)
         subscriber = rospy.Subscriber("counted", UInt32, received.append)
@@ -71,7 +71,7 @@ class TestView(unittest.TestCase):
         publisher.unregister()
 
     def test_only_its_own_page_gets_an_answer(self):
-        """Another site's page in the same browser asks with its name, or tells its origin."""
+        """Asks as another site's page in the same browser would: with its name or its origin."""
         with Viewer("--name", "robot.local") as viewer:
             host = viewer.address[len("http://") : -1]
             self.assertEqual(answer(host, "/", Host=host)[0], 200)

@@ -89,7 +89,7 @@ def _python_cases(path, text):
 
 
 def _cpp_cases(path, text):
-    head = re.search(r"((?:^// (?!SPDX).*\n)*)", text, re.MULTILINE)[1]
+    head = re.match(r"(?:// SPDX.*\n)?((?:// .*\n)*)", text)[1]
     for match in _CPP_CASE.finditer(text):
         says = (match[1] or head).replace("// ", "")
         line = text.count("\n", 0, match.start(2)) + 1
