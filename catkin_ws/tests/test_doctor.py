@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Runs make doctor in a workspace and a shell in which just one thing is wrong."""
+"""make doctor, in a workspace and a shell that are well but for one thing."""
 
 import contextlib
 import os
@@ -113,7 +113,10 @@ def test_cmake_4_needs_a_variable_in_ones_own_workspace(patient, number):
     if number < 14:
         assert found == Check("OK", "this system's CMake fits", [])
     else:
-        text = "make does not need it, but catkin_make in your own workspace: Debian 14's CMake 4.3"
+        text = (
+            "make doesn't need it, but catkin_make in your own workspace does: Debian 14's CMake"
+            " 4.3"
+        )
         assert found == Check("--", text, ["export CMAKE_POLICY_VERSION_MINIMUM=3.5"])
 
 
@@ -147,7 +150,7 @@ def test_debian_beside_noetic(patient):
     [
         ("ROS_PACKAGE_PATH", "ros/foxy/share", "x", "belongs to another ROS"),
         ("PYTHONPATH", "ros/foxy/share", "x", "belongs to another ROS"),
-        ("CMAKE_PREFIX_PATH", "no/such/folder", "", "does not exist"),
+        ("CMAKE_PREFIX_PATH", "no/such/folder", "", "doesn't exist"),
         ("ROS_PACKAGE_PATH", "other/src", "mrp/package.xml", "has another mrp"),
         ("ROS_PACKAGE_PATH", "other/src", "tutorials/mrp/package.xml", "has another mrp"),
         ("CMAKE_PREFIX_PATH", "other", "share/mrp/cmake/mrpConfig.cmake", "has another mrp"),
@@ -173,7 +176,7 @@ def test_other_ros_not_in_use(patient):
     foxy = patient.folder / "ros" / "foxy"
     foxy.mkdir(parents=True)
     report = patient.examine(opt_ros=patient.folder / "ros")
-    assert report.checks["installation"].text == f"ROS comes from Debian; {foxy} is not in use"
+    assert report.checks["installation"].text == f"ROS comes from Debian; {foxy} isn't in use"
     assert report.code == 0
 
 
@@ -242,7 +245,7 @@ def test_rospy_hidden(patient, sourced):
 @pytest.mark.parametrize("localhost", ["::1", "192.0.2.1"])
 def test_localhost_that_cannot_be_connected_to(patient, localhost):
     report = patient.examine(LOCALHOST=localhost, CONNECT_TIMEOUT=0.5)
-    begin = f"expected {localhost} to be this machine; found that it cannot be connected to: "
+    begin = f"expected {localhost} to be this machine; found that it can't be connected to: "
     assert report.of("FAIL").keys() == {"localhost"}
     assert report.checks["localhost"].text.startswith(begin)
     fix = f'echo "127.0.0.1 {localhost}" | sudo tee -a /etc/hosts'
@@ -264,10 +267,10 @@ def test_ros_ipv6(patient):
     [
         (
             "no-such-host.invalid",
-            "does not resolve",
+            "doesn't resolve",
             'echo "127.0.1.1 $(hostname)" | sudo tee -a /etc/hosts',
         ),
-        ("192.0.2.1", "cannot be connected to: ", "export ROS_HOSTNAME=localhost"),
+        ("192.0.2.1", "can't be connected to: ", "export ROS_HOSTNAME=localhost"),
     ],
 )
 def test_host_name_of_another_machine(patient, host_name, found, fix):
@@ -307,14 +310,14 @@ def test_ros_hostname_beside_ros_ip(patient, variables, host_name, address):
 @pytest.mark.parametrize(
     ("name", "value", "problem"),
     [
-        ("ROS_HOSTNAME", "http://localhost", "does not resolve"),
-        ("ROS_HOSTNAME", "no..host", "does not resolve"),
-        ("ROS_HOSTNAME", "", "does not resolve"),
-        ("ROS_HOSTNAME", "192.0.2.1", "cannot be connected to: "),
-        ("ROS_IP", "0.0.0.0", "is no machine's address"),
-        ("ROS_IP", "255.255.255.255", "cannot be connected to: "),
-        ("ROS_IP", "localhost", "is no IPv4 address"),
-        ("ROS_IP", "::1", "is no IPv4 address"),
+        ("ROS_HOSTNAME", "http://localhost", "doesn't resolve"),
+        ("ROS_HOSTNAME", "no..host", "doesn't resolve"),
+        ("ROS_HOSTNAME", "", "doesn't resolve"),
+        ("ROS_HOSTNAME", "192.0.2.1", "can't be connected to: "),
+        ("ROS_IP", "0.0.0.0", "isn't any machine's address"),
+        ("ROS_IP", "255.255.255.255", "can't be connected to: "),
+        ("ROS_IP", "localhost", "isn't an IPv4 address"),
+        ("ROS_IP", "::1", "isn't an IPv4 address"),
     ],
 )
 def test_wrong_address(patient, name, value, problem):
@@ -340,7 +343,7 @@ def test_wrong_address(patient, name, value, problem):
         (
             "http://no-such-host.invalid:11311",
             "the host of http://no-such-host.invalid:11311 to resolve",
-            "that it does not",
+            "that it doesn't",
         ),
         # To this address no connection can be made, so none is tried.
         (
@@ -414,7 +417,7 @@ def test_script_not_executable(patient, name):
     report = patient.examine()
     report.assert_only_failure(
         "scripts",
-        f"expected every script to be executable; found that these are not: {path}",
+        f"expected every script to be executable; found that these aren't: {path}",
         f"chmod +x {path}",
     )
     subprocess.run(report.checks["scripts"].fixes[0], shell=True, check=True)
@@ -446,7 +449,7 @@ def test_workspace_that_is_gone_is_remembered(patient):
     gone = patient.folder / "gone_ws/devel"
     line = f"            CMAKE_PREFIX_PATH = r'{patient.folder};{gone}'.split(';')\n"
     patient.write("devel/_setup_util.py", line)
-    check_spaces(patient, f"that devel remembers {gone}, which does not exist")
+    check_spaces(patient, f"that devel remembers {gone}, which doesn't exist")
     gone.mkdir(parents=True)
     assert patient.examine().code == 0
 
@@ -484,8 +487,8 @@ def test_other_workspace_sourced_after_this_one(patient):
     patient.env["ROS_PACKAGE_PATH"] = f"{other}:{patient.workspace}/src"
     patient.examine().assert_only_failure(
         "shell",
-        "expected this workspace to be sourced after those with packages of the same names; "
-        f"found before it {other}",
+        "expected this workspace to be sourced last, because others have packages with the same"
+        f" names; found before it {other}",
         f"source {patient.workspace}/devel/setup.bash",
     )
 
@@ -502,7 +505,7 @@ def test_not_sourced(patient):
     )
     del patient.env["ROS_PACKAGE_PATH"]
     report = patient.examine()
-    text = "not sourced: make does not need it, but rosrun and roslaunch do"
+    text = "not sourced: make doesn't need it, but rosrun and roslaunch do"
     assert report.checks["shell"] == Check("--", text, [source])
     assert report.code == 0
 

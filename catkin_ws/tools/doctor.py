@@ -70,7 +70,7 @@ def check_cmake(machine):
         return ok("this system's CMake fits")
     name = f"Debian {number}'s CMake {releases.RELEASES[number].cmake}"
     fix = f"export {releases.CMAKE_VARIABLE}={releases.CMAKE_VALUE}"
-    return note(f"make does not need it, but catkin_make in your own workspace: {name}", fix)
+    return note(f"make doesn't need it, but catkin_make in your own workspace does: {name}", fix)
 
 
 def check_python(machine):
@@ -119,7 +119,7 @@ def check_installation(machine):
             if is_inside(path, machine.opt_ros):
                 wrong.append(f"{path} in {name}, which belongs to another ROS")
             elif name != "PYTHONPATH" and not os.path.isdir(path):
-                wrong.append(f"{path} in {name}, which does not exist")
+                wrong.append(f"{path} in {name}, which doesn't exist")
             elif any(glob.glob(os.path.join(glob.escape(path), mrp)) for mrp in copies):
                 wrong.append(f"{path} in {name}, which has another mrp")
     if wrong:
@@ -131,7 +131,7 @@ def check_installation(machine):
         return fail(f"no ROS but {mine}", "Debian's " + " and ".join(debian) + " too", remove)
     others = sorted(set(glob.glob(os.path.join(machine.opt_ros, "*"))) - {mine})
     return ok(
-        f"ROS comes from {mine or 'Debian'}" + "".join(f"; {path} is not in use" for path in others)
+        f"ROS comes from {mine or 'Debian'}" + "".join(f"; {path} isn't in use" for path in others)
     )
 
 
@@ -168,7 +168,7 @@ def check_address(machine):
     value = machine.env[name]
     problem = host_problem(value)
     if name == "ROS_IP" and not re.fullmatch(r"[0-9.]+", value):
-        problem = "is no IPv4 address"
+        problem = "isn't an IPv4 address"
     if problem:
         return fail(f"{name}={value} to be this machine", f"that it {problem}", f"unset {name}")
     both = name == "ROS_HOSTNAME" and "ROS_IP" in machine.env
@@ -184,7 +184,7 @@ def check_master_uri(machine):
         return fail("http://HOST:PORT", f"'{uri}'", "unset ROS_MASTER_URI")
     problem = host_problem(host)
     if problem == UNRESOLVED:
-        return fail(f"the host of {uri} to resolve", "that it does not", "unset ROS_MASTER_URI")
+        return fail(f"the host of {uri} to resolve", "that it doesn't", "unset ROS_MASTER_URI")
     if problem and not master_pid(uri):
         expected = f"a ROS master at {uri}, on another machine"
         return fail(expected, "that none answers", "unset ROS_MASTER_URI")
@@ -222,7 +222,7 @@ def check_scripts(machine):
                     plain.append(path)
     if plain:
         fix = "chmod +x " + " ".join(map(shlex.quote, plain))
-        return fail("every script to be executable", "that these are not: " + ", ".join(plain), fix)
+        return fail("every script to be executable", "that these aren't: " + ", ".join(plain), fix)
     return ok("every script is executable")
 
 
@@ -246,7 +246,7 @@ def check_spaces(machine):
     setup = text_of(os.path.join(machine.workspace, "devel", "_setup_util.py"))
     for paths in re.findall(r"CMAKE_PREFIX_PATH = r?'([^']+)'", setup):
         gone = [path for path in paths.split(";") if not os.path.isdir(path)]
-        wrong += [f"that devel remembers {path}, which does not exist" for path in gone]
+        wrong += [f"that devel remembers {path}, which doesn't exist" for path in gone]
     if wrong:
         expected = "build and devel to come from catkin_make, on top of workspaces that exist"
         return fail(expected, "; ".join(wrong), "make clean build")
@@ -279,11 +279,14 @@ def check_shell(machine):
     if has_devel and has_src:
         later = [path for path in paths[: paths.index(src)] if packages(path) & packages(src)]
         if later:
-            expected = "this workspace to be sourced after those with packages of the same names"
+            expected = (
+                "this workspace to be sourced last, because others have packages with the same"
+                " names"
+            )
             return fail(expected, "before it " + ", ".join(later), fix)
         return ok("devel/setup.bash is sourced")
     if not has_devel and not has_src:
-        return note("not sourced: make does not need it, but rosrun and roslaunch do", fix)
+        return note("not sourced: make doesn't need it, but rosrun and roslaunch do", fix)
     expected = f"{devel} in CMAKE_PREFIX_PATH and {src} in ROS_PACKAGE_PATH"
     return fail(expected, "only the " + ("first" if has_devel else "second"), fix)
 

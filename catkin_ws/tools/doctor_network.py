@@ -8,7 +8,7 @@ import xmlrpc.client
 DEFAULT_MASTER_URI = "http://localhost:11311"
 MASTER_TIMEOUT = 3  # seconds
 CONNECT_TIMEOUT = 2  # seconds
-UNRESOLVED = "does not resolve"
+UNRESOLVED = "doesn't resolve"
 
 
 def host_problem(host):
@@ -17,7 +17,7 @@ def host_problem(host):
     As a node of ROS, it listens on all IPv4 addresses, and is called by its name.
     """
     if re.fullmatch(r"0[0-9.]*", host):  # Linux takes it for this machine, and others do not
-        return "is no machine's address"
+        return "isn't any machine's address"
     with socket.create_server(("0.0.0.0", 0)) as listener:
         address = host, listener.getsockname()[1]
         try:
@@ -29,7 +29,7 @@ def host_problem(host):
         except (socket.gaierror, UnicodeError):
             return UNRESOLVED
         except OSError as error:
-            return f"cannot be connected to: {error.strerror or error}"
+            return f"can't be connected to: {error.strerror or error}"
 
 
 def master(env):

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the tools say that build it."""
+"""Read the output of CMake, g++ and the linker."""

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What is asked of a package, and the words in which is said what was found."""
+"""The contract, and the types of a report."""

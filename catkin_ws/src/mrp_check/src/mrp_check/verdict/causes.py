@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""One cause is told once: what follows from it is marked as its consequence."""
+"""Report each cause once, and mark the findings that follow from it."""
 
 from __future__ import annotations
 
 from mrp_check.contract.finding import ERROR, NOTE, READ, SEEN, Finding
 
-# What keeps a node from running at all, or from being itself.
+# With one of these, a node cannot run, or is the wrong node.
 _FATAL = set(
     (
         "manifest package-name cmake targets scripts messages text launch-nodes"
