@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""make doctor, in a workspace and a shell that are well but for one thing."""
+"""Runs make doctor in a workspace and a shell in which just one thing is wrong."""
 
 import contextlib
 import os
