@@ -236,7 +236,7 @@ def test_a_publisher_that_waited_for_a_processor_is_not_slow(tmp_path, period, w
     is_slow = period * (1 - waited) > 0.55
     assert ("rate" in found) == is_slow
     is_open = period > 0.5 and not is_slow
-    said = "publisher_right was slow on a machine that is too busy to tell"
+    said = "publisher_right was slow on a machine that's too busy to tell"
     assert check.unseen(case, ["rate"]) == ({"rate": said} if is_open else {})
 
 

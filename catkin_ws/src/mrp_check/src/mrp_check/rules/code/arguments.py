@@ -16,17 +16,17 @@ def _findings(case: Case) -> Iterator[Finding]:
         for place in case.facts.of(node, Kind.ARGUMENT)[:1]:
             is_python = case.package.kind(place.file) == "python"
             count = "len(rospy.myargv())" if is_python else "argc"
-            ends = "ends with an IndexError here" if is_python else "most likely crashes here"
+            ends = "raises an IndexError here" if is_python else "most likely crashes here"
             yield Finding(
                 "starts",
-                f"{node} reads argument {place.value} of its command line, and doesn't look whether"
-                f" it was given: without it, the program {ends}.",
+                f"{node} reads argument {place.value} of its command line without checking that it"
+                f" was given. Without it, the program {ends}.",
                 place.file,
                 place.line,
                 HABIT,
                 expected=f"{count} > {place.value} wherever the argument is read",
                 seen=case.package.line(place.file, place.line),
-                fix=f"Look at {count} first, and say how the program is used.",
+                fix=f"Check {count} first, and print how to use the program.",
                 node=node,
             )
 

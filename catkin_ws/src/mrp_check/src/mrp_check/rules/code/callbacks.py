@@ -19,8 +19,8 @@ def _of(node: SourceNode) -> Iterator[Finding]:
     said = set()
     for kind, id_, does in (
         (Kind.INIT, "node-start", "starts the node"),
-        (Kind.PUBLISHER, "topic", "makes the publisher"),
-        (Kind.SUBSCRIBER, "topic", "makes the subscriber"),
+        (Kind.PUBLISHER, "topic", "creates the publisher"),
+        (Kind.SUBSCRIBER, "topic", "creates the subscriber"),
         (Kind.PUBLISH, "callbacks", "publishes"),
     ):
         places = node.places(kind)
@@ -29,10 +29,10 @@ def _of(node: SourceNode) -> Iterator[Finding]:
         if function is None or None in functions or (function.file, function.line) in said:
             continue
         said.add((function.file, function.line))
-        timer = " A timer has to be given it as its callback." if kind is Kind.PUBLISH else ""
+        timer = " Pass it to a timer as its callback." if kind is Kind.PUBLISH else ""
         yield node.finding(
             id_,
-            f"{function.text} {does}, and nobody ever calls or uses it.{timer}",
+            f"{function.text} {does}, but nothing ever calls or uses it.{timer}",
             function,
             expected=f"a place where {function.text} is used",
             fix=f"Call {function.text}, or pass it as a callback.",
@@ -65,12 +65,12 @@ class EarlyCallback(PythonRule):
                     place, said = later[name], ast_text(used[name])
                     yield self.finding(
                         "callbacks",
-                        f"{function.name}() uses {said}, which is made in line {place.lineno} only:"
-                        f" a {what} that comes before raises an error.",
+                        f"{function.name}() uses {said}, which is only created on line"
+                        f" {place.lineno}: a {what} that comes earlier raises an error.",
                         call,
                         certainty=HABIT,
                         expected=f"{said} before what calls {function.name}()",
-                        fix=f"Move line {place.lineno} up to before this line.",
+                        fix=f"Move line {place.lineno} above this line.",
                     )
 
     def _calls_back(self, call: ast.Call) -> str:
@@ -145,7 +145,7 @@ RULE = Rule(
     findings=_findings,
     requirements={
         "callbacks": Requirement(
-            "Each callback is handed over and takes what it gets", "subscriber", evidence.read
+            "Each callback is passed to ROS and takes what it gets", "subscriber", evidence.read
         )
     },
     also=("node-start", "topic"),

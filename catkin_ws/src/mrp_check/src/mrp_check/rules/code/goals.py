@@ -19,17 +19,17 @@ from mrp_check.run.case import Case
 _ASKS = {"is_preempt_requested", "set_preempted"}
 _LASTING = {"sleep", "publish_feedback"}
 _EARLY = (
-    "The action server starts when it is made: a goal may come too early.",
-    "Give it {0}, and call its start() when all else is made.",
+    "The action server starts as soon as it's created, so a goal may come too early.",
+    "Give it {0}, and call start() once everything else is set up.",
 )
 _NEVER = (
-    "The action server is made with auto_start=False, and nothing calls its start(): no goal ever"
-    " reaches it.",
+    "The action server is created with auto_start=False, but nothing calls its start(), so no"
+    " goal ever reaches it.",
     "Call start() on it.",
 )
 _CANCELLED = (
-    "This loop doesn't ask whether its goal has been cancelled: it keeps running.",
-    "Ask {0} in each turn, and end the goal as preempted.",
+    "This loop doesn't check whether its goal has been cancelled, so it keeps running.",
+    "Check {0} in each turn, and end the goal as preempted.",
 )
 
 
@@ -62,7 +62,7 @@ def _in_python(source: Source) -> Iterator[tuple[int, tuple[str, str], str]]:
         if at_once is None or source.value(at_once) is True:
             yield call.lineno, _EARLY, "auto_start=False"
         elif source.value(at_once) is False and "start" not in named:
-            yield call.lineno, _NEVER, "start(), when all else is made"
+            yield call.lineno, _NEVER, "start(), once everything else is set up"
         work = source.definition(argument(call, 2, "execute_cb"))
         if isinstance(work, ast.FunctionDef) and not _ASKS & named:
             loops = (node for node in ast.walk(work) if isinstance(node, (ast.For, ast.While)))

@@ -41,15 +41,15 @@ def _first_of_each(file: str, found: Iterable[tuple[str, int]]) -> Iterator[Find
             named.add(path)
             yield Finding(
                 "starts",
-                f"{file} names {path}, a path in somebody's home folder: on no other computer is"
-                " there such a file.",
+                f"{file} names {path}, a path in somebody's home folder: no other computer has"
+                " that file.",
                 file,
                 line,
                 HABIT,
                 expected="a path that is found from the package's folder: $(find PACKAGE) in a"
                 " launch file, rospkg in Python, ros::package::getPath() in C++; or a parameter",
                 seen=path,
-                fix="Put the file into the package, and let the path begin with its folder.",
+                fix="Put the file into the package, and start the path from the package's folder.",
             )
 
 

@@ -20,19 +20,19 @@ def _findings(case: Case) -> Iterator[Finding]:
         first = {place.text: place for place in case.facts.of(node, Kind.IGNORED)[::-1]}
         for name, place in first.items():
             is_python = case.package.kind(place.file) == "python"
-            when = "when the time is over, or on Ctrl-C" if place.value else "on Ctrl-C"
+            when = "when time runs out, or on Ctrl-C" if place.value else "on Ctrl-C"
             if name == "call":
                 when = "if nobody offers the service, or if it fails"
             yield Finding(
                 "starts",
-                f"{name}() returns false {when}, and {node} doesn't look at it: it continues as if"
-                " it had been answered.",
+                f"{name}() returns false {when}, but {node} ignores that and continues as if it"
+                " had been answered.",
                 place.file,
                 place.line,
                 HABIT if place.value else HINT,
                 expected=f"if not ...{name}(...):" if is_python else f"if (!...{name}(...))",
                 seen=case.package.line(place.file, place.line),
-                fix="Look at what it returns: say what is missing, and leave.",
+                fix="Check what it returns. If it's false, say what's missing, and leave.",
                 node=node,
             )
 

@@ -28,15 +28,15 @@ def _of(node: SourceNode) -> Iterator[Finding]:
                 continue
         what = kinds.get(call, Kind.TIMER).value
         if place.kind is Kind.DISCARDED:
-            how = "isn't kept anywhere: it ends with this very line"
+            how = "isn't kept anywhere: it's destroyed at the end of this line"
         else:
             how = (
-                f"is kept in {place.name}, a variable of"
-                f" {place.function}(): it ends when that returns"
+                f"is kept in {place.name}, a variable of {place.function}(): it's destroyed when"
+                " that function returns"
             )
         yield node.finding(
             "lifetime",
-            f"The {what} that {call}() makes {how}.",
+            f"The {what} that {call}() returns {how}.",
             place,
             # Nobody may need a publisher for longer.
             certainty=READ if what == Kind.PUBLISHER.value else CERTAIN,

@@ -35,9 +35,9 @@ def _no_init(node: SourceNode) -> Finding:
     )
     return node.finding(
         "node-start",
-        f"{node.main} never calls {call}: without it, there is no node.",
+        f"{node.main} never calls {call}: without it, there's no node.",
         where[0] if where else (node.main, 1),
-        expected=f"{call}, with the name {node.name}, before all other calls of ROS",
+        expected=f"{call}, with the name {node.name}, before all other ROS calls",
         seen="no such call",
         fix=f'Add rospy.init_node("{node.name}").'
         if node.is_python
@@ -50,11 +50,11 @@ def _at_file_scope(node: SourceNode) -> Iterator[Finding]:
         if "ros::NodeHandle" in (place.text, *place.holds):
             yield node.finding(
                 "node-start",
-                f"{place.name} is made before main begins, and so before"
-                " ros::init(): a ros::NodeHandle then ends the program.",
+                f"{place.name} is created before main begins, and so before ros::init(): creating"
+                " a ros::NodeHandle then ends the program.",
                 place,
                 expected="no NodeHandle at file scope",
-                fix="Make it in main, after ros::init().",
+                fix="Create it in main, after ros::init().",
                 why="init-first",
             )
 
@@ -71,8 +71,8 @@ def _too_early(node: SourceNode, init: Place) -> Iterator[Finding]:
     if early:
         yield node.finding(
             "node-start",
-            f"{early[0].name} is made in line {early[0].line}, before"
-            f" ros::init() in line {init.line}: that ends the program.",
+            f"{early[0].name} is created on line {early[0].line}, before ros::init() on line"
+            f" {init.line}: that ends the program.",
             early[0],
             expected="ros::init() before the first ros::NodeHandle",
             fix="Move ros::init() to the beginning of main.",

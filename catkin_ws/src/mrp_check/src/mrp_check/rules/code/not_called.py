@@ -21,12 +21,12 @@ class NotCalled(PythonRule):
             if "rospy.is_shutdown" in names:
                 yield self.finding(
                     "spin",
-                    "rospy.is_shutdown is named here and not called: without brackets it is always"
-                    " true, and the loop does nothing.",
+                    "rospy.is_shutdown is named here, but not called: without parentheses it's"
+                    " always true, so the loop does nothing.",
                     loop.test,
                     certainty=CERTAIN,
                     expected="while not rospy.is_shutdown():",
-                    fix="Write rospy.is_shutdown() with brackets.",
+                    fix="Write rospy.is_shutdown() with parentheses.",
                     change=("is_shutdown", "is_shutdown()"),
                 )
         for node in self.source.nodes(ast.Expr):
@@ -42,10 +42,10 @@ class NotCalled(PythonRule):
             of = "spin" if name == "rospy.spin" else "python-names" if of_ros else "node-start"
             yield self.finding(
                 of,
-                f"{text} is named here and not called: the brackets are missing.",
+                f"{text} is named here, but not called: the parentheses are missing.",
                 node,
                 expected=f"{text}()",
-                fix=f"Write {text}() with brackets.",
+                fix=f"Write {text}() with parentheses.",
                 change=(text, f"{text}()"),
             )
 

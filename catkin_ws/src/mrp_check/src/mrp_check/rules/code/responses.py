@@ -12,7 +12,7 @@ from mrp_check.code.python_rule import PythonRule, of_sources
 from mrp_check.contract.finding import CERTAIN, HABIT, Finding
 from mrp_check.contract.requirements import Rule
 
-_FIX = "Return a response, an object of the class that ends in Response."
+_FIX = "Return a response: an object of the class whose name ends in Response."
 
 
 class Responses(PythonRule):
@@ -30,11 +30,11 @@ class Responses(PythonRule):
                 text = self.written(node.value) if node.value else ""
                 yield self.finding(
                     "callbacks",
-                    f"{handler.name}() returns {text}, the class, and not an object of it:"
-                    " each call of the service fails.",
+                    f"{handler.name}() returns the class {text} instead of an object of it, so"
+                    " every service call fails.",
                     node,
                     expected=f"return {text}(...)",
-                    fix=f"Write {text}() with brackets.",
+                    fix=f"Write {text}() with parentheses.",
                 )
                 return
         if not falls_through(handler.body):
@@ -43,8 +43,7 @@ class Responses(PythonRule):
         if not any(self._is_response(node, handler) for node in ast.walk(handler)):
             yield self.finding(
                 "callbacks",
-                f"{name}() is called to answer a service, and returns nothing:"
-                " each call of the service fails.",
+                f"{name}() answers a service, but returns nothing, so every service call fails.",
                 handler,
                 expected="return, with the response",
                 fix=_FIX,
@@ -52,8 +51,8 @@ class Responses(PythonRule):
         elif not isinstance(last, ast.Return):
             yield self.finding(
                 "callbacks",
-                f"{name}() answers a service, and can come to its end without a return: such a"
-                " call fails.",
+                f"{name}() answers a service, but can reach its end without a return: such a call"
+                " fails.",
                 last,
                 certainty=HABIT,
                 expected="return, with the response, at the end of the function",

@@ -66,10 +66,10 @@ class Calls(PythonRule):
         if wanted != len(given) - 1:
             yield self.finding(
                 "python-names",
-                f"The text that is logged here has {_places(wanted)}, and is given"
-                f" {len(given) - 1}: Python ends with a TypeError when it gets here.",
+                f"The text logged here has {_places(wanted)}, but gets {len(given) - 1}: Python"
+                " raises a TypeError when it gets here.",
                 node,
-                expected=f"{name}(... %s, ...), with a place for each value",
+                expected=f"{name}(... %s, ...), with a placeholder for each value",
                 fix="Write a placeholder such as %s for each value.",
             )
             return
@@ -77,8 +77,8 @@ class Calls(PythonRule):
             if place["type"] in "diouxXeEfFgG" and self._is_message(value):
                 yield self.finding(
                     "python-names",
-                    f"{ast_text(value)} is the whole message, and {place.group()} shows a number:"
-                    " nothing is logged but a TypeError.",
+                    f"{ast_text(value)} is the whole message, but {place.group()} needs a number:"
+                    " all that's logged is a TypeError.",
                     node,
                     expected=f"a field of it, such as {ast_text(value)}.data",
                     fix="Name the field.",
@@ -154,7 +154,7 @@ class Calls(PythonRule):
             if not self._callback_added(parent):
                 yield self.finding(
                     "callbacks",
-                    "rospy.Subscriber() is given no callback: nothing happens when a message"
+                    "rospy.Subscriber() gets no callback, so nothing happens when a message"
                     " arrives.",
                     node,
                     expected="the callback as the third argument",
@@ -176,7 +176,7 @@ class Calls(PythonRule):
             yield self.finding(
                 "callbacks",
                 "rospy.Timer() takes a rospy.Duration, not a number: the timer's thread ends with"
-                " an error, and nothing is ever called.",
+                " an error, so nothing is ever called.",
                 node,
                 certainty=CERTAIN,
                 expected="rospy.Timer(rospy.Duration(0.5), ...)",
@@ -198,7 +198,7 @@ class Calls(PythonRule):
         if isinstance(self.source.value(callback), (str, int, float)):
             yield self.finding(
                 "callbacks",
-                f"{taker}() takes a function to call, and is given a plain value.",
+                f"{taker}() takes a function to call, but gets a plain value.",
                 callback,
                 expected="the name of a function",
                 fix="Pass the function itself, without quotation marks and without calling it.",
@@ -214,11 +214,11 @@ class Calls(PythonRule):
         name = ast_text(callback.func)
         return self.finding(
             "callbacks",
-            f"{called.name}() is called here, once, and what it returns, nothing, is handed"
-            f" over to {taker}(): it is never called again.",
+            f"{called.name}() is called here once, and its result (None) is passed to {taker}(),"
+            " so it's never called again.",
             callback,
             certainty=CERTAIN,
-            expected=f"{name}, without brackets",
+            expected=f"{name}, without parentheses",
             fix=f"Write {name} for {name}(...).",
             change=(self.written(callback), self.written(callback.func)),
             why="py-callback-called",
@@ -244,13 +244,12 @@ class Calls(PythonRule):
             name, s = getattr(function, "name", "the lambda"), "s" if count > 1 else ""
             yield self.finding(
                 "callbacks",
-                f"{taker}() calls {name}() with {given}; {name}() takes"
-                f" {_count(max(0, least - bound))}. Python ends the call with a TypeError,"
-                " each time.",
+                f"{taker}() calls {name}() with {given}, but {name}() takes"
+                f" {_count(max(0, least - bound))}. Each call raises a TypeError.",
                 function,
                 certainty=CERTAIN,
                 expected=f"{count} parameter{s}" + (" besides self" if bound else ""),
-                fix=f"Give {name} the parameter{s} that it is called with.",
+                fix=f"Give {name} the parameter{s} that it's called with.",
                 why="timer-callback" if taker == "rospy.Timer" else "bad-callback",
             )
 
@@ -271,9 +270,7 @@ _CHECKED = {
 
 
 def _places(number: int) -> str:
-    return {0: "no place for a value", 1: "one place for a value"}.get(
-        number, f"{number} places for values"
-    )
+    return {0: "no placeholder", 1: "one placeholder"}.get(number, f"{number} placeholders")
 
 
 def _count(number: int) -> str:
@@ -306,7 +303,7 @@ class Messages(PythonRule):
                         hint = f" Its only field is {near}."
                     yield self.finding(
                         "python-names",
-                        f"A message {class_._type} has no field {node.attr}: Python ends with an"
+                        f"A message {class_._type} has no field {node.attr}: Python raises an"
                         f" AttributeError when it gets here.{hint}",
                         node,
                         expected=", ".join(class_.__slots__) or "no field at all",
@@ -356,7 +353,7 @@ class Messages(PythonRule):
                 near = nearest(keyword.arg, class_.__slots__)
                 yield self.finding(
                     "python-names",
-                    f"A message {class_._type} has no field {keyword.arg}: Python ends with an"
+                    f"A message {class_._type} has no field {keyword.arg}: Python raises an"
                     " AttributeError when it gets here." + perhaps(near),
                     node,
                     expected=", ".join(class_.__slots__),

@@ -29,8 +29,8 @@ def _findings(case: Case) -> Iterator[Finding]:
             if place.file != places[first].file:
                 yield Finding(
                     "starts",
-                    f"{node} calls itself {name}, and so does {first}: where both run under their"
-                    " own names, the second one ends the first.",
+                    f"{node} calls itself {name}, and so does {first}: if both run under their own"
+                    " names, the second one ends the first.",
                     place.file,
                     place.line,
                     HINT if is_twin else HABIT,

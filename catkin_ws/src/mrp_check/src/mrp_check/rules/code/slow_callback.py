@@ -27,15 +27,15 @@ def _findings(case: Case) -> Iterator[Finding]:
         for file, line, name in found:
             yield Finding(
                 "callbacks",
-                f"{name}() sleeps, and a subscriber calls it: the messages that come in the"
-                " meantime wait, or are lost.",
+                f"{name}() sleeps, and a subscriber calls it: messages that arrive meanwhile wait"
+                " or get lost.",
                 file,
                 line,
                 HABIT,
                 expected="a callback that returns at once",
                 seen=case.package.line(file, line),
-                fix="Keep what the message says, and do what takes time in the loop of main, or"
-                " in a timer.",
+                fix="Store what the message says, and do the slow work in main's loop or in a"
+                " timer.",
                 node=node,
             )
 
@@ -53,7 +53,7 @@ def _empty(node: str, source: Source) -> Iterator[Finding]:
                 body[-1].lineno,
                 HABIT,
                 expected="a callback that uses its message",
-                fix="Write what is to be done with a message; or remove the subscriber.",
+                fix="Do something with the message, or remove the subscriber.",
                 node=node,
             )
 

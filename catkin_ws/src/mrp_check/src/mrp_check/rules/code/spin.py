@@ -44,8 +44,8 @@ def _sure(node: SourceNode) -> str:
 def _only_once(node: SourceNode, spin: Place) -> Finding:
     return node.finding(
         "spin",
-        "ros::spinOnce() calls the callbacks of what has arrived, and returns at once:"
-        " the program then comes to its end.",
+        "ros::spinOnce() calls the callbacks of what has arrived, and returns at once, so the"
+        " program then ends.",
         spin,
         certainty=_sure(node),
         expected="ros::spin() at the end of main",
@@ -58,8 +58,8 @@ def _never(node: SourceNode, loops: bool) -> Finding:
     call = "rospy.spin()" if node.is_python else "ros::spin()"
     return node.finding(
         "spin",
-        f"{node.main} never calls {call}: "
-        + ("no callback is ever called." if loops else "the program comes to its end at once."),
+        f"{node.main} never calls {call}, so "
+        + ("no callback is ever called." if loops else "the program ends at once."),
         node.facts.end_of_main(node.name) or (node.main, _last_line(node)),
         certainty=_sure(node),
         expected=f"{call} at the end of main",
@@ -93,11 +93,11 @@ def _made_too_late(node: SourceNode, spins: Sequence[Place]) -> Iterator[Finding
             spins_by = "rospy.spin()" if node.is_python else "ros::spin()"
             yield node.finding(
                 "spin",
-                f"{spins_by} returns only when the node ends: what comes below it, in line"
-                f" {min(late)}, is made too late.",
+                f"{spins_by} only returns when the node ends, so what's below it, on line"
+                f" {min(late)}, is created too late.",
                 spin,
                 certainty=_sure(node),
-                expected=f"{spins_by} below all that the node is made of",
+                expected=f"{spins_by} below everything that the node creates",
                 fix=f"Move it below line {min(late)}.",
             )
             return

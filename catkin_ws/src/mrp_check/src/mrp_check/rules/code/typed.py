@@ -33,11 +33,11 @@ class Typed(PythonRule):
             said.add(call)
             yield from self._at_the_use(call, node)
             is_equality = isinstance(node, ast.Compare) and isinstance(node.ops[0], _EQUALITIES)
-            follows = "Python ends with a TypeError when it gets there"
+            follows = "Python raises a TypeError when it gets there"
             yield self.finding(
                 "python-names",
                 f"{says(call)}, and line {node.lineno} {does}:"
-                f" {'they are never equal' if is_equality else follows}.",
+                f" {'they're never equal' if is_equality else follows}.",
                 call,
                 certainty=HABIT if is_equality else READ,
                 expected=f"float({self.written(call)}), or int(...)",
@@ -47,7 +47,7 @@ class Typed(PythonRule):
     def _at_the_use(self, call: ast.expr, node: ast.expr | ast.stmt) -> Iterator[Finding]:
         """Yield a note at the line that Python names in its error, if it is another one."""
         if node.lineno != call.lineno:
-            said = f"{self.written(call)} of line {call.lineno} is a string; this needs a number."
+            said = f"{self.written(call)} on line {call.lineno} is a string; this needs a number."
             yield self.finding("python-names", said, node, certainty=HINT)
 
     def _uses(self) -> Iterator[tuple[ast.expr | ast.stmt, ast.expr, str]]:

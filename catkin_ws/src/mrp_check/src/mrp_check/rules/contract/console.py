@@ -28,7 +28,7 @@ def _of(node: Node) -> Iterator[Finding]:
             "console",
             f"{node.name} floods the console: it printed {printed} lines in a few seconds.",
             node.places.of(node.name, Kind.PRINT, Kind.LOG),
-            expected="the lines of the contract, and few others",
+            expected="the contract's lines, and few others",
             seen=f"{printed} lines",
         )
     for line in node.wanted.prints:
@@ -72,7 +72,7 @@ def _line_findings(node: Node, line: str) -> Iterator[Finding]:
     shown = [t for t in lines if _ratio(t, wanted) > 0.8 and not PREFIX.match(t)]
     yield node.finding(
         "console",
-        f"{node.name} does not log the line “{wanted}”."
+        f"{node.name} doesn't log the line “{wanted}”."
         + (f" It prints “{shown[0]}”." if shown else ""),
         node.places.of(node.name, Kind.PRINT if shown else Kind.LOG, Kind.INIT),
         expected=wanted,
@@ -87,8 +87,8 @@ def _name_hint(text: str, wanted: str, path: str) -> str:
     if start is None or text not in (start + group, start + group + "/"):
         return ""
     return (
-        "That is only the group's name. The node's full name is rospy.get_name() in Python,"
-        ' and ros::NodeHandle("~").getNamespace() in C++.'
+        "That's only the group's name. The node's full name is rospy.get_name() in Python, and"
+        ' ros::NodeHandle("~").getNamespace() in C++.'
     )
 
 

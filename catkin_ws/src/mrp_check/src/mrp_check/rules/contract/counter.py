@@ -30,10 +30,10 @@ def _of(node: SourceNode) -> Iterator[Finding]:
         said.add(place.text)
         if floating:
             largest = 24 if kind == "float" else 53
-            why = f"past 2^{largest} it no longer counts in whole steps, and it never wraps round."
+            why = f"past 2^{largest} it no longer counts in whole steps, and it never wraps around."
         elif bits < 32:
             why = (
-                f"after {2**enough - 1} it begins again, and the message could hold up to"
+                f"after {2**enough - 1} it starts over, though the message can hold up to"
                 f" {modulus - 1}."
             )
         else:
@@ -55,11 +55,11 @@ def _resets(node: SourceNode, used: Collection[str], step: int, modulus: int) ->
         if place.text in used and limit < modulus - 2 * step:
             yield node.finding(
                 "wrap",
-                f"The counter {place.text} begins again at {value} when it comes to {limit};"
-                f" the message could hold up to {modulus - 1}.",
+                f"The counter {place.text} starts over at {value} when it reaches {limit}, though"
+                f" the message can hold up to {modulus - 1}.",
                 place,
                 expected=f"the next value up to {modulus - 1}",
-                fix="Remove the limit: a uint32_t begins again at 0 by itself.",
+                fix="Remove the limit: a uint32_t starts over at 0 by itself.",
             )
 
 

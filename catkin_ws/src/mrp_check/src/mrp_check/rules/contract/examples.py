@@ -144,9 +144,9 @@ RULE = Rule(
             "The launch file sets the parameters", "parameters", evidence.launch
         ),
         "examples": Requirement(
-            "Each example of the contract comes out",
+            "Each example of the contract gives the right result",
             "contract",
-            evidence.when(_replied, "was not seen in its examples", lambda wanted: wanted.examples),
+            evidence.when(_replied, "wasn't seen in its examples", lambda wanted: wanted.examples),
         ),
     },
     only=CONTRACT,

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What is needed to run is installed, if the contract asks for it."""
+"""Everything that's needed to run is installed, if the contract asks for it."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def _findings(case: Case) -> Iterator[Finding]:
 def _finding(what: str, expected: str, line: int) -> Finding:
     return Finding(
         "install",
-        f"CMakeLists.txt does not install {what}: after catkin_make install, it is missing.",
+        f"CMakeLists.txt doesn't install {what}: after catkin_make install, it's missing.",
         "CMakeLists.txt",
         line,
         expected=expected,
@@ -45,7 +45,9 @@ RULE = Rule(
     needs=("model", "launch"),
     findings=_findings,
     requirements={
-        "install": Requirement("What is needed to run is installed", "building", evidence.cmake)
+        "install": Requirement(
+            "Everything that's needed to run is installed", "building", evidence.cmake
+        )
     },
     only=CONTRACT,
 )

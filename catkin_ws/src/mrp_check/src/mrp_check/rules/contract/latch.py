@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Nothing is latched that should not be."""
+"""Nothing is latched that shouldn't be."""
 
 from __future__ import annotations
 
@@ -21,9 +21,9 @@ def _of(node: Node) -> Iterator[Finding]:
     if latched != role.latched:
         yield node.finding(
             "latch",
-            f"{node.name} latches its topic: whoever subscribes later first hears an old value."
+            f"{node.name} latches its topic, so late subscribers get an old value first."
             if latched
-            else f"{node.name} does not latch its topic.",
+            else f"{node.name} doesn't latch its topic.",
             node.places.of_topic(node.name, Kind.PUBLISHER, role.topic.name),
             expected="a latched publisher" if role.latched else "a publisher without latch",
             seen="latched" if latched else "not latched",
@@ -36,7 +36,7 @@ RULE = Rule(
     findings=each_node(_of, each_topic=True),
     requirements={
         "latch": Requirement(
-            "Nothing is latched that should not be",
+            "Nothing is latched that shouldn't be",
             "latch",
             evidence.when(
                 Node.published,

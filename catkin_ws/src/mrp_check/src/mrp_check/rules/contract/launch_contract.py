@@ -42,8 +42,8 @@ def _group(case: Case) -> Iterator[Finding]:
         file, element = plain[0]
         yield Finding(
             "launch-group",
-            f"The group's name {group} is written into the launch file: a second robot cannot be"
-            " given another one when it is started.",
+            f"The group's name {group} is fixed in the launch file, so a second robot can't get"
+            " another one when it's started.",
             file,
             element.line,
             HABIT,
@@ -126,8 +126,8 @@ def _remaps_of(package: Package, spec: Spec, node: Started) -> Iterator[Finding]
             if old in own and new not in own:
                 yield Finding(
                     "topic",
-                    f"The launch file renames the topic {old} of {node.name} to {new}:"
-                    " the nodes do not meet there.",
+                    f"The launch file renames the topic {old} of {node.name} to {new}, so the"
+                    " nodes don't meet there.",
                     node.file,
                     remap_line(package, node, old, new),
                     node=node.name,
@@ -158,7 +158,7 @@ RULE = Rule(
             "The launch file puts the nodes into the group", "namespaces", evidence.launch
         ),
         "launch-output": Requirement(
-            "The nodes' lines come to the screen", "launching", evidence.launch
+            "The nodes' lines appear on the screen", "launching", evidence.launch
         ),
     },
     also=("topic",),

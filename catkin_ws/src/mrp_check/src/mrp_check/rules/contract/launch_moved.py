@@ -19,7 +19,7 @@ def findings(case: Case) -> Iterator[Finding]:
             yield Finding(
                 "namespace",
                 f"Included in another group, the launch file starts {node.name} in"
-                f" {node.namespace} all the same: its namespace begins with a slash.",
+                f" {node.namespace} anyway, because its namespace begins with a slash.",
                 node.file,
                 node.line,
                 expected=f"/another_group{node.namespace}",

@@ -23,8 +23,8 @@ def _of(node: Node) -> Iterator[Finding]:
     if node.wanted.anonymous and name == node.name:
         yield node.finding(
             "node-name",
-            f"{node.name} asks for no anonymous name, as the contract wants: a second one of"
-            " it ends the first.",
+            f"{node.name} should ask for an anonymous name, as the contract says: without one, a"
+            " second copy ends the first.",
             node.places.of(node.name, Kind.INIT),
             expected=f"{name}_ and a number",
             seen=name,
@@ -43,7 +43,7 @@ def _of(node: Node) -> Iterator[Finding]:
     elif name != node.name and not is_anonymous:
         yield node.finding(
             "node-name",
-            f"Started by itself, {node.name} calls itself {name}: the launch file hides it, but"
+            f"Started by itself, {node.name} calls itself {name}: the launch file hides that, but"
             " with rosrun the node has the wrong name.",
             node.places.of(node.name, Kind.INIT),
             expected=node.name,

@@ -12,8 +12,8 @@ from mrp_check.contract.requirements import CONTRACT, Requirement, Rule
 from mrp_check.run import evidence
 
 NO_QUEUE = (
-    "rospy.Publisher() is given no queue_size: it then sends each message before it returns, and"
-    " warns of it."
+    "rospy.Publisher() gets no queue_size, so publish() waits until each message is sent, and"
+    " rospy warns about it."
 )
 
 
@@ -41,10 +41,13 @@ _REFUSED = (True, Kind.SUBSCRIBER, 0)
 
 def _other_queue(node: SourceNode, place: Place, kind: Kind, queue: int, asked: int) -> Finding:
     words = {
-        _REFUSED: "rospy.Subscriber() takes no queue_size of 0: it raises an error.",
-        (True, Kind.SUBSCRIBER, 1): "The subscriber's queue has room for one message. In rospy"
-        " each publisher has a queue of its own; a callback that is late loses messages all"
-        " the same.",
+        _REFUSED: "rospy.Subscriber() doesn't accept a queue_size of 0: it raises an error.",
+        (
+            True,
+            Kind.SUBSCRIBER,
+            1,
+        ): "The subscriber's queue has room for one message. In rospy each publisher has a queue"
+        " of its own; a late callback still loses messages.",
         (False, Kind.SUBSCRIBER, 1): "The subscriber's queue has room for one message. All"
         " publishers of the topic share it: two that publish at the same moment push out each"
         " other's values.",

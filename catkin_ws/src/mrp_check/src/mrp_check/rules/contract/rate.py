@@ -72,7 +72,7 @@ def _of(node: Node) -> Iterator[Finding]:
         sleep = too_slow and timer and node.places.sleep_beside(node.name, Kind.PUBLISH)
         yield node.finding(
             "rate",
-            f"{node.name} publishes too {'often' if too_fast else 'seldom'}: {seen}, where the"
+            f"{node.name} publishes too {'often' if too_fast else 'rarely'}: {seen}, where the"
             f" contract says every {role.period:g} s."
             + (" Its callback sleeps, and the timer waits for it." if sleep else ""),
             sleep or place,
@@ -90,7 +90,7 @@ def _too_few(
         return
     count = "once" if len(times) == 1 else f"{len(times)} messages"
     slow = len(times) > 1 and times[-1] - times[0] > 2 * period
-    rest = " in all, far too seldom." if slow else f", and then no more for {waited:.0f} s."
+    rest = " in all, far too few." if slow else f", and then no more for {waited:.0f} s."
     yield node.finding(
         "rate", f"{node.name} published {count}{rest}", place, expected=expected, seen=count
     )
@@ -109,7 +109,7 @@ _enough = evidence.of_publisher(
 _steady = evidence.of_publisher(
     lambda role: role.period,
     lambda node: not _is_open(node),
-    "was slow on a machine that is too busy to tell",
+    "was slow on a machine that's too busy to tell",
 )
 RULE = Rule(
     stage="run",

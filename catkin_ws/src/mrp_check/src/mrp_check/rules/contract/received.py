@@ -42,7 +42,7 @@ def _of(node: Node) -> Iterator[Finding]:
     elif not heard:
         yield node.finding(
             "received",
-            f"{node.name} was sent {len(sent)} messages, and logs none of them.",
+            f"{node.name} was sent {len(sent)} messages, but logs none of them.",
             node.places.of(node.name, Kind.SUBSCRIBER, Kind.INIT),
             expected=wanted,
             seen="no such line",

@@ -141,9 +141,7 @@ RULE = Rule(
     needs=("nodes",),
     findings=each_node(_of),
     requirements={
-        "services": Requirement(
-            "Services are offered, called and answered rightly", "contract", _asked
-        )
+        "services": Requirement("Services behave as the contract says", "contract", _asked)
     },
     only=CONTRACT,
 )

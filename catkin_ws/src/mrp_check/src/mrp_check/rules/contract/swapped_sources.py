@@ -25,8 +25,8 @@ def _target(node: SourceNode, other: specs.NodeSpec) -> Finding:
     target, own = node.model.executables()[node.executable], node.own_source()
     return node.finding(
         "targets",
-        f"The target {target.name} is made of {node.main}, which is the source of"
-        f" {other.name}: {node.name} is then a second {other.name}.",
+        f"The target {target.name} is built from {node.main}, the source of {other.name}, so"
+        f" {node.name} is a second {other.name}.",
         (target.file, target.line),
         expected=f"add_executable({target.name} {own or 'ITS OWN SOURCE'})",
         fix=f"Write {own} for {node.main}." if own else "Name its own source.",

@@ -43,7 +43,7 @@ def _unexpected_topic(
         if name in seen:
             yield node.finding(
                 "topic",
-                f"{node.name} {verb} {name}, which is not what it is for.",
+                f"{node.name} {verb} {name}, but the contract doesn't ask for that.",
                 node.places.of_topic(node.name, kind, name),
                 expected=f"no {kind.value} in this node",
                 seen=name,
@@ -97,8 +97,8 @@ def _topic_hint(node: Node, seen: str, topic: Topic) -> str:
     if topic.namespace != "group" or last_part(seen) != topic.name:
         return ""
     if seen == node.path + "/" + topic.name:
-        return ' A name with ~, or of a handle made with "~", is the node\'s own.'
-    return " A name that begins with / does not follow the group."
+        return ' A name with ~, or one from a handle created with "~", is private to the node.'
+    return " A name that begins with / doesn't follow the group."
 
 
 def _direct_topic_finding(node: Node, topic: Topic, verb: str, kind: Kind) -> Iterator[Finding]:
@@ -144,8 +144,8 @@ def _namespace_finding(node: Node, topic: Topic, verb: str, kind: Kind) -> Itera
         nearest = next((t for t in seen if t.endswith("/" + topic.name)), sorted(seen)[0])
         yield node.finding(
             "namespace",
-            f"{node.name} {verb} {nearest} in whatever group it runs: the name is written down"
-            " with its group, and so two robots would share it.",
+            f"{node.name} {verb} {nearest}, whatever group it runs in: the name includes the"
+            " group, so two robots would share it.",
             node.places.of_topic(node.name, kind, nearest),
             expected=f"the relative name {topic.name}",
             seen=nearest,

@@ -34,7 +34,7 @@ def _of(node: Node) -> Iterator[Finding]:
             return  # by itself it published: two runs do not agree
         yield node.finding(
             "values",
-            f"{node.name} announces {role.topic.name}, but published nothing in {silent:.0f} s"
+            f"{node.name} advertises {role.topic.name}, but published nothing in {silent:.0f} s"
             + (f": a timer of it waits {waits:g} s." if waits else "."),
             node.places.of(node.name, Kind.TIMER, Kind.PUBLISH, Kind.PUBLISHER),
             expected=_rule_text(role) + (f", every {role.period:g} s" if role.period else ""),
@@ -187,13 +187,12 @@ def _wrap(node: Node) -> Iterator[Finding]:
     if rule.modulus == 2**power:
         expected += f" (2^{power})"
     if "not_found" in events:
-        yield _unchecked(node, last, expected, "was not found")
+        yield _unchecked(node, last, expected, "wasn't found")
     elif "error" in events:
         text = events["error"].text
         yield node.finding(
             "wrap",
-            f"{node.name} stops publishing when its counter has gone past {rule.modulus - 1}:"
-            f" {text}",
+            f"{node.name} stops publishing when its counter goes past {rule.modulus - 1}: {text}",
             node.places.of_counter(node.name, node.counter_names()),
             expected=expected,
             seen=text,
@@ -213,7 +212,7 @@ def _at_the_end(
     if after[0] not in (last, rule.after(last)):
         # What was set had no effect, or it wraps round before its end.
         if _continues(after, rule):
-            yield _unchecked(node, last, expected, "could not be set")
+            yield _unchecked(node, last, expected, "couldn't be set")
         else:
             yield _wrap_finding(node, rule, after, expected)
         return
@@ -226,7 +225,7 @@ def _at_the_end(
 def _unchecked(node: Node, last: int, expected: str, why: str) -> Finding:
     return node.finding(
         "wrap",
-        f"It could not be checked what {node.name} publishes after {last}: its counter {why}.",
+        f"Couldn't check what {node.name} publishes after {last}: its counter {why}.",
         node.places.of(node.name, Kind.PUBLISH),
         HINT,
         expected=expected,
@@ -240,7 +239,7 @@ def _wrap_finding(node: Node, rule: Values, after: Sequence[Number], expected: s
     shown = ", ".join(map(str, after))
     return node.finding(
         "wrap",
-        f"Near the end of its numbers, which is {largest}, {node.name} publishes {shown}.",
+        f"Near its largest number, {largest}, {node.name} publishes {shown}.",
         node.places.of_counter(node.name, names, wrong),
         expected=expected,
         seen=shown,
@@ -269,7 +268,7 @@ RULE = Rule(
             lambda case: _sent(case) or _published(case),
         ),
         "wrap": Requirement(
-            "The values wrap round past the largest one",
+            "The values wrap around after the largest one",
             "publisher",
             evidence.of_publisher(
                 lambda role: role.values and role.values.modulus,

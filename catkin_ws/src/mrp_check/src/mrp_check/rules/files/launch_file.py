@@ -144,7 +144,7 @@ _WORDS = (
         "launch-attribute-missing",
     ),
     (
-        r"Resource ?[Nn]ot ?[Ff]ound: (?:The following package was not found in .*>: )?(\S+)",
+        r"Resource ?[Nn]ot ?[Ff]ound: (?:The following package wasn't found in .*>: )?(\S+)",
         _not_there,
         "package-not-found",
     ),

@@ -19,11 +19,11 @@ _FORMAT = "Make each placeholder fit its value, such as %d for an int."
 _VALUE = "Give the variable a value where it is declared."
 _TABLE = {
     "address": Row(
-        "A function is named here and not called: as a condition, that is always true.",
-        "Call it: ros::ok() has brackets.",
+        "A function is named here, but not called: as a condition, that's always true.",
+        "Call it: ros::ok(), with parentheses.",
     ),
     "div-by-zero": Row("Here something is divided by 0."),
-    "duplicated-cond": Row("This condition was asked before: its branch is never taken."),
+    "duplicated-cond": Row("This condition was tested before, so its branch is never taken."),
     "empty-body": Row("A semicolon ends this line: what follows always runs."),
     "format": Row("The format doesn't fit what it is given: any number may be shown.", _FORMAT),
     "format-extra-args": Row("The format has fewer placeholders than values.", _FORMAT),
@@ -31,14 +31,14 @@ _TABLE = {
     "maybe-uninitialized": Row("A variable is read here that may have no value.", _VALUE),
     "misleading-indentation": Row("The indented lines don't all belong to the line above them."),
     "overflow": Row("The number is too large for its type."),
-    "parentheses": Row("Perhaps you meant ==, or brackets are missing."),
+    "parentheses": Row("Perhaps you meant ==, or parentheses are missing."),
     "return-type": Row(
         "On some paths, this function returns nothing: its caller gets an arbitrary value."
     ),
     "tautological-compare": Row("This comparison is always true, or always false."),
     "type-limits": Row("This comparison is always true, or always false."),
     "uninitialized": Row("A variable is read here that has no value.", _VALUE),
-    "unused-value": Row("This line computes something, and does nothing with it."),
+    "unused-value": Row("This line computes something, but does nothing with it."),
 }
 
 

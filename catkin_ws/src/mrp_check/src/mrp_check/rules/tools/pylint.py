@@ -30,13 +30,13 @@ _CATCHES_ALL = Row(
     HINT,
 )
 _NO_VALUE = Row(
-    "The variable may have no value at this line: then Python ends with an error.",
+    "The variable may have no value at this line: then Python raises an error.",
     "Give it a value before the condition or the loop; or leave the function in that case.",
 )
 _TABLE = {
-    "assert-on-tuple": Row("This assert is always true.", "Leave the brackets out.", HABIT),
+    "assert-on-tuple": Row("This assert is always true.", "Leave the parentheses out.", HABIT),
     "assigning-non-slot": Row(
-        "The message has no field of that name: Python ends with an AttributeError here.",
+        "The message has no field of that name: Python raises an AttributeError here.",
         "Correct the name; `rosmsg show` lists the fields.",
         READ,
         "no-such-field",
@@ -46,19 +46,19 @@ _TABLE = {
         "Return a value, or don't use the result.",
     ),
     "bad-string-format-type": Row(
-        "The format doesn't fit the type of its value: Python ends with a TypeError here.",
+        "The format doesn't fit the type of its value: Python raises a TypeError here.",
         "Write %s, or give it a value of that type.",
         READ,
     ),
     "bare-except": _CATCHES_ALL,
     "broad-exception-caught": _CATCHES_ALL,
     "comparison-with-callable": Row(
-        "A function is compared here, and not what it returns: its brackets are missing.",
+        "A function is compared here instead of what it returns: its parentheses are missing.",
         "Call the function.",
     ),
     "dangerous-default-value": Row(
         "All calls of this function share one default value: what one puts in, the next one finds.",
-        "Write None, and make the value in the function.",
+        "Write None, and create the value in the function.",
         HINT,
     ),
     "function-redefined": Row(
@@ -80,7 +80,7 @@ _TABLE = {
         "Loop over a copy: list(...).",
     ),
     "no-member": Row(
-        "This object has no member of that name: Python ends with an AttributeError here.",
+        "This object has no member of that name: Python raises an AttributeError here.",
         "Correct the name.",
         READ,
     ),
@@ -90,42 +90,42 @@ _TABLE = {
         READ,
     ),
     "no-value-for-parameter": Row(
-        "This call lacks an argument: Python ends with a TypeError here.",
+        "This call lacks an argument: Python raises a TypeError here.",
         "Give it what the function takes.",
         READ,
     ),
     "pointless-statement": Row(
-        "This line computes a value, and does nothing with it.",
+        "This line computes a value, but does nothing with it.",
         "Call the function, write = for ==, or remove the line.",
     ),
     "possibly-used-before-assignment": _NO_VALUE,
     "too-few-format-args": Row(
-        "The text has more placeholders than values: Python ends with a TypeError here.",
+        "The text has more placeholders than values: Python raises a TypeError here.",
         "Give each placeholder a value.",
         READ,
     ),
     "too-many-format-args": Row(
-        "The text has fewer placeholders than values: Python ends with a TypeError here.",
+        "The text has fewer placeholders than values: Python raises a TypeError here.",
         "Write a placeholder such as %s for each value.",
         READ,
     ),
     "too-many-function-args": Row(
-        "This call has more arguments than the function takes: Python ends with a TypeError here.",
+        "This call has more arguments than the function takes: Python raises a TypeError here.",
         "Give it what the function takes.",
         READ,
     ),
     "unbalanced-tuple-unpacking": Row(
-        "There aren't as many names as values: Python ends with a ValueError here.",
+        "There aren't as many names as values: Python raises a ValueError here.",
         "Write as many names as there are values.",
         READ,
     ),
     "unexpected-keyword-arg": Row(
-        "The function has no parameter of that name: Python ends with a TypeError here.",
+        "The function has no parameter of that name: Python raises a TypeError here.",
         "Correct the name.",
         READ,
     ),
     "unpacking-non-sequence": Row(
-        "One value can't be split into several names: Python ends with a TypeError here.",
+        "One value can't be split into several names: Python raises a TypeError here.",
         "Give each name its value.",
         READ,
     ),
@@ -136,7 +136,7 @@ _TABLE = {
     ),
     "used-before-assignment": _NO_VALUE,
     "using-constant-test": Row(
-        "This condition never changes. Often the brackets of a call are missing.",
+        "This condition never changes. Often the parentheses of a call are missing.",
         "Call the function that the condition names.",
     ),
 }
