@@ -33,7 +33,7 @@ FOUND = [
     (ERROR, "python-syntax", "scripts/print.py: print", "print is a function"),
     (ERROR, "scripts", "scripts/print.py: env python", "asks for 'python'"),
     (ERROR, "spin", "scripts/ends.py: ", "ends by itself|never calls"),
-    (ERROR, "exit", "scripts/stays.py: while True", "does not end on Ctrl-C"),
+    (ERROR, "exit", "scripts/stays.py: while True", "doesn't end on Ctrl-C"),
     (ERROR, "topic", 'scripts/near.py: "chater"', "publishes on /chatter|nobody publishes"),
     (ERROR, "type", "scripts/number.py: Int32", "std_msgs/String"),
     (ERROR, "python-names", "scripts/raises.py: message.text", "text"),

@@ -243,7 +243,7 @@ def test_what_makes_messages(generator, configures, severities, tmp_path):
 @pytest.mark.parametrize(
     ("finds", "says"),
     [
-        ("catkin REQUIRED COMPONENTS std_msgs", ["find_package(catkin ...) does not name"]),
+        ("catkin REQUIRED COMPONENTS std_msgs", ["find_package(catkin ...) doesn't name"]),
         ("catkin REQUIRED COMPONENTS message_generation std_msgs", []),
         ("catkin_simple REQUIRED", []),
     ],

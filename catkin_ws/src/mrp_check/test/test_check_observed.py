@@ -53,7 +53,7 @@ def test_texts_on_a_number_topic_are_found_and_no_fault_of_the_checker(tmp_path)
     unseen = check.unseen(case, ["values", "rate", "latch", "exit", "type"])
     assert unseen == {
         "values": "publisher_right published no number",
-        "exit": "publisher_right was not seen to end",
+        "exit": "publisher_right wasn't seen to end",
     }
 
 
@@ -161,7 +161,7 @@ def test_how_a_node_ends_that_was_still_starting_is_not_judged(tmp_path):
     found = [finding.id for rule in OF_RUN for finding in rule.findings(case)]
     case.close()
     assert "exit" not in found
-    assert check.unseen(case, ["exit"]) == {"exit": "publisher_right was not seen to end"}
+    assert check.unseen(case, ["exit"]) == {"exit": "publisher_right wasn't seen to end"}
 
 
 @pytest.mark.usefixtures("open_folders")

@@ -33,11 +33,14 @@ class Typed(PythonRule):
             said.add(call)
             yield from self._at_the_use(call, node)
             is_equality = isinstance(node, ast.Compare) and isinstance(node.ops[0], _EQUALITIES)
-            follows = "Python raises a TypeError when it gets there"
+            follows = (
+                "they're never equal"
+                if is_equality
+                else "Python raises a TypeError when it gets there"
+            )
             yield self.finding(
                 "python-names",
-                f"{says(call)}, and line {node.lineno} {does}:"
-                f" {'they're never equal' if is_equality else follows}.",
+                f"{says(call)}, and line {node.lineno} {does}: {follows}.",
                 call,
                 certainty=HABIT if is_equality else READ,
                 expected=f"float({self.written(call)}), or int(...)",

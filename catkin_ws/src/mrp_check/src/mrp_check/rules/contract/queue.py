@@ -42,12 +42,8 @@ _REFUSED = (True, Kind.SUBSCRIBER, 0)
 def _other_queue(node: SourceNode, place: Place, kind: Kind, queue: int, asked: int) -> Finding:
     words = {
         _REFUSED: "rospy.Subscriber() doesn't accept a queue_size of 0: it raises an error.",
-        (
-            True,
-            Kind.SUBSCRIBER,
-            1,
-        ): "The subscriber's queue has room for one message. In rospy each publisher has a queue"
-        " of its own; a late callback still loses messages.",
+        (True, Kind.SUBSCRIBER, 1): "The subscriber's queue has room for one message. In rospy"
+        " each publisher has a queue of its own; a late callback still loses messages.",
         (False, Kind.SUBSCRIBER, 1): "The subscriber's queue has room for one message. All"
         " publishers of the topic share it: two that publish at the same moment push out each"
         " other's values.",

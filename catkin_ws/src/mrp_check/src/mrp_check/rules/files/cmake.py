@@ -15,7 +15,7 @@ from mrp_check.run import evidence
 from mrp_check.run.case import Case
 
 FILE = "CMakeLists.txt"
-_LOST = ", and its executables are put where roslaunch and rosrun do not look"
+_LOST = ", so its executables end up where roslaunch and rosrun don't look"
 
 
 def _findings(case: Case) -> Iterator[Finding]:
@@ -28,8 +28,8 @@ def _findings(case: Case) -> Iterator[Finding]:
     else:
         yield Finding(
             "cmake",
-            "The package has no CMakeLists.txt: catkin_make cannot build it.",
-            expected="a file CMakeLists.txt beside package.xml",
+            "The package has no CMakeLists.txt, so catkin_make can't build it.",
+            expected="a file CMakeLists.txt next to package.xml",
             seen="none",
             fix="Write one, as the page on building shows.",
         )
@@ -49,8 +49,8 @@ def _old(package: Package, model: Model) -> Iterator[Finding]:
         least = ".".join(map(str, releases.CMAKE_LEAST))
         yield Finding(
             "cmake",
-            f"This is written for CMake {newest}. A newer CMake warns of it, and CMake 4"
-            f" (Debian {gone.since}) refuses all below {least}.",
+            f"This is written for CMake {newest}. A newer CMake warns about it, and CMake 4"
+            f" (Debian {gone.since}) refuses anything below {least}.",
             FILE,
             asked.line,
             HABIT if numbers < warned else HINT,
@@ -65,7 +65,7 @@ def _missing_calls(package: Package, model: Model) -> Iterator[Finding]:
     before = model.catkin or (model.project and model.project[1])
     for needed, found, why in (
         ("project(NAME)", model.project, "CMake needs it first of all"),
-        ("find_package(catkin REQUIRED ...)", model.catkin, "without it there is no catkin"),
+        ("find_package(catkin REQUIRED ...)", model.catkin, "without it there's no catkin"),
         (
             "catkin_package()",
             model.catkin_package or _is_included(package, model),
@@ -80,7 +80,7 @@ def _missing_calls(package: Package, model: Model) -> Iterator[Finding]:
             commented = is_package and package.first_match([FILE], r"^\s*#\s?catkin_package\(")
             yield Finding(
                 "cmake",
-                f"CMakeLists.txt does not call {needed}: {why}.",
+                f"CMakeLists.txt doesn't call {needed}: {why}.",
                 FILE,
                 commented[1] if commented else before.line if before else 1,
                 expected=needed,
@@ -101,13 +101,13 @@ def _too_late(model: Model) -> Iterator[Finding]:
     if model.late is not None and call is not None:
         yield Finding(
             "cmake",
-            f"catkin_package() comes after the target {model.late.name} of line {model.late.line}:"
-            " the executable is then put where roslaunch and rosrun do not look.",
+            f"catkin_package() comes after the target {model.late.name} on line {model.late.line},"
+            " so the executable ends up where roslaunch and rosrun don't look.",
             call.file,
             call.line,
             expected="catkin_package() before the first add_executable()",
-            seen=f"{model.late.name} in line {model.late.line},"
-            f" catkin_package() in line {call.line}",
+            seen=f"{model.late.name} on line {model.late.line}, catkin_package() on line"
+            f" {call.line}",
             fix="Move catkin_package() up, to before the first target.",
         )
 
@@ -119,14 +119,14 @@ def _no_folder(package: Package, model: Model) -> Iterator[Finding]:
             if not (package.root / name).is_dir():
                 yield Finding(
                     "cmake",
-                    f"catkin_package() names the folder {name} in INCLUDE_DIRS, and there is no"
-                    " such folder: CMake stops.",
+                    f"catkin_package() names the folder {name} in INCLUDE_DIRS, but there's no"
+                    " such folder, so CMake stops.",
                     model.catkin_package.file,
                     model.catkin_package.line_of(package.lines(model.catkin_package.file), name),
                     expected="a folder of the package",
                     seen=f"INCLUDE_DIRS {name}",
-                    fix=f"Remove INCLUDE_DIRS {name}; or make the folder, with a file in it, as"
-                    " git keeps no empty folder.",
+                    fix=f"Remove INCLUDE_DIRS {name}; or create the folder with a file in it,"
+                    " because Git doesn't keep empty folders.",
                 )
 
 
@@ -136,7 +136,7 @@ RULE = Rule(
     findings=_findings,
     requirements={
         "cmake": Requirement(
-            "CMakeLists.txt is a catkin package's", "building#cmakelists-txt", evidence.always
+            "CMakeLists.txt calls what catkin needs", "building#cmakelists-txt", evidence.always
         )
     },
 )

@@ -69,7 +69,7 @@ def _foreign(package: Package, name: str, use: Use) -> Finding:
     return Finding(
         "dependencies",
         f"{use.file} uses the package {name}, which neither package.xml nor CMakeLists.txt names."
-        " Where it is not installed, this package cannot be built.",
+        " Where it isn't installed, this package can't be built.",
         use.file,
         use.line,
         certainty=READ if use.firm else HABIT,
@@ -115,7 +115,7 @@ def _misspelt(
 def _misspelt_in_manifest(package: Package, name: str, use: Use, near: str) -> Finding:
     return Finding(
         "dependencies",
-        f"package.xml does not name {_used_in({name: use})}. It names {near}, and there is no such"
+        f"package.xml doesn't name {_used_in({name: use})}. It names {near}, but there's no such"
         " package.",
         FILE,
         package.find_line(FILE, f">{near}<") or first_dependency(package),
@@ -142,7 +142,7 @@ def _not_in_manifest(
     added = "\n".join([text, *(indent + tag for tag in tags)])
     return Finding(
         "dependencies",
-        f"package.xml does not name {_used_in(found)}.",
+        f"package.xml doesn't name {_used_in(found)}.",
         FILE,
         line,
         certainty=READ if firm else HABIT,
@@ -158,7 +158,7 @@ def _used_in(found: Mapping[str, Use]) -> str:
     """Return packages as a part of a sentence, each with a place that uses it."""
     if len(found) == 1:
         ((name, use),) = found.items()
-        return f"{name}, which {use.file} uses in line {use.line}"
+        return f"{name}, which {use.file} uses on line {use.line}"
     *rest, last = [f"{name} (used in {use.file}:{use.line})" for name, use in found.items()]
     return f"{', '.join(rest)} and {last}"
 
@@ -166,8 +166,8 @@ def _used_in(found: Mapping[str, Use]) -> str:
 def _misspelt_in_cmake(name: str, use: Use, near: str, call: Call) -> Finding:
     return Finding(
         "dependencies",
-        f"find_package(catkin ...) does not name {_used_in({name: use})}. It names {near}, and"
-        " there is no such package.",
+        f"find_package(catkin ...) doesn't name {_used_in({name: use})}. It names {near}, but"
+        " there's no such package.",
         call.file,
         call.line,
         certainty=READ if use.firm else HINT,
@@ -183,7 +183,7 @@ def _not_in_cmake(found: Mapping[str, Use], model: Model, call: Call, firm: bool
     names = " ".join(found)
     return Finding(
         "dependencies",
-        f"find_package(catkin ...) does not name {_used_in(found)}. Headers and libraries may then"
+        f"find_package(catkin ...) doesn't name {_used_in(found)}. So headers and libraries may"
         " not be found.",
         call.file,
         call.line,
@@ -224,15 +224,15 @@ def undeclared(case: Case) -> Iterator[Finding]:
         said.add(top)
         yield Finding(
             "dependencies",
-            f"{file} uses {top}, and package.xml does not name it: where it is not installed, this"
+            f"{file} uses {top}, but package.xml doesn't name it: where it isn't installed, this"
             " fails.",
             file,
             line,
             HABIT,
             expected=f"<depend>{key}</depend> in package.xml",
             seen=package.line(file, line),
-            fix=f"Add <depend>{key}</depend> to package.xml; or remove the line if nothing of it"
-            " is used.",
+            fix=f"Add <depend>{key}</depend> to package.xml; or remove the line if you don't need"
+            " it.",
             packages=(top,),
         )
 

@@ -43,7 +43,7 @@ def _unknown(tags: Sequence[tuple[str, Element]]) -> Iterator[Finding]:
             where = f" within <{above}>" if element.tag in _TAGS else ""
             yield Finding(
                 "launch-file",
-                f"roslaunch knows no element <{element.tag}>{where}, and passes over it.",
+                f"roslaunch doesn't know an element <{element.tag}>{where}, so it ignores it.",
                 file,
                 element.line,
                 HABIT,
@@ -66,7 +66,7 @@ def _no_attributes(launch: Launch, tags: Sequence[tuple[str, Element]]) -> Itera
             near = nearest(name, _ATTRIBUTES, 0.7)
             yield Finding(
                 "launch-file",
-                f"roslaunch knows no attribute {name} of <{element.tag}>, and passes over it.",
+                f"roslaunch doesn't know an attribute {name} of <{element.tag}>, so it ignores it.",
                 file,
                 element.line,
                 HABIT,
@@ -99,7 +99,7 @@ class _Said:
     def not_understood(self, name: str | None = None) -> _Words:
         words = [name] if name else re.findall(r"[\w./$()-]+", self.text)
         place = self.first(lambda e: any(v in words for v in e.attributes.values()))
-        return place, f"roslaunch cannot load the launch file: {self.text}", None
+        return place, f"roslaunch can't load the launch file: {self.text}", None
 
 
 def _twice(said: _Said, name: str) -> _Words:
@@ -118,7 +118,7 @@ def _attribute(said: _Said, tag: str, name: str) -> _Words:
 def _not_there(said: _Said, name: str) -> _Words:
     name = name.strip("'\".,")
     place = said.first(lambda e: any(name in v for v in e.attributes.values()))
-    message = f"The launch file names a package or a file that is not there: {name}."
+    message = f"The launch file names a package or a file that isn't there: {name}."
     return place, message, None
 
 
@@ -126,9 +126,9 @@ def _argument(said: _Said, name: str) -> _Words:
     declared = said.named("arg", name)
     if declared:
         message = f"The launch file's argument {name} has no value: roslaunch asks for one."
-        return declared[0], message, 'Give it one for when no other is given: default="...".'
+        return declared[0], message, 'Give it a default: default="...".'
     place = said.first(lambda e: any(f"arg {name}" in v for v in e.attributes.values()))
-    return place, f"roslaunch cannot load the launch file: {said.text}", None
+    return place, f"roslaunch can't load the launch file: {said.text}", None
 
 
 # What roslaunch says where an argument, a variable of the environment, or another package's file
@@ -144,7 +144,7 @@ _WORDS = (
         "launch-attribute-missing",
     ),
     (
-        r"Resource ?[Nn]ot ?[Ff]ound: (?:The following package wasn't found in .*>: )?(\S+)",
+        r"Resource ?[Nn]ot ?[Ff]ound: (?:The following package was not found in .*>: )?(\S+)",
         _not_there,
         "package-not-found",
     ),

@@ -54,7 +54,7 @@ def _illegal(launch: Launch) -> Iterator[Finding]:
             legal = re.sub(r"\W", "_", os.path.splitext(node.name)[0])
             yield Finding(
                 "launch-nodes",
-                f"{node.name} is no legal name of a node: roslaunch and ROS warn of it.",
+                f"{node.name} isn't a legal node name: roslaunch and ROS warn about it.",
                 node.file,
                 node.line,
                 HABIT,
@@ -101,7 +101,7 @@ def _missing(package: Package, launch: Launch, name: str, spare: list[Started]) 
         )
     return Finding(
         "launch-nodes",
-        f"The launch file does not start the node {name}.",
+        f"The launch file doesn't start the node {name}.",
         launch.file,
         _last_line(package, launch),
         node=name,
@@ -145,7 +145,7 @@ def _can_start(case: Case, node: Started, spec_node: str | None = None) -> Itera
         return
     yield Finding(
         "launch-nodes",
-        f"The launch file starts {node.type}, and the package has no executable of that name."
+        f"The launch file starts {node.type}, but the package has no executable of that name."
         + (f" It has {near}." if near else ""),
         node.file,
         node.line,
@@ -178,8 +178,8 @@ def _other_package(package: Package, model: Model, node: Started, spec_node: str
 def _not_built(model: Model, node: Started, source: str, spec_node: str | None) -> Finding:
     return Finding(
         "targets",
-        f"The launch file starts {node.type}, and CMakeLists.txt makes no executable of that"
-        f" name: {source} is built by no add_executable().",
+        f"The launch file starts {node.type}, but CMakeLists.txt builds no executable of that"
+        f" name: no add_executable() names {source}.",
         "CMakeLists.txt",
         _targets_line(model),
         node=spec_node,
@@ -208,20 +208,20 @@ def _targets_line(model: Model) -> int:
 # word the file has, too.
 _GONE = {
     r"\btype\s*=\s*\"(state_publisher)\"": (
-        "robot_state_publisher has no executable state_publisher any more: roslaunch cannot start"
-        " it",
+        "robot_state_publisher no longer has an executable state_publisher, so roslaunch can't"
+        " start it",
         CERTAIN,
         "robot_state_publisher",
         "",
     ),
     r"\(find xacro\)/(xacro\.py)\b": (
-        "xacro has no xacro.py any more: roslaunch cannot load the file",
+        "xacro no longer has an xacro.py, so roslaunch can't load the file",
         CERTAIN,
         "xacro",
         "",
     ),
     r"\bname\s*=\s*\"(use_gui)\"": (
-        "joint_state_publisher does not read use_gui any more: no window with sliders appears",
+        "joint_state_publisher no longer reads use_gui, so no window with sliders appears",
         HABIT,
         "a node of type joint_state_publisher_gui",
         "joint_state_publisher",

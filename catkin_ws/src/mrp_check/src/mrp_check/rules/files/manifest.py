@@ -24,8 +24,8 @@ def _findings(case: Case) -> Iterator[Finding]:
         of_ros_2 = sorted({d.name for d in needs if d.name.startswith(_ROS_2)})
         yield Finding(
             "manifest",
-            "package.xml does not say that the package is built with catkin."
-            + (f" It names {of_ros_2[0]}, which is of ROS 2." if of_ros_2 else ""),
+            "package.xml doesn't say that the package is built with catkin."
+            + (f" It names {of_ros_2[0]}, which is for ROS 2." if of_ros_2 else ""),
             FILE,
             # Where it belongs: at the first of the dependencies.
             package.find_line(FILE, "depend>", package.find_line(FILE, "<package", 1)),
@@ -46,7 +46,8 @@ def _no_licence(case: Case) -> Finding:
     tag = case.package.find_line(FILE, "<license", 1)
     return Finding(
         "licensed",
-        "package.xml has the licence that catkin_create_pkg wrote: nobody may use the package.",
+        "package.xml still has the licence that catkin_create_pkg wrote, so nobody may use the"
+        " package.",
         FILE,
         case.package.find_line(FILE, "TODO</license>", tag),
         HABIT if case.spec.is_contract else HINT,

@@ -64,8 +64,8 @@ def _in_cmake(case: Case, files: list[str], are_asked: bool) -> Iterator[Finding
     if asks and model.catkin and not brings & {*model.components}:
         brought = case.package.first_match([FILE], _BROUGHT)
         yield _message_finding(
-            "find_package(catkin ...) does not name message_generation, which brings"
-            " generate_messages() and makes code of the package's own messages.",
+            "find_package(catkin ...) doesn't name message_generation, which provides"
+            " generate_messages() and generates code from the package's own messages.",
             brought[1] if brought else catkin_line,
             "find_package(catkin REQUIRED COMPONENTS message_generation ...)",
             "Add message_generation to COMPONENTS.",
@@ -81,7 +81,7 @@ def _in_cmake(case: Case, files: list[str], are_asked: bool) -> Iterator[Finding
                 yield _misplaced(model.message_files[elsewhere].line, command, path, elsewhere)
                 continue
             yield _message_finding(
-                f"{path} is not named in {command}(): no code is made of it.",
+                f"{path} isn't named in {command}(), so no code is generated from it.",
                 call.line if call else catkin_line,
                 f"{command}(FILES {file})",
                 f"Add {file} to {command}(FILES ...).",
@@ -89,7 +89,8 @@ def _in_cmake(case: Case, files: list[str], are_asked: bool) -> Iterator[Finding
             )
     if call and model.message_files and model.generate is None:
         yield _message_finding(
-            "CMakeLists.txt never calls generate_messages(): no code is made of the messages.",
+            "CMakeLists.txt never calls generate_messages(), so no code is generated from the"
+            " messages.",
             call.line,
             f"generate_messages(...) after {call.command}(...)",
             "Add generate_messages(DEPENDENCIES std_msgs).",
@@ -127,7 +128,7 @@ def _elsewhere(case: Case, path: str) -> str | None:
 def _misplaced(line: int, command: str, path: str, elsewhere: str) -> Finding:
     return Finding(
         "messages",
-        f"{command}() looks for {elsewhere}, and the file lies at {path}: CMake stops.",
+        f"{command}() looks for {elsewhere}, but the file is at {path}, so CMake stops.",
         FILE,
         line,
         CERTAIN,
@@ -159,8 +160,8 @@ def _in_manifest(package: Package, manifest: Manifest, is_brought: bool) -> Iter
         if name not in known[kind]:
             yield Finding(
                 "dependencies",
-                f"package.xml does not name {name} as a <{tag}>: the package has a message of"
-                " its own, and needs it.",
+                f"package.xml doesn't name {name} as a <{tag}>, which the package needs for its"
+                " own messages.",
                 "package.xml",
                 first_dependency(package, tag),
                 certainty=HABIT if builds else READ,
@@ -189,8 +190,8 @@ def _definition(
         near = nearest(path, package.of_kind(kind))
         yield Finding(
             "messages",
-            f"There is no {kind} {PACKAGE.lower()}/{name}: the file {path} is missing."
-            + (f" There is {near}." if near else ""),
+            f"There's no {kind} {PACKAGE.lower()}/{name}: the file {path} is missing."
+            + (f" There's {near}." if near else ""),
             near if near else None,
             1 if near else None,
             expected=f"{path} with: {expected}",
@@ -233,9 +234,8 @@ def _order(package: Package, model: Model) -> Iterator[Finding]:
             file, line, header = used[0]
             yield Finding(
                 "messages",
-                f"The target {target.name} does not wait until {header}, which {file} includes in"
-                f" line {line}, has been made. It then depends on chance whether it"
-                " can be built.",
+                f"The target {target.name} doesn't wait until {header} is generated, but {file}"
+                f" includes it on line {line}. So whether it can be built is a matter of luck.",
                 target.file,
                 target.line,
                 CERTAIN,
@@ -308,7 +308,7 @@ def _of_line(
         expected = near or "the type of a message that is there"
     yield Finding(
         "messages",
-        f"{path} has a line that ROS cannot read: {said}",
+        f"{path} has a line that ROS can't read: {said}",
         path,
         line,
         CERTAIN,
@@ -328,7 +328,7 @@ def _unknown(package: Package, type_: str) -> tuple[str, str | None] | None:
         made = package.of_kind("message", "action")
         known = {one for path in made for one in uses.generated(path)}
         near = _OF_LANGUAGES.get(name) or nearest(name, [*BUILTIN_TYPES, *known])
-        said = f"there is no type {name}, and no msg/{name}.msg."
+        said = f"there's no type {name}, and no msg/{name}.msg."
     else:
         folders = [pathlib.Path(share, owner, "msg") for share in resources.SHARES]
         known = {path.stem for folder in folders for path in folder.glob("*.msg")}

@@ -42,7 +42,7 @@ def _findings(case: Case) -> Iterator[Finding]:
     other = "CMakeLists.txt calls" if file == "package.xml" else "package.xml calls"
     yield Finding(
         "package-name",
-        f"{file} calls the package {wrong}, {other} it {right}: catkin cannot build it.",
+        f"{file} calls the package {wrong}, but {other} it {right}, so catkin can't build it.",
         file,
         line,
         expected=expected,
@@ -61,12 +61,12 @@ def _within(package: Package) -> Iterator[Finding]:
         if path.endswith("/package.xml") and not any(p[:1] == "." for p in path.split("/")):
             yield Finding(
                 "package-name",
-                f"{path} makes a package of a folder of this one: catkin does not look for one"
-                " there, and builds nothing in it.",
+                f"{path} turns a folder of this package into another package. catkin doesn't look"
+                " for one there, so it builds nothing in it.",
                 path,
                 1,
                 HABIT,
-                expected="packages beside each other, in src of the workspace",
+                expected="packages next to each other, in src of the workspace",
                 seen=path,
                 fix="Move that folder next to this package; or delete it.",
             )
@@ -79,14 +79,14 @@ def _unusual(package: Package) -> Iterator[Finding]:
     line = package.find_line("package.xml", "<name", 1)
     yield Finding(
         "package-name",
-        f"catkin warns of the name {package.name}: a package's name begins with a small letter,"
-        " and has only small letters, digits, - and _.",
+        f"catkin warns about the name {package.name}: a package's name begins with a lowercase"
+        " letter, and has only lowercase letters, digits, - and _.",
         "package.xml",
         line,
         HABIT,
         expected="a name such as my_package",
         seen=package.line("package.xml", line),
-        fix="Rename the package, where it is not in use yet.",
+        fix="Rename the package, if nobody uses it yet.",
     )
 
 
@@ -98,8 +98,8 @@ def _of_ros(package: Package) -> Iterator[Finding]:
         line = package.find_line("package.xml", "<name", 1)
         yield Finding(
             "package-name",
-            f"ROS has a package {name}: within this workspace, and after it in a shell, that one"
-            " cannot be found any more.",
+            f"ROS already has a package {name}. In this workspace, and in shells that source it,"
+            " that one can't be found anymore.",
             "package.xml",
             line,
             HABIT,

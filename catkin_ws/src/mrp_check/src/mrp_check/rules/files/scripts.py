@@ -78,8 +78,8 @@ def _shadowing(package: Package, path: str) -> Iterator[Finding]:
     if ending == ".py" and line:
         yield Finding(
             "scripts",
-            f"The script is called {name}, and {who} imports a module {stem}: Python looks first in"
-            " the script's own folder, and takes the script for the module.",
+            f"The script is called {name}, and {who} imports a module {stem}: Python looks first"
+            " in the script's own folder, so it takes the script for the module.",
             path,
             line,
             expected="a name that no module has",
@@ -101,7 +101,7 @@ def _listed(package: Package, model: Model) -> Iterator[Finding]:
         near = nearest(script.path, package.of_kind("python"))
         yield Finding(
             "scripts",
-            f"CMakeLists.txt installs {script.path}, and there is no such file." + perhaps(near),
+            f"CMakeLists.txt installs {script.path}, but there's no such file." + perhaps(near),
             script.file,
             script.line,
             expected="the name of a file, relative to CMakeLists.txt",
@@ -111,9 +111,9 @@ def _listed(package: Package, model: Model) -> Iterator[Finding]:
 
 
 _MODE = (
-    "; roslaunch and rosrun start it all the same, as catkin_install_python() has made an"
-    " executable of it.",
-    ": roslaunch and rosrun do not find it.",
+    "; roslaunch and rosrun start it anyway, because catkin_install_python() has created an"
+    " executable for it.",
+    ", so roslaunch and rosrun don't find it.",
 )
 
 
@@ -135,7 +135,7 @@ def _of(
     if not package.is_executable(path) and not any(map(package.is_executable, twins)):
         yield Finding(
             "scripts",
-            f"{path} is not executable{_MODE[0 if relayed else 1]}",
+            f"{path} isn't executable{_MODE[0 if relayed else 1]}",
             path,
             1,
             certainty=HINT if relayed else CERTAIN,
@@ -163,8 +163,8 @@ def _no_first_line(package: Package, path: str) -> Finding:
     hidden = next((n for n, text in enumerate(lines, 1) if text.startswith("#!")), None)
     return Finding(
         "scripts",
-        f"{path} does not begin with #!: Linux does not know that Python is to run it."
-        + (f" The #! is in line {hidden}, and has to be in the first." if hidden else ""),
+        f"{path} doesn't begin with #!, so Linux doesn't know to run it with Python."
+        + (f" The #! is on line {hidden}, but has to be on the first." if hidden else ""),
         path,
         1,
         expected="#!/usr/bin/env python",
@@ -178,7 +178,7 @@ def _not_relayed(model: Model, path: str, plain: str) -> Finding:
     """Debian has no `python`: it takes catkin_install_python to put the right one there."""
     calls = [s for s in model.scripts if s.by == "catkin_install_python"]
     add = (
-        f"Add {path} to catkin_install_python(PROGRAMS ...) in line {calls[0].line} of"
+        f"Add {path} to catkin_install_python(PROGRAMS ...) on line {calls[0].line} of"
         f" {calls[0].file}."
         if calls
         else f"Add catkin_install_python(PROGRAMS {path} DESTINATION"
@@ -186,8 +186,8 @@ def _not_relayed(model: Model, path: str, plain: str) -> Finding:
     )
     return Finding(
         "scripts",
-        f"{path} is not made to run by catkin_install_python(), and its first line asks for"
-        " 'python', which this system does not have: it has python3.",
+        f"catkin_install_python() doesn't name {path}, and the script's first line asks for"
+        " 'python', which this system doesn't have: it has python3.",
         path,
         1,
         expected=f"catkin_install_python(PROGRAMS ... {path} ...) in CMakeLists.txt",
@@ -200,11 +200,11 @@ def _not_relayed(model: Model, path: str, plain: str) -> Finding:
 def _other_program(path: str, plain: str, relayed: bool, absent: str | None) -> Iterator[Finding]:
     """Yield the finding about a first line that asks for the wrong program."""
     if absent and absent != PYTHON:
-        what = f"names {absent}, a program that is not there"
+        what = f"names {absent}, a program that isn't there"
     elif "python" not in plain:
         what = "hands the Python script to another program"
     elif "python2" in plain:
-        what = "asks for Python 2, for which there is no rospy"
+        what = "asks for Python 2, which has no rospy here"
     else:
         return
     wanted = "#!/usr/bin/env python" + ("" if relayed else "3")

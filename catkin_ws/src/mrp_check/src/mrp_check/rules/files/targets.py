@@ -31,7 +31,7 @@ def _no_sources(case: Case) -> Iterator[Finding]:
             near = nearest(source, case.package.of_kind("cpp"))
             yield Finding(
                 "targets",
-                f"The target {target.name} is made of {source}, and there is no such file."
+                f"The target {target.name} is built from {source}, but there's no such file."
                 + perhaps(near),
                 file,
                 line,
@@ -60,9 +60,11 @@ def _no_dependencies(package: Package, model: Model) -> Iterator[Finding]:
                     package,
                     call,
                     name,
-                    f"add_dependencies() lets {call.arguments[0]} wait for {name}, and there is no"
+                    f"add_dependencies() makes {call.arguments[0]} wait for {name}, but there's no"
                     f" such target.{perhaps(near)}"
-                    + (" generate_messages() makes it, where it is called." if of_messages else ""),
+                    + (
+                        " generate_messages() creates it, where it's called." if of_messages else ""
+                    ),
                     f"a target {name}",
                     f"Write {near} for {name}." if near else f"Remove {name}.",
                 )
@@ -82,12 +84,12 @@ def _never_built(case: Case) -> Iterator[Finding]:
         if is_node and not is_named and not uses.is_test(source):
             yield Finding(
                 "targets",
-                f"No call in CMakeLists.txt names {source}: nothing is made of it.",
+                f"No call in CMakeLists.txt names {source}, so nothing is built from it.",
                 source,
                 1,
                 HABIT,
                 expected=f"add_executable(... {source})",
-                seen="no target that is made of it",
+                seen="no target that's built from it",
                 fix="Write add_executable() and target_link_libraries() for it; or delete it.",
             )
 
@@ -98,7 +100,7 @@ RULE = Rule(
     findings=_findings,
     requirements={
         "targets": Requirement(
-            "Each executable is built of its own sources",
+            "Each executable is built from its own sources",
             "wrong#a-target-is-built-from-another-node-s-source",
             evidence.cpp,
         )

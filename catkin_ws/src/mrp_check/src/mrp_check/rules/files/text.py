@@ -21,7 +21,7 @@ _CODING = re.compile(rb"^[ \t\f]*#.*?coding[:=][ \t]*([-\w.]+)")
 def _findings(case: Case) -> Iterator[Finding]:
     package = case.package
     for path in package.left_out:
-        said = f"{path} has more than {MAX_BYTES // 10**6} MB: it is left out of the check."
+        said = f"{path} has more than {MAX_BYTES // 10**6} MB, so the check leaves it out."
         yield Finding("text", said, path, certainty=HINT, fix="Hand in the package without it.")
     if package.not_utf8:
         names = ", ".join(map(printable, package.not_utf8))
@@ -32,7 +32,7 @@ def _findings(case: Case) -> Iterator[Finding]:
             certainty=HABIT,
             expected="names in UTF-8",
             seen="bytes of another encoding, shown as %FC, for example",
-            fix="Rename them. Old zip programs make such names of letters like ü.",
+            fix="Rename them. Old zip programs turn letters like ü into such names.",
         )
     if cut := ", ".join(filter(package.is_cut, package.files)):
         said = f"The check says nothing about files of more than {MAX_TEXT // 10**6} MB: {cut}"
@@ -50,7 +50,7 @@ def _of(package: Package, path: str, kind: str, relayed: bool) -> Iterator[Findi
     if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)) or b"\0" in data:
         yield Finding(
             "text",
-            f"{path} is no plain text in UTF-8: it has zero bytes, as UTF-16 text has.",
+            f"{path} isn't plain UTF-8 text: it has zero bytes, as UTF-16 text does.",
             path,
             data[: data.find(b"\0") + 1].count(b"\n") + 1 if b"\0" in data else 1,
             expected="text in UTF-8",
@@ -61,8 +61,8 @@ def _of(package: Package, path: str, kind: str, relayed: bool) -> Iterator[Findi
     if data.startswith(codecs.BOM_UTF8) and is_script:
         yield Finding(
             "text",
-            f"{path} begins with a byte order mark (BOM), three bytes that an editor does not show."
-            " Linux then does not see the #! of the first line, and cannot start the script.",
+            f"{path} begins with a byte order mark (BOM), three bytes that an editor doesn't show."
+            " So Linux doesn't see the #! of the first line, and can't start the script.",
             path,
             1,
             expected="#! as the first two bytes",
@@ -78,13 +78,13 @@ def _of(package: Package, path: str, kind: str, relayed: bool) -> Iterator[Findi
 def _windows_ends(data: bytes, path: str, kind: str, is_script: bool) -> Iterator[Finding]:
     fix = f"Convert the file: sed -i 's/\\r$//' {path}"
     if kind not in ("python", "message"):
-        works = f"{path} has Windows line ends. It works all the same; scripts with them do not."
+        works = f"{path} has Windows line ends. It works anyway, but scripts with them don't."
         yield Finding("text", works, path, 1, HINT, fix=fix)
     elif is_script and data.split(b"\n", 1)[0].endswith(b"\r"):
         yield Finding(
             "text",
-            f"{path} has Windows line ends. Linux takes the one after the first line for a part"
-            " of the program's name, and looks for 'python' with an invisible character.",
+            f"{path} has Windows line ends. Linux takes the one after the first line as part of"
+            " the program's name, and looks for 'python' with an invisible character.",
             path,
             1,
             expected="lines that end with a newline (LF)",
@@ -114,16 +114,18 @@ def _encoding(data: bytes, path: str, kind: str, relayed: bool) -> Iterator[Find
             pass
     harmless = kind in ("cpp", "header", "cmake")
     what = (
-        "A compiler may pass over it" if harmless else "Whoever reads the file as UTF-8 stops there"
+        "A compiler may ignore it"
+        if harmless
+        else "A program that reads the file as UTF-8 stops there"
     )
     yield Finding(
         "text",
-        f"Line {line} of {path} has a byte that is not UTF-8. {what}.",
+        f"Line {line} of {path} has a byte that isn't UTF-8. {what}.",
         path,
         line,
         HINT if harmless else CERTAIN,
         expected="text in UTF-8",
-        seen=f"the byte {byte:02X}, perhaps of a letter such as ä or é in Latin-1",
+        seen=f"the byte {byte:02X}, perhaps a letter like ä or é saved as Latin-1",
         fix="Save the file with the encoding UTF-8.",
         why="python-encoding" if kind == "python" else "",
     )

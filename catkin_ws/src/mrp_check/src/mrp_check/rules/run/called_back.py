@@ -30,7 +30,7 @@ def _findings(case: Case) -> Iterator[Finding]:
                 file, line = case.places.of(name, Kind.SPIN, Kind.SUBSCRIBER)
                 yield Finding(
                     "spin",
-                    f"Messages on {topic} come to {name}, {where}, and it calls no callback: it"
+                    f"Messages on {topic} come to {name}, {where}, but it calls no callback: it"
                     " never gets to ros::spin() or ros::spinOnce().",
                     file,
                     line,
@@ -78,12 +78,12 @@ def _busy(node: Node) -> Iterator[Finding]:
     yield node.finding(
         "spin",
         f"{node.name} keeps a processor busy, though nothing arrives: it ran for"
-        f" {min(busy, 1):.0%} of the time. A loop of it never pauses.",
+        f" {min(busy, 1):.0%} of the time. One of its loops never pauses.",
         (file, line),
         HABIT,
         expected=f"a {rate}, whose sleep() is called in the loop",
         seen=f"{min(busy, 1):.0%} of a processor",
-        fix=f"Make a {rate} before the loop, and call its sleep() at the end of it.",
+        fix=f"Create a {rate} before the loop, and call its sleep() at the end of each turn.",
     )
 
 

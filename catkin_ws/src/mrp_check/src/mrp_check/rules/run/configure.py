@@ -47,7 +47,7 @@ def _wants_tests(case: Case) -> Iterator[Finding]:
         found = configuring.finding(case.package, output, case.package_folder, case.catkin.model)
         if found:
             found.certainty = HABIT
-            found.message += " With catkin_make, which makes tests, it continues."
+            found.message += " With catkin_make, which builds tests, it continues."
             yield found
 
 

@@ -42,21 +42,21 @@ def _of(case: Case, node: str, place: Place) -> Iterator[tuple[str, str, str]]:
         yield (
             "Ctrl-C doesn't end the node while it waits for the keyboard: somebody has to press"
             " Enter first.",
-            "a parameter or a topic in place of the keyboard",
+            "a parameter or a topic instead of the keyboard",
             "Give rospy.init_node() disable_signals=True; or take a parameter."
             if is_python
             else "Give ros::init() ros::init_options::NoSigintHandler; or take a parameter.",
         )
     elif place.text == "endless":
         right = f"while not {asks}:" if is_python else f"while ({asks})"
-        said = f"This loop never ends: it doesn't ask {asks}, so Ctrl-C doesn't end the node."
+        said = f"This loop never ends: it doesn't check {asks}, so Ctrl-C doesn't end the node."
         yield said, right, f"Write {right}"
     elif isinstance(place.period, (int, float)) and place.period > case.spec.shutdown.seconds:
         yield (
-            f"This loop doesn't ask {asks}: after Ctrl-C it runs to its end, which takes up to"
-            f" {place.period:.0f} s.",
+            f"This loop doesn't check {asks}, so after Ctrl-C it runs to its end, which takes up"
+            f" to {place.period:.0f} s.",
             f"{asks} in the loop",
-            f"Ask {asks} in each turn, and leave the loop then.",
+            f"Check {asks} in each turn, and leave the loop then.",
         )
 
 

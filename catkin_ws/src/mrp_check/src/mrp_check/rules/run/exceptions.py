@@ -142,7 +142,7 @@ def _raises(node: Node) -> Iterator[Finding]:
         place, text = called
         yield node.finding(
             "callbacks",
-            f"{node.name} has a callback that cannot be called as ROS calls it: {text}.",
+            f"{node.name} has a callback that can't be called as ROS calls it: {text}.",
             place,
             expected="a callback that takes one argument, plus self if it is a method",
             seen=f"TypeError: {text}",

@@ -59,10 +59,10 @@ def _of(node: Node, direct: Alone, asked: float, shutdown: Shutdown) -> Iterator
         force = [_needs_force(name, launch) for name, launch in _runs(node)]
         if True in force or False not in force:
             yield finding(
-                f"{node.name} does not end on Ctrl-C: it was still there after"
+                f"{node.name} doesn't end on Ctrl-C: it was still running after"
                 f" {shutdown.seconds:g} s.",
                 _loop_around(node, places.stack(lines)) or _waits(node),
-                "it goes on",
+                "it keeps running",
                 "Let loops end when rospy.is_shutdown() is true or ros::ok() is false, and let no"
                 " thread outlive main().",
             )
@@ -218,7 +218,7 @@ RULE = Rule(
         "exit": Requirement(
             "Each node ends cleanly on Ctrl-C",
             "launching",
-            evidence.when(Node.has_ended, "was not seen to end"),
+            evidence.when(Node.has_ended, "wasn't seen to end"),
         ),
         "leftovers": Requirement(
             "Nothing is left when the nodes have ended", "launching", evidence.up

@@ -41,9 +41,9 @@ def _findings(case: Case) -> Iterator[Finding]:
             call = "get_num_connections()" if case.spec.nodes[run.node].language == "python" else ""
             yield Finding(
                 "topic",
-                f"{run.node} publishes on {outside(one.topic)} just when it has"
-                f" made its publisher, and never again, {run.where}: no subscriber is connected"
-                " yet, and nobody hears it.",
+                f"{run.node} publishes on {outside(one.topic)} right after creating its publisher,"
+                f" and never again, {run.where}: no subscriber is connected yet, so nobody gets"
+                " it.",
                 *case.places.of_topic(run.node, Kind.PUBLISHER, one.topic),
                 certainty=SEEN if heard else HABIT,
                 expected="a wait until somebody is connected; or latch",

@@ -98,7 +98,7 @@ def _of_types(case: Case, graph: Graph, end: End, publishers: list[End]) -> Iter
         file, line = case.places.of_topic(end.node or "", Kind.SUBSCRIBER, end.topic)
         yield Finding(
             "type",
-            f"{end.node} subscribes to {end.topic} with messages of type {end.type}, and"
+            f"{end.node} subscribes to {end.topic} with messages of type {end.type}, but"
             f" {other.node or 'another node'} publishes {other.type} there: nothing arrives.",
             file,
             line,
@@ -146,7 +146,7 @@ def _alone(case: Case, graph: Graph, end: End, published: set[str]) -> Iterator[
     digits = [re.sub(r"\d", "", one.topic) for one in (other, end)]
     yield Finding(
         "topic",
-        f"{graph.where}, {end.node} subscribes to {end.topic}, where nobody publishes, and"
+        f"{graph.where}, {end.node} subscribes to {end.topic}, where nobody publishes, but"
         f" {other.node} publishes on {other.topic}.",
         file,
         line,

@@ -67,7 +67,7 @@ def _problems(case: Case) -> Iterator[Finding]:
     for problem in case.observed.problems:
         yield Finding(
             "starts",
-            f"The nodes could not be run: {problem}.",
+            f"The nodes couldn't be run: {problem}.",
             *_launch_place(case.package, case.spec, case.observed),
             expected="nodes that can be started",
         )
@@ -95,7 +95,7 @@ def _launch_findings(package: Package, spec: Spec, seen: Observed) -> Iterator[F
             *place,
             expected="a command that can be run for each node",
             seen=why,
-            fix=f"Remove{prefix}: it starts the node by another program." if prefix else "",
+            fix=f"Remove{prefix}: it starts the node with another program." if prefix else "",
             node=named.group(1) if named else None,
         )
         return
@@ -109,7 +109,7 @@ def _killed(facts: Facts, seen: Observed) -> Iterator[Finding]:
             "starts",
             "A node kills roslaunch, and perhaps the other nodes.",
             *facts.first(Kind.KILLS, Kind.STARTS),
-            expected="nodes that end no program but themselves",
+            expected="nodes that end only themselves",
             seen=f"roslaunch ended {code_text(code)}",
         )
 
@@ -124,7 +124,7 @@ def _launch_place(package: Package, spec: Spec, seen: Observed) -> Where:
 def _no_executable(node: Node) -> Finding:
     return node.finding(
         "starts",
-        f"{node.name} could not be run: it has no executable.",
+        f"{node.name} couldn't be run: it has no executable.",
         node.places.in_launch_file(node.name),
         expected=f"an executable for {node.name}",
     )
@@ -180,7 +180,7 @@ def _of_start(case: Case, node: Node, finding: Finding) -> bool:
     early = _early_call(node, lines)
     if early:
         finding.certainty, (finding.file, finding.line) = HABIT, early
-        finding.message += " It does not wait for the service that it calls."
+        finding.message += " It doesn't wait for the service that it calls."
         return False
     if node.direct and node.direct.code == 0 and not _is_left_alone(node):
         finding.certainty = HINT

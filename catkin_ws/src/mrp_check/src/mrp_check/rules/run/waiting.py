@@ -104,7 +104,7 @@ def _unwaited(case: Case, node: str) -> Iterator[Finding]:
     wait = "rospy.wait_for_service()" if is_python else "waitForExistence() of the client"
     yield Finding(
         "starts",
-        f"{node} calls a service, and doesn't wait until it is offered: if the node that offers it"
+        f"{node} calls a service without waiting until it's offered: if the node that offers it"
         " starts later, the call fails.",
         place.file,
         place.line,

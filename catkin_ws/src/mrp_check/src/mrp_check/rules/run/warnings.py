@@ -138,7 +138,7 @@ def _of_libraries(node: Node, run: Run, lines: list[Log]) -> Iterator[Finding]:
                 why=why,
             )
         else:
-            said = f"A library of ROS logs this for {node.name}, {run.where}: {text[:300]}"
+            said = f"A ROS library logs this for {node.name}, {run.where}: {text[:300]}"
             seen = f"{log.file}:{log.line}"
             place = _place(node, log)
             more = {"expected": "no such line", "seen": seen, "why": why}
@@ -197,7 +197,7 @@ def _illegal_name(node: Node) -> Iterator[Finding]:
             slashes = " It has two slashes: rospy.get_namespace() already ends with one."
             yield node.finding(
                 "warnings",
-                f"{node.name} uses the name '{name}', which ROS warns of."
+                f"{node.name} uses the name '{name}', which ROS warns about."
                 + (slashes if "//" in name else ""),
                 (file, line),
                 HABIT,

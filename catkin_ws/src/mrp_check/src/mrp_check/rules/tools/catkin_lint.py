@@ -21,7 +21,7 @@ from mrp_check.run import evidence
 from mrp_check.run.case import Case
 from mrp_check.sandbox.confine import Result
 
-_AGREE = "Let package.xml, find_package() and catkin_package() name the same packages."
+_AGREE = "Name the same packages in package.xml, find_package() and catkin_package()."
 _INSTALL = "Add it to install(); or leave it, if you only work in your own workspace."
 _TABLE = {
     "MISSING_CATKIN_DEPEND": Row(
@@ -34,7 +34,7 @@ _TABLE = {
         "generate_messages() names a package that find_package() doesn't.", _AGREE
     ),
     "UNGUARDED_TEST_CMD": Row(
-        "A test is made where nobody wants tests, too.",
+        "A test is built even where nobody wants tests.",
         "Put it between if(CATKIN_ENABLE_TESTING) and endif().",
     ),
     "UNINSTALLED_INCLUDE_PATH": Row("The package's headers aren't installed.", _INSTALL),
