@@ -96,7 +96,7 @@ def test_who_has_not_the_certificate_sends_no_work(class_, protocol, config):
     address = f"{protocol}://scheduler:8786"
     asked = (*CHECK, "--class", "/mrp", "--scheduler", address)
     done = run("docker", "run", "--rm", "--init", *options, IMAGE, *asked, check=False)
-    assert f"check: There is no Dask scheduler at {address}: " in done.stdout
+    assert f"check: There's no Dask scheduler at {address}: " in done.stdout
     assert done.returncode == 2
 
 

@@ -72,7 +72,8 @@ def test_what_beginners_write_has_no_error(tmp_path, report_schema):
     assert not [one for one in report.findings if one.severity == ERROR], shown(report.findings)
     assert report.verdict == check.MET, report.reason
     assert {"values", "rate", "queue"} <= {*report.left_out}
-    assert "Left out, as only a contract can say it: " in terminal.text(report, everything=True)
+    text = terminal.text(report, everything=True)
+    assert "Left out, because only a contract can say it: " in text
     jsonschema.validate(json.loads(json_.text(report)), report_schema)
 
 
@@ -118,7 +119,7 @@ def test_no_contract_is_written_from_a_package_that_does_not_work(
         command.main(["--write-contract", "some_pkg"])
     said = capsys.readouterr().err.splitlines()[-1]
     assert ended.value.code == 2
-    assert said.startswith(f"check: no contract is written, as {says}"), said
+    assert said.startswith(f"check: no contract was written, because {says}"), said
     assert [path.name for path in tmp_path.iterdir()] == ["some_pkg"]
 
 

@@ -48,7 +48,7 @@ def test_unbalanced_brace_is_found_by_the_indentation():
         ),
         (
             "no matching function for call to ‘ros::NodeHandle::subscribe(const char [2])’",
-            "arguments of subscribe() do not fit",
+            "arguments of subscribe() don't fit",
         ),
         (
             "binding reference of type ‘ros::ParameterAdapter<std_msgs::UInt32_<std::allocator<"

@@ -60,7 +60,7 @@ class Room(classroom.Classroom):
 
 
 def test_no_such_folder(tmp_path):
-    with pytest.raises(errors.PackageError, match="There is no folder"):
+    with pytest.raises(errors.PackageError, match="There's no folder"):
         Room(tmp_path / "nowhere")
 
 

@@ -29,8 +29,8 @@ pytestmark = pytest.mark.slow
 HERE = pathlib.Path(__file__).resolve().parent
 SPEC = ("--spec", "talker_listener_py")
 NO_WORKER = (
-    "check: The scheduler at {0} has no worker: expected one or more. Start one, and the checks go"
-    " on: dask worker {0} --nthreads 1."
+    "check: The scheduler at {0} has no worker: expected one or more. Start one, and the checks"
+    " continue: dask worker {0} --nthreads 1."
 )
 
 
@@ -134,7 +134,10 @@ def test_when_all_workers_are_gone_it_says_so_and_waits(tmp_path, second):
         *SPEC,
     )
     with cluster(tmp_path) as (_, address, workers):
-        expected = [NO_WORKER.format(address), "check: There is a worker again: the checks go on."]
+        expected = [
+            NO_WORKER.format(address),
+            "check: There's a worker again: the checks continue.",
+        ]
 
         def said():
             return [line for line in checker.errors if "worker" in line]
@@ -196,7 +199,7 @@ def test_a_scheduler_that_dies_loses_nothing(tmp_path, second):
     assert checker.returncode == 2, said
     assert "Traceback" not in said
     assert said.splitlines()[-1] == (
-        f"check: The scheduler at {address} has ended, or cannot be reached any more. What is"
+        f"check: The scheduler at {address} has ended, or can't be reached anymore. What has been"
         " checked is kept: start it and its workers, and call the same command again."
     )
     with cluster(tmp_path, workers=1) as (_, address, _):
@@ -216,7 +219,7 @@ def test_a_signal_ends_what_runs_on_the_workers(tmp_path, second):
         assert workers[0].code is None
     assert checker.returncode == 1
     assert "Traceback" not in said
-    assert said.splitlines()[-1] == "check: stopped before its end; what it ran has ended, too."
+    assert said.splitlines()[-1] == "check: stopped early; everything it started has ended, too."
 
 
 @pytest.mark.parametrize("what", ["another", "none"])
@@ -235,7 +238,7 @@ def test_a_worker_with_another_checker_refuses(tmp_path, what):
     expected = {
         "another": "The worker at tcp://.* has another version of the checker. Install the one of"
         " this machine there, and start the worker again.",
-        "none": f"The scheduler at {address} or a worker of it cannot be used: expected machines"
+        "none": f"The scheduler at {address} or a worker of it can't be used: expected machines"
         " with the checker,.*No module named 'mrp_check'.*",
     }
     assert re.fullmatch(f"check: {expected[what]}", said.splitlines()[-1])
@@ -253,7 +256,7 @@ def test_an_address_without_a_scheduler(tmp_path, monkeypatch, address, says):
     monkeypatch.setenv("DASK_DISTRIBUTED__COMM__TIMEOUTS__CONNECT", "1s")
     hand_in(tmp_path / "class", "anna")
     code, said, _ = checked(tmp_path / "class", "--scheduler", address)
-    expected = f"check: There is no Dask scheduler at {address}: expected one that dask-scheduler"
+    expected = f"check: There's no Dask scheduler at {address}: expected one that dask-scheduler"
     assert (code, said.count("\n")) == (2, 1)
     assert said.startswith(f"{expected} has started. It says: {says}")
 
@@ -273,7 +276,7 @@ def test_without_dask_the_package_is_named(tmp_path, monkeypatch):
     code, said, _ = checked(tmp_path / "class", "--scheduler", "tcp://127.0.0.1:1")
     assert code == 2
     assert said == (
-        "check: --scheduler needs Dask, which this machine does not have. Install it: sudo apt"
+        "check: --scheduler needs Dask, which this machine doesn't have. Install it: sudo apt"
         " install python3-distributed.\n"
     )
 

@@ -30,9 +30,9 @@ def run(*arguments, cwd=None, program=CHECK, **variables):
 @pytest.mark.parametrize(
     ("arguments", "says"),
     [
-        (["no_such_folder"], "check: There is no folder no_such_folder.\n"),
-        ([os.devnull], "check: /dev/null is no folder; expected the folder of a package.\n"),
-        ([".", "--spec", "none.yaml"], "check: none.yaml: the spec cannot be read: No such file"),
+        (["no_such_folder"], "check: There's no folder no_such_folder.\n"),
+        ([os.devnull], "check: /dev/null isn't a folder; expected the folder of a package.\n"),
+        ([".", "--spec", "none.yaml"], "check: none.yaml: the spec can't be read: No such file"),
         ([".", "--spec", __file__], f"check: {__file__}:"),
     ],
     ids=range(4),
@@ -99,7 +99,7 @@ def test_a_contract_replaces_no_file(tmp_path):
     done = run("--write-contract", WORKSPACE / "src" / "mrp", cwd=tmp_path)
     assert (done.returncode, done.stdout, contract.read_text()) == (2, "", "mine")
     assert done.stderr == (
-        "check: mrp.yaml is there already: rename it, or call check in another folder.\n"
+        "check: mrp.yaml already exists: rename it, or call check in another folder.\n"
     )
 
 
@@ -112,7 +112,7 @@ def test_wrong_option_is_exit_code_2():
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
-        (("--class", "/no/such/folder"), "There is no folder /no/such/folder"),
+        (("--class", "/no/such/folder"), "There's no folder /no/such/folder"),
         (("--class", "/", "--json", "x"), "--json goes without --class"),
         (("/", "--csv", "x"), "--csv goes with --class"),
         (("--class", "/", "--spec", ""), "--class needs a contract"),

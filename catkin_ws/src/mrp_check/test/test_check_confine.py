@@ -50,7 +50,7 @@ def test_command_that_does_not_exist(tmp_path):
 def test_sleeps_for_ever(confined):
     result = confined(f"import time; time.sleep({FOR_EVER})", time=FEW_SECONDS)
     assert (result.code, result.ended_by) == (None, "time")
-    assert result.limit_text(confine.Limits(time=3)) == "it did not end within 3 s"
+    assert result.limit_text(confine.Limits(time=3)) == "it didn't end within 3 s"
 
 
 def test_ignores_signals(confined):

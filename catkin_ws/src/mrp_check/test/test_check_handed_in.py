@@ -177,11 +177,11 @@ REFUSED = {
     "one.rar": (of_bytes(b"Rar!\x1a\x07"), "is a RAR archive: expected"),
     "one.tar.zst": (of_bytes(b"\x28\xb5\x2f\xfd"), "is a Zstandard archive: expected"),
     "report.pdf": (of_bytes(b"%PDF-1.7"), "is a PDF file: expected"),
-    "node.py": (of_bytes(b"import rospy\n"), "is a single file, and no archive"),
+    "node.py": (of_bytes(b"import rospy\n"), "is a single file, but not an archive"),
     "empty.zip": (of_bytes(b""), "is an empty file"),
-    "wrong.zip": (of_bytes(b"PK\3\4"), "cannot be unpacked: File is not a zip file"),
+    "wrong.zip": (of_bytes(b"PK\3\4"), "can't be unpacked: File is not a zip file"),
     "wrong.gz": (of_bytes(b"\x1f\x8b"), "cannot be unpacked"),
-    "wrong.bundle": (of_bytes(b"# v2 git bundle\n\n"), "git cannot read it"),
+    "wrong.bundle": (of_bytes(b"# v2 git bundle\n\n"), "git can't read it"),
     "nothing.zip": (lambda path: zip_(path, {"a/x.py": ""}), "nothing.zip has no package.xml"),
     "folder": (lambda path: handed_in.folder(path, {"a.pdf": ""}), "below it, but a.pdf: expected"),
     "pipe": (os.mkfifo, "is neither a folder nor a file"),
@@ -289,7 +289,7 @@ def test_an_xml_bomb_is_reported(uploads):
     found, finding = manifest.parse(one)
     assert (found, one.name) == (None, "anna")
     assert finding.message == (
-        "package.xml is no valid XML: an entity is declared, noticed in line 1."
+        "package.xml isn't valid XML: an entity is declared, noticed on line 1."
     )
 
 

@@ -66,8 +66,8 @@ def test_late_days_take_points_or_percent():
 @pytest.mark.parametrize(
     ("text", "says"),
     [
-        ("student\nanna\nana\n", r":3: there is no submission 'ana'\. Did you mean 'anna'\?"),
-        ("student,by\nanna,\n,B. Roe\n", r":3: there is no submission ''\."),
+        ("student\nanna\nana\n", r":3: there's no submission 'ana'\. Did you mean 'anna'\?"),
+        ("student,by\nanna,\n,B. Roe\n", r":3: there's no submission ''\."),
         ("student\nanna\nberta\nanna\n", r":4: 'anna' appears twice: see line 2\."),
         ("student,late_days\nanna,two\n", r":2: late_days: expected a number .* found 'two'\."),
         ("student,late_days\nanna,-1\n", r":2: late_days: .* found '-1'\."),
@@ -81,7 +81,7 @@ def test_late_days_take_points_or_percent():
         ("student,maximun\n", r":1: there is no column 'maximun'.* Did you mean 'maximum'\?"),
         ("student,by,by\n", r":1: the column 'by' appears twice\."),
         ("by\nanna\n", r":1: expected the column 'student'; it is missing\."),
-        ('student,reason\nanna,"x\ny"\n"berta\n', r":4: this is no valid CSV"),
+        ('student,reason\nanna,"x\ny"\n"berta\n', r":4: this isn't valid CSV"),
         ("student\nj\xfcrgen\n", r":2: expected UTF-8 text"),
         ("", r":1: expected a line with the columns: student, late_days"),
     ],
@@ -102,7 +102,7 @@ def test_nothing_is_checked_before_the_file_can_be_used(tmp_path, monkeypatch, c
     with pytest.raises(SystemExit) as end:
         check_command.main(["--class", str(tmp_path / "class"), "--by-hand", str(file)])
     assert end.value.code == 2
-    assert f"{file}:2: late_days is 1, but the contract does not say" in capsys.readouterr().err
+    assert f"{file}:2: late_days is 1, but the contract doesn't say" in capsys.readouterr().err
 
 
 def test_a_name_may_be_composed_in_two_ways(tmp_path):

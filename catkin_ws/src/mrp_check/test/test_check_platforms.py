@@ -98,7 +98,7 @@ def submission(name, one):
         report(),
         report(SPIN, SILENT, VALUES),
         report(Finding("text", "\x1b[2J", "\udcff", severity="error"), reason="No time was left."),
-        unchecked("There is no folder x."),
+        unchecked("There's no folder x."),
     ],
     ids=range(4),
 )
@@ -131,7 +131,7 @@ def test_what_could_not_be_checked_says_why_and_earns_nothing():
     found = results(one)
     assert sum(test["score"] for test in found["tests"]) == 0
     assert found["output"].endswith("\nNo time was left.")
-    assert "could not be checked: No time was left." in found["tests"][0]["output"]
+    assert "couldn't be checked: No time was left." in found["tests"][0]["output"]
 
 
 def shown_by_gradescope(one):
@@ -250,7 +250,7 @@ def test_worksheet_has_what_moodle_reads():
 def test_text_for_a_mail(tmp_path):
     results = [*CLASS[:2], submission("n" * 252, report())]
     (failed,) = mail.write(tmp_path, results, CONTRACT)
-    assert failed.endswith("nn.txt cannot be written: File name too long.")
+    assert failed.endswith("nn.txt can't be written: File name too long.")
     anna, bea = ((tmp_path / f"{one.name}.txt").read_text() for one in CLASS[:2])
     most = class_table.most(CONTRACT)
     assert f"{NAMED}: mark {most - 7.5:g} of {most:g}\n" in anna

@@ -63,7 +63,7 @@ def report(*findings, reason="", suppressed=()):
 REPORTS = [
     report(suppressed=[SUPPRESSED]),
     report(CAUSE, RESULT, HINTED),
-    report(reason="There is no folder x."),
+    report(reason="There's no folder x."),
 ]
 
 
@@ -155,7 +155,7 @@ def test_console_shows_verdicts_causes_first_and_pages(monkeypatch):
     assert text.index("src/a.py:9: error:") < text.index("src/a.py:4: note:")
     assert "  page:     “publisher” of the tutorial" in text
     count = len(REQUIREMENTS)
-    assert text.endswith(f"1 of {count} requirements are not met; 1 could not be checked.")
+    assert text.endswith(f"1 of {count} requirements are not met; 1 couldn't be checked.")
 
 
 def test_console_shows_one_cause_once_and_notes_on_request():

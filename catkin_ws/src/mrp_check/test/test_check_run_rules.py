@@ -241,7 +241,7 @@ def test_a_package_that_generate_messages_does_not_name(tmp_path):
     )
     model = Model(package.root, [], complete=False)
     finding = configuring.finding(package, output, package.root, model)
-    assert "uses geometry_msgs/Point, and generate_messages() does not name" in finding.message
+    assert "uses geometry_msgs/Point, but generate_messages() doesn't name" in finding.message
 
 
 @pytest.mark.parametrize(

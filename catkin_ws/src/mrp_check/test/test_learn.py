@@ -127,7 +127,7 @@ def test_first_exercise_at_a_terminal(tmp_path, env):
     # The test's editor solves it.
     terminal.press("o", "Checking: ")
     terminal.wait_for(
-        f"Passed: 1 of {len(defects.exercises())}. n goes on.",
+        f"Passed: 1 of {len(defects.exercises())}. n shows the next one.",
         "| 1 passed",
         "You've learned: Python's last line",
     )
@@ -156,7 +156,7 @@ def test_lines_without_a_terminal_and_the_end_by_a_signal(tmp_path, env):
         program.wait_for(lambda: any(line.startswith(found) for line in program.lines), found)
         assert program.stop(signal.SIGINT) == 1
     assert "# A parenthesis" in program.lines
-    assert "Stopped. All that was started has ended; your changes are kept." == program.lines[-1]
+    assert "Stopped. Everything it started has ended; your changes are kept." == program.lines[-1]
     assert_nothing_is_left(tmp_path)
 
 

@@ -48,7 +48,7 @@ def missing_tool() -> str | None:
     """Return a sentence that names a tool which is not installed, or None."""
     for program, package in TOOLS.items():
         if not shutil.which(program, path=search_path()):
-            return f"{program} is not installed: install Debian's package {package} (make deps)."
+            return f"{program} isn't installed: install Debian's package {package} (make deps)."
     return None
 
 
@@ -113,7 +113,7 @@ class Catkin:
         limits = confine.Limits(time=self.workspace.timeout)
         if result.ended_by == "time":
             raise CannotCheck(
-                f"catkin_make did not end within {limits.time:.0f} s: the machine is too busy, or"
+                f"catkin_make didn't end within {limits.time:.0f} s: the machine is too busy, or"
                 " CMakeLists.txt waits for something; --timeout gives it more time."
             )
         why = result.limit_text(limits) or "" if result.ended_by else ""

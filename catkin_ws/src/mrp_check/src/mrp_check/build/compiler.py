@@ -133,7 +133,7 @@ def warnings(output: str, copy: pathlib.Path) -> Iterator[tuple[str, int, str, s
 def _no_return(package: Package, file: str, line: int) -> Finding:
     return Finding(
         "compile",
-        f"The function that ends in line {line} of {file} says that it returns a value, and has no"
+        f"The function that ends in line {line} of {file} says that it returns a value, but has no"
         " return: its caller gets an arbitrary value, and the node may crash.",
         file,
         line,
@@ -184,11 +184,11 @@ def older_standard(package: Package, output: str) -> Iterator[Finding]:
     if place and package.of_kind("cpp"):
         yield Finding(
             "compile",
-            "CMakeLists.txt selects a C++ standard older than C++17: it works here, but"
-            " ROS's headers do not compile with it where log4cxx is newer.",
+            "CMakeLists.txt selects a C++ standard older than C++17: it works here, but ROS's"
+            " headers don't compile with it where log4cxx is newer.",
             *place,
             HABIT,
-            expected="no such line, as the compiler takes C++17 by itself",
+            expected="no such line, because the compiler uses C++17 by default",
             seen=package.line(*place),
             fix="Remove the line, or set the standard to 17.",
         )

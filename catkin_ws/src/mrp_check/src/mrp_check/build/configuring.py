@@ -81,7 +81,7 @@ def _undeclared(package: Package, name: str, text: str) -> Finding:
     line = package.find_line("package.xml", f">{name}<")
     return Finding(
         "configure",
-        f"catkin_package() names {name}, and package.xml does not say that it is needed when the"
+        f"catkin_package() names {name}, but package.xml doesn't say that it's needed when the"
         " package runs.",
         "package.xml",
         line or package.find_line("package.xml", "depend>", 1),
@@ -131,17 +131,17 @@ def _unknown_command(package: Package, model: Model, match: re.Match[str], text:
     name = match.group(1)
     if name in _BRINGS_MESSAGES:
         return (
-            f"{name}() is not known, as find_package(catkin ...) does not name"
-            " message_generation, which brings it.",
+            f"{name}() isn't known, because find_package(catkin ...) doesn't name"
+            " message_generation, which provides it.",
             "Add message_generation to COMPONENTS.",
         )
     if name.startswith("catkin_") and model.catkin is None:
         return (
-            f"{name}() is not known, as find_package(catkin REQUIRED ...) is missing above it.",
+            f"{name}() isn't known, because find_package(catkin REQUIRED ...) is missing above it.",
             "Add find_package(catkin REQUIRED COMPONENTS ...).",
         )
     near = nearest(name.lower(), _COMMANDS)
-    said = f"there is no command {name}().{perhaps(near)}"
+    said = f"there's no command {name}().{perhaps(near)}"
     return said, f"Write {near}." if near else "Correct it."
 
 
@@ -149,23 +149,23 @@ def _no_package(package: Package, model: Model, match: re.Match[str], text: str)
     name = match.group(1)
     near = nearest(name, PACKAGES, ALIKE)
     return (
-        f"there is no package {name} on this machine.{perhaps(near)}",
+        f"there's no package {name} on this machine.{perhaps(near)}",
         f"Write {near} for {name}." if near else f"Install {name}, or remove it.",
     )
 
 
 def _no_source(package: Package, model: Model, match: re.Match[str], text: str) -> _Said:
     near = nearest(match.group(1), package.of_kind("cpp"))
-    said = f"there is no source {match.group(1)}.{perhaps(near)}"
+    said = f"there's no source {match.group(1)}.{perhaps(near)}"
     return said, "Name a file that is there."
 
 
 def _no_target(package: Package, model: Model, match: re.Match[str], text: str) -> _Said:
     name = match.group(1)
     near = nearest(name, [] if name in model.targets else model.targets, 0.5)
-    hint = f" There is {near}." if near else ""
+    hint = f" There's {near}." if near else ""
     return (
-        f"there is no target {name} at this point.{hint} add_executable() has to come before.",
+        f"there's no target {name} at this point.{hint} add_executable() has to come before.",
         f"Write {near} for {name}." if near else f"Add add_executable({name} ...) above it.",
     )
 
@@ -174,7 +174,7 @@ def _no_dependency(package: Package, model: Model, match: re.Match[str], text: s
     name = match.group(1)
     near = nearest(name, [*model.targets, *(f"{package.name}_{one}" for one in _MESSAGE_TARGETS)])
     return (
-        f"there is no target {name} to wait for.{perhaps(near)}",
+        f"there's no target {name} to wait for.{perhaps(near)}",
         f"Write {near} for {name}." if near else f"Remove {name}.",
     )
 
@@ -182,7 +182,7 @@ def _no_dependency(package: Package, model: Model, match: re.Match[str], text: s
 def _no_script(package: Package, model: Model, match: re.Match[str], text: str) -> _Said:
     shown = "/".join(match.group(1).rsplit("/", 2)[1:])
     near = nearest(shown, package.of_kind("python"))
-    return f"there is no script {shown}.{perhaps(near)}", "Name a file that is there."
+    return f"there's no script {shown}.{perhaps(near)}", "Name a file that is there."
 
 
 # (command or None for any, what CMake says) -> what it means and what to do: these words, or a
@@ -192,7 +192,8 @@ _WORDS: Sequence[tuple[str | None, str, Callable[..., _Said] | _Said, str]] = (
         None,
         WANTS_TESTS,
         (
-            "it makes a test even where no tests are wanted, such as when Debian builds a package.",
+            "it builds a test even where no tests are wanted, such as when Debian builds a"
+            " package.",
             "Put it between if(CATKIN_ENABLE_TESTING) and endif().",
         ),
         "",
@@ -203,7 +204,7 @@ _WORDS: Sequence[tuple[str | None, str, Callable[..., _Said] | _Said, str]] = (
         None,
         r"Messages depends on unknown pkg: (\w+)",
         (
-            "generate_messages() names a package that find_package() does not find.",
+            "generate_messages() names a package that find_package() doesn't find.",
             "Name only what the definitions use, and find it with find_package(catkin ...).",
         ),
         "",
@@ -212,7 +213,7 @@ _WORDS: Sequence[tuple[str | None, str, Callable[..., _Said] | _Said, str]] = (
         None,
         r"Cannot locate message \[(\w+)\]: unknown package \[(\w+)\]",
         lambda *given: (
-            f"a definition uses {given[2][2]}/{given[2][1]}, and generate_messages() does not name"
+            f"a definition uses {given[2][2]}/{given[2][1]}, but generate_messages() doesn't name"
             f" {given[2][2]}.",
             f"Write generate_messages(DEPENDENCIES ... {given[2][2]}).",
         ),
@@ -223,7 +224,7 @@ _WORDS: Sequence[tuple[str | None, str, Callable[..., _Said] | _Said, str]] = (
         r"catkin_package\(\) .*?'(\w+)'",
         lambda *given: (
             given[-1],
-            "Let package.xml, find_package() and catkin_package() name the same.",
+            "Name the same packages in package.xml, find_package() and catkin_package().",
         ),
         "catkin-package-depends",
     ),
@@ -249,7 +250,7 @@ _WORDS: Sequence[tuple[str | None, str, Callable[..., _Said] | _Said, str]] = (
     (
         None,
         r"because another target with the same name already exists",
-        ("a target of this name has been made already, further up.", "Give it its own name."),
+        ("there's already a target of this name, further up.", "Give it its own name."),
         "cmake-target-twice",
     ),
     (None, r"non-existing file '([^']+)'", _no_script, ""),

@@ -65,7 +65,7 @@ def _duplicate(package: Package, model: Model, target: Target, match: re.Match[s
 
 def _no_library(package: Package, model: Model, target: Target, match: re.Match[str]) -> Finding:
     return _link(
-        f"The target {target.name} is linked with {match.group(1)}, and there is no such library.",
+        f"The target {target.name} is linked with {match.group(1)}, but there's no such library.",
         (target.file, target.link_line or target.line),
         "${catkin_LIBRARIES}",
         match.group(1),
@@ -84,8 +84,8 @@ def _undefined(package: Package, model: Model, target: Target, match: re.Match[s
         line = package.find_line(file, f"{simple}(") if file in package.files else None
         if line:
             return _link(
-                f"{name} is declared and called in the target {target.name}, and defined nowhere in"
-                " its sources.",
+                f"{name} is declared and called in the target {target.name}, but none of its"
+                " sources defines it.",
                 (file, line),
                 f"a definition of {function}",
                 package.line(file, line),
@@ -94,7 +94,7 @@ def _undefined(package: Package, model: Model, target: Target, match: re.Match[s
                 why="undefined-reference",
             )
     return _link(
-        f"The target {target.name} cannot be linked: {name} is defined in none of its sources.",
+        f"The target {target.name} can't be linked: none of its sources defines {name}.",
         (target.file, target.line),
         f"a definition of {function}",
         ", ".join(target.sources),
@@ -109,13 +109,13 @@ def _of_ros(model: Model, target: Target, name: str) -> Finding:
     if linked:
         why = "one of ROS's libraries is missing."
     elif target.link_line is not None and "roscpp" not in model.components:
-        why = "find_package(catkin ...) does not name roscpp, so catkin_LIBRARIES lacks it."
+        why = "find_package(catkin ...) doesn't name roscpp, so catkin_LIBRARIES lacks it."
     else:
         lacks = "is missing" if target.link_line is None else "has no ${catkin_LIBRARIES}"
-        why = f"it is not linked with ROS's libraries: {call.split('$')[0]}...) {lacks}."
+        why = f"it isn't linked with ROS's libraries: {call.split('$')[0]}...) {lacks}."
     links = " ".join(target.links)[:200]
     return _link(
-        f"The target {target.name} cannot be linked: {name} is not found, as {why}",
+        f"The target {target.name} can't be linked: {name} isn't found, because {why}",
         (target.file, target.link_line or target.line),
         call,
         "no such call" if target.link_line is None else f"linked with: {links}",

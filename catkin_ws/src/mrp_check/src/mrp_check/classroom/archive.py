@@ -53,7 +53,7 @@ class Budget:
 
 
 def has_its_name(name: str) -> bool:
-    """Return whether a file is called like an archive, also one that cannot be read here."""
+    """Return whether a file is called like an archive, also one that can't be read here."""
     return bool(_NAMES.search(name)) and not is_of_tools(name)
 
 
@@ -75,7 +75,7 @@ def unpack(path: pathlib.Path, folder: pathlib.Path, budget: Budget) -> None:
             _Unpacking(path, archive, folder, budget).write(_wanted(entries))
     except _BROKEN as error:
         said = str(error) or type(error).__name__
-        raise PackageError(f"{path.name} cannot be unpacked: {said}. Pack it again.") from None
+        raise PackageError(f"{path.name} can't be unpacked: {said}. Pack it again.") from None
 
 
 def refuse_huge(path: pathlib.Path) -> None:
@@ -83,8 +83,8 @@ def refuse_huge(path: pathlib.Path) -> None:
     size = path.stat().st_size
     if size > _MOST_PACKED:
         raise PackageError(
-            f"{path.name} has {size // MEGABYTE} MB: more than {_MOST_PACKED // MEGABYTE} MB are"
-            " not read. Hand in only the package."
+            f"{path.name} has {size // MEGABYTE} MB: more than {_MOST_PACKED // MEGABYTE} MB"
+            " aren't read. Hand in only the package."
         )
 
 

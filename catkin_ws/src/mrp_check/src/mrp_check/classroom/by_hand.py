@@ -62,7 +62,7 @@ def read(
     most: the contract's points
     late: the contract's rule for late days
 
-    Raises CannotCheck if a line cannot be used: the sentence names it.
+    Raises CannotCheck if a line can't be used: the sentence names it.
     """
     known = {_normal(name): name for name in names}
     found: dict[str, ByHand] = {}
@@ -71,7 +71,7 @@ def read(
         student = known.get(_normal(line.cells["student"]))
         if student is None:
             name = line.cells["student"]
-            line.fail(f"there is no submission '{name}'." + near(name, known))
+            line.fail(f"there's no submission '{name}'." + near(name, known))
         if student in found:
             line.fail(f"'{student}' appears twice: see line {lines[student]}.")
         found[student], lines[student] = line.by_hand(most, late), line.number
@@ -96,7 +96,7 @@ class _Line:
             self.fail(f"late_days: expected whole days; found {days:g}.")
         if days and not late:
             self.fail(
-                f"late_days is {days:g}, but the contract does not say what a day takes off: it has"
+                f"late_days is {days:g}, but the contract doesn't say what a day takes off: it has"
                 " no key 'late', such as late: {percent: 10}."
             )
         override, reason = self.value("override", most), self.cells.get("reason", "")
@@ -155,9 +155,9 @@ def _rows(path: str | pathlib.Path) -> Iterator[tuple[int, list[str]]]:
                 yield number, cells
             number = reader.line_num + 1
     except OSError as error:
-        raise CannotCheck(f"{path} cannot be read: {error.strerror}.") from None
+        raise CannotCheck(f"{path} can't be read: {error.strerror}.") from None
     except UnicodeDecodeError as error:
         number = data.count(b"\n", 0, error.start) + 1
         raise CannotCheck(f"{path}:{number}: expected UTF-8 text, and found other bytes.") from None
     except csv.Error as error:
-        raise CannotCheck(f"{path}:{number}: this is no valid CSV: {error}.") from None
+        raise CannotCheck(f"{path}:{number}: this isn't valid CSV: {error}.") from None

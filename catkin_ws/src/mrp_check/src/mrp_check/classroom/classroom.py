@@ -50,7 +50,7 @@ class Classroom:
     package: which is checked of a submission that has several
     results: where the reports are kept
 
-    Raises PackageError if there is no submission.
+    Raises PackageError if there's no submission.
     """
 
     def __init__(self, folder, spec_file, jobs=None, timeout=120, progress=quiet, package=""):

@@ -36,8 +36,8 @@ class Cluster:
             import distributed
         except ImportError:
             raise ClusterError(
-                "--scheduler needs Dask, which this machine does not have. Install it:"
-                " sudo apt install python3-distributed."
+                "--scheduler needs Dask, which this machine doesn't have. Install it: sudo apt"
+                " install python3-distributed."
             ) from None
         logging.disable()  # what Dask's own log would say is said here in one sentence
         self.address, self._killed = address, distributed.scheduler.KilledWorker
@@ -46,7 +46,7 @@ class Cluster:
             self._client = distributed.Client(address, set_as_default=False)
         except Exception as error:  # of the network, of TLS, or of what the address means
             raise ClusterError(
-                f"There is no Dask scheduler at {address}: expected one that dask-scheduler has"
+                f"There's no Dask scheduler at {address}: expected one that dask-scheduler has"
                 f" started. {_said(error)}"
             ) from None
         wait = dask.utils.parse_timedelta(dask.config.get("distributed.comm.timeouts.connect"))
@@ -68,12 +68,14 @@ class Cluster:
         has_worker = bool((await self._client.scheduler.identity())["workers"])
         if has_worker != self._has_worker:
             self._has_worker = has_worker
-            self._say("There is a worker again: the checks go on." if has_worker else self._none())
+            self._say(
+                "There's a worker again: the checks continue." if has_worker else self._none()
+            )
 
     def _none(self):
         return (
             f"The scheduler at {self.address} has no worker: expected one or more. Start one, and"
-            f" the checks go on: dask worker {self.address} --nthreads 1."
+            f" the checks continue: dask worker {self.address} --nthreads 1."
         )
 
     def mark(self, job: marking.Job) -> tuple[dict, str]:
@@ -84,8 +86,8 @@ class Cluster:
             raise
         except self._killed:
             raise CannotCheck(
-                "Each worker to which it was given died or was lost. Check it alone, on a machine"
-                " that does nothing else."
+                "Each worker to which it was given died or was lost. Check it by itself, on a"
+                " machine that does nothing else."
             ) from None
         except (Exception, concurrent.futures.CancelledError) as error:
             raise self._unusable(error) from None
@@ -106,13 +108,14 @@ class Cluster:
     def _unusable(self, error):
         if isinstance(error, concurrent.futures.CancelledError):
             return ClusterError(
-                f"The scheduler at {self.address} has ended, or cannot be reached any more. What"
-                " is checked is kept: start it and its workers, and call the same command again."
+                f"The scheduler at {self.address} has ended, or can't be reached anymore. What has"
+                " been checked is kept: start it and its workers, and call the same command"
+                " again."
             )
         if isinstance(error, TimeoutError):
             return ClusterError(self._none())
         return ClusterError(
-            f"The scheduler at {self.address} or a worker of it cannot be used: expected machines"
+            f"The scheduler at {self.address} or a worker of it can't be used: expected machines"
             f" with the checker, and dask started where it is on PYTHONPATH. {_said(error)}"
         )
 

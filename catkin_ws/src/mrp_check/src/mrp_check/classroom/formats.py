@@ -167,12 +167,12 @@ def _bundle(file: Plain, stack: contextlib.ExitStack) -> _Tar:
     try:
         done = confine.run(["sh", "-c", _GIT], folder, limits)
     except confine.ConfineError as error:
-        raise PackageError(f"{file.path.name} cannot be unpacked: {error}.") from None
+        raise PackageError(f"{file.path.name} can't be unpacked: {error}.") from None
     if done.code != 0:
         said = done.limit_text(limits) or (done.errors.strip().splitlines() or ["nothing"])[-1]
         raise PackageError(
-            f"{file.path.name} is a git bundle, and git cannot read it: {said}."
-            " Make it with: git bundle create NAME.bundle HEAD"
+            f"{file.path.name} is a git bundle, but git can't read it: {said}. Make it with: git"
+            " bundle create NAME.bundle HEAD"
         )
     tar = Plain(file.path, open(folder / "files.tar", "rb", buffering=0))
     return _Tar(stack.enter_context(tar), stack)
@@ -205,7 +205,7 @@ def opened(path: pathlib.Path, stack: contextlib.ExitStack) -> Any:
             if reader:
                 return reader(file, stack)
             raise PackageError(f"{path.name} is {name}: {_EXPECTED}.")
-    what = "a single file, and no archive that can be read" if head else "an empty file"
+    what = "a single file, but not an archive that can be read" if head else "an empty file"
     raise PackageError(f"{path.name} is {what}: {_EXPECTED}.")
 
 

@@ -39,7 +39,7 @@ def _test(id_, report, spec):
     verdict = report.requirements[id_]
     said = ["\n".join(terminal.finding_lines(f, report)) for f in report.findings if f.id == id_]
     if verdict == UNCHECKED:
-        said.insert(0, f"It could not be checked{terminal.why_not(report, id_)}")
+        said.insert(0, f"It couldn't be checked{terminal.why_not(report, id_)}")
     return {
         "name": f"{REQUIREMENTS[id_].title} ({id_})",
         "score": spec.points_of(id_) if verdict == MET else 0,

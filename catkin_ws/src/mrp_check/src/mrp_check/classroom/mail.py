@@ -20,7 +20,7 @@ def text(one, spec):
 def write(folder, submissions, spec):
     """Write NAME.txt for each submission, and the page NAME.html anew where it has progress.
 
-    Return a sentence on each file that cannot be written.
+    Return a sentence on each file that can't be written.
     """
     failed = []
     for one in submissions:
@@ -33,5 +33,5 @@ def write(folder, submissions, spec):
             try:
                 file.write_text(said, encoding="utf-8", errors="replace")
             except OSError as error:
-                failed.append(f"{terminal.plain(str(file))} cannot be written: {error.strerror}.")
+                failed.append(f"{terminal.plain(str(file))} can't be written: {error.strerror}.")
     return failed

@@ -148,7 +148,7 @@ def _run(job, command, env):
     except subprocess.TimeoutExpired:
         _kill(popen)
         popen.communicate()
-        raise CannotCheck(f"The check did not end within {limit:.0f} s.") from None
+        raise CannotCheck(f"The check didn't end within {limit:.0f} s.") from None
     finally:
         with _LOCK:
             del _RUNNING[popen]

@@ -24,7 +24,7 @@ def entries(path: str | os.PathLike[str]) -> list[pathlib.Path]:
     """Return all that stands in a class's folder, but for what is hidden. Raises PackageError."""
     path = pathlib.Path(path)
     if not path.is_dir():
-        raise PackageError(f"There is no folder {path}: expected one with a folder per student.")
+        raise PackageError(f"There's no folder {path}: expected one with a folder per student.")
     found = [one for one in sorted(path.iterdir()) if not _is_hidden(one.name)]
     if not found:
         raise PackageError(
@@ -40,11 +40,11 @@ def archives(entry: pathlib.Path) -> list[pathlib.Path]:
     """
     if entry.is_symlink() and entry.resolve().parent != entry.parent.resolve():
         raise PackageError(
-            f"{entry.name} is a link out of the class's folder: it is not followed."
-            " Copy the package there."
+            f"{entry.name} is a link out of the class's folder, so it isn't followed. Copy the"
+            " package there."
         )
     if not entry.exists():
-        raise PackageError(f"There is no {entry.name}.")
+        raise PackageError(f"There's no {entry.name}.")
     if not entry.is_dir() and not entry.is_file():
         raise PackageError(f"{entry.name} is neither a folder nor a file.")
     packages, packed, _ = _found_in(entry)

@@ -61,7 +61,7 @@ OF_CLASS = {  # of the submissions, the contract, and the folder of their pages
 }
 FLAGS = {  # what --help says of each
     "any": "check a package that has no contract: report what fails",
-    "static": "only read the files: neither compile the package nor run its nodes",
+    "static": "only read the files: don't compile the package or run its nodes",
     "write_contract": "run a correct package, and write NAME.yaml: a contract for it, to be edited",
     "public": "leave the contract's hidden requirements out of the reports",
     "github": "print the findings as annotations of GitHub Actions, too",
@@ -82,14 +82,14 @@ def main(arguments=None, contract="pub_sub"):
     try:
         sys.exit(run(options))
     except KeyboardInterrupt:
-        sys.exit("check: stopped before its end; what it ran has ended, too.")
+        sys.exit("check: stopped early; everything it started has ended, too.")
 
 
 def parser(contract="pub_sub"):
     parser = argparse.ArgumentParser(
         prog="check" if contract else "mrp-check",
         description="Runs a package, against its contract or without, and says what is wrong.",
-        epilog="exit code: 0 no errors; 1 errors; 2 it could not check",
+        epilog="exit code: 0 no errors; 1 errors; 2 it couldn't check",
     )
     what = parser.add_mutually_exclusive_group(required=True)
     what.add_argument("path", metavar="PATH", nargs="?", help="the package's folder or archive")
@@ -124,9 +124,8 @@ def _add_of_class(parser):
     since = "with --class: show what has changed since an earlier hand-in, whose DIR.checked it is"
     parser.add_argument("--before", metavar="FOLDER", help=since)
     number = (
-        f"with --class: check N at the same time, 1 to {classroom.MOST_JOBS} (default:"
-        f" {classroom.JOBS}; with"
-        " --scheduler, as many as its workers have threads)"
+        f"with --class: run N checks in parallel, 1 to {classroom.MOST_JOBS} (default:"
+        f" {classroom.JOBS}; with --scheduler, as many as its workers have threads)"
     )
     jobs = range(1, classroom.MOST_JOBS + 1)
     parser.add_argument("--jobs", type=int, choices=jobs, metavar="N", help=number)
@@ -220,8 +219,8 @@ def write_pages(worksheet, checked, contract):
     moodle.write_pages(pathlib.Path(worksheet).with_suffix(".zip"), checked, contract)
     for name in moodle.left_out(checked):
         print(
-            f"check: {terminal.plain(name)} is not in {worksheet}: its name has no number of a"
-            " participant of its own, as 'Full Name_12345_assignsubmission_file_' has.",
+            f"check: {terminal.plain(name)} isn't in {worksheet}: its name has no participant"
+            " number of its own, as 'Full Name_12345_assignsubmission_file_' has.",
             file=sys.stderr,
         )
 
@@ -328,7 +327,7 @@ def write_contract(options):
             path = pathlib.Path(f"{package.name}.yaml")
             if path.exists():
                 raise CannotCheck(
-                    f"{path} is there already: rename it, or call check in another folder."
+                    f"{path} already exists: rename it, or call check in another folder."
                 )
             say_how_apart()
             report = check.check(
@@ -339,7 +338,7 @@ def write_contract(options):
     if not texts:
         errors = [finding for finding in report.findings if finding.severity == ERROR]
         why = report.reason or f"{errors[0].message} Fix what check --any {options.path} reports."
-        raise CannotCheck(f"no contract is written, as {package.name} is not correct: {why}")
+        raise CannotCheck(f"no contract was written, because {package.name} isn't correct: {why}")
     with open(path, "x", encoding="utf-8") as file:
         file.write(texts[0])
     print(f"Wrote {path}: edit it, and call check with --spec {path}.")
@@ -354,4 +353,4 @@ def write(path, text_of, *arguments):
         with open(path, "w", encoding="utf-8", errors="replace", newline="") as file:
             file.write(text_of(*arguments))
     except OSError as error:
-        raise CannotCheck(f"{path} cannot be written: {error.strerror}.") from None
+        raise CannotCheck(f"{path} can't be written: {error.strerror}.") from None

@@ -36,7 +36,7 @@ def main(arguments=None):
     except (PatchError, DefectError, CannotCheck) as error:
         fail(error)
     except KeyboardInterrupt:
-        sys.exit("Stopped. All that was started has ended; your changes are kept.")
+        sys.exit("Stopped. Everything it started has ended; your changes are kept.")
 
 
 def fail(why):

@@ -63,12 +63,12 @@ class CppReader:
         """Raise CannotCheck if it is not the source's fault that there is no answer."""
         if "No module named 'clang'" in done.errors:
             raise CannotCheck(
-                "Python's module clang is not installed: install Debian's package python3-clang"
+                "Python's module clang isn't installed: install Debian's package python3-clang"
                 " (make deps)."
             )
         if done.ended_by == "time":
             raise CannotCheck(
-                f"Reading {file} did not end within {self.workspace.timeout:.0f} s: the machine is"
+                f"Reading {file} didn't end within {self.workspace.timeout:.0f} s: the machine is"
                 " too busy; --timeout gives it more time."
             )
         if done.errors.startswith("Traceback") and not done.ended_by:

@@ -146,7 +146,7 @@ def read(package: Package, file: str) -> tuple[Source | None, Finding | None]:
     except (ValueError, RecursionError, MemoryError) as error:
         return None, Finding(
             "python-syntax",
-            f"Python cannot read {file}: {error}.",
+            f"Python can't read {file}: {error}.",
             file,
             1,
             expected="Python",
@@ -178,7 +178,7 @@ def _syntax(package: Package, file: str, error: SyntaxError) -> Finding:
             hint += f" So are the other lines with it: {', '.join(others)}." if others else ""
     return Finding(
         "python-syntax",
-        f"Python cannot read {file}: {text}, in line {line}. {hint}".strip(),
+        f"Python can't read {file}: {text}, on line {line}. {hint}".strip(),
         file,
         line,
         expected="valid Python 3",

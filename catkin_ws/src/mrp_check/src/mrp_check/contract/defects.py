@@ -148,7 +148,7 @@ def read_all(folder: pathlib.Path | None = None) -> list[Defect]:
     folder = folder or resources.folder("defects")
     found = [read(path) for path in sorted(folder.glob("*.patch"))]
     if not found:
-        raise DefectError(f"Expected patches in {folder}; there is none.")
+        raise DefectError(f"Expected patches in {folder}; there's none.")
     return found
 
 

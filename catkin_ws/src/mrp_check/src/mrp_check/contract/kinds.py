@@ -78,7 +78,7 @@ def _absent(what: str, kind: str, folder: str) -> str:
         for share in SHARES
         for path in pathlib.Path(share).glob(f"*/{folder}/*.{folder}")
     ]
-    return f"there is no {what} '{kind}' on this machine." + near(kind, names)
+    return f"there's no {what} '{kind}' on this machine." + near(kind, names)
 
 
 def of_machine(kind: str) -> Fields:

@@ -35,7 +35,7 @@ def fault(line: str) -> str | None:
     try:
         pattern(line)
     except re.error as error:
-        return f"'{line}' is no regular expression: {error}. {_BRACKETS}"
+        return f"'{line}' isn't a regular expression: {error}. {_BRACKETS}"
     word = _WORD.match(line)
     if word:
         return (

@@ -34,4 +34,4 @@ def nearest(name: str, names: Iterable[str], alike: float = 0.6) -> str | None:
 
 def perhaps(near: str | None) -> str:
     """Return a hint that this name is meant, or an empty text if there is none."""
-    return f" Perhaps {near} is meant." if near else ""
+    return f" Did you mean {near}?" if near else ""

@@ -102,9 +102,9 @@ def _patch(path: pathlib.Path, folder: pathlib.Path, *options: str) -> None:
             command, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
         )
     except FileNotFoundError:
-        raise PatchError("There is no command `patch`: install the package patch.") from None
+        raise PatchError("There's no command `patch`: install the package patch.") from None
     if done.returncode:
         raise PatchError(
-            f"{path} does not fit the files that it is made for. Undo your changes to both, or"
-            f" write it again as packages.py shows. The command `patch` says: {done.stdout.strip()}"
+            f"{path} doesn't fit the files that it's made for. Undo your changes to both, or write"
+            f" it again as packages.py shows. The command `patch` says: {done.stdout.strip()}"
         )

@@ -68,7 +68,7 @@ def listed(data: Any, entry: Mapping[str, Any], definitions: Mapping[str, Any]) 
 
 
 def no_such(kind: str, name: str, names: Iterable[str]) -> str:
-    return f"there is no {kind} '{name}'; there are: {', '.join(names)}." + near(name, names)
+    return f"there's no {kind} '{name}'; there are: {', '.join(names)}." + near(name, names)
 
 
 def near(name: str, names: Iterable[str]) -> str:

@@ -33,7 +33,7 @@ from mrp_check.contract.schema import Loader, listed, no_such, sentence
 
 MORE = ("services", "parameters", "examples")  # what counts only where a contract names some
 
-_PAGE = "What can be said: pages/contract.html, which is made of"
+_PAGE = "What can be said: pages/contract.html, which is generated from"
 
 
 @dataclasses.dataclass(frozen=True)
@@ -90,15 +90,15 @@ def read(path: str | pathlib.Path, requirements: Collection[str] | None = None) 
         text = pathlib.Path(path).read_text(encoding="utf-8")
         data = yaml.load(text, Loader=Loader)
     except OSError as error:
-        raise SpecError(f"{path}: the spec cannot be read: {error.strerror}.") from None
+        raise SpecError(f"{path}: the spec can't be read: {error.strerror}.") from None
     except UnicodeDecodeError as error:
-        raise SpecError(f"{path}: the spec is no UTF-8 text, at byte {error.start}.") from None
+        raise SpecError(f"{path}: the spec isn't UTF-8 text, at byte {error.start}.") from None
     except yaml.MarkedYAMLError as error:
         mark = error.problem_mark or error.context_mark
         where = f"{path}:{mark.line + 1}" if mark else str(path)
-        raise SpecError(f"{where}: the spec is no valid YAML: {error.problem}.") from None
+        raise SpecError(f"{where}: the spec isn't valid YAML: {error.problem}.") from None
     except yaml.YAMLError as error:
-        raise SpecError(f"{path}: the spec is no valid YAML: {error}.") from None
+        raise SpecError(f"{path}: the spec isn't valid YAML: {error}.") from None
     return _Reader(path, text, requirements).spec(data)
 
 
@@ -195,8 +195,8 @@ class _Reader:
         if not topic.text and not kinds.NUMBER.fullmatch(topic.kind):
             self.fail(
                 place,
-                f"{topic.field} of {topic.type} is a {topic.kind}, and no"
-                " number. A string has one if the topic has a 'text'.",
+                f"{topic.field} of {topic.type} is a {topic.kind}, not a number. A string has one"
+                " if the topic has a 'text'.",
             )
 
     def requirement(self, place: Place, id_: str) -> None:

@@ -52,9 +52,9 @@ def state(watched: Watched) -> Line:
     if check.error:
         return "wrong", "It couldn't be checked."
     if check.passed:
-        return "passed", f"Passed: {exercises.progress(course)} n goes on." if course.open else (
-            f"Passed: you have finished all {len(course.exercises)}. Well done!"
-        )
+        return "passed", (
+            f"Passed: {exercises.progress(course)} n shows the next one."
+        ) if course.open else (f"Passed: you have finished all {len(course.exercises)}. Well done!")
     count = len(check.findings)
     return "wrong", f"Not yet: {count} {'thing is' if count == 1 else 'things are'} wrong."
 
@@ -136,7 +136,7 @@ def nodes(watched: Watched, width: int) -> Iterator[Line]:
         for line in report.console:
             yield from _wrapped(terminal.plain(tool_output.ESCAPES.sub("", line)), width)
     elif watched.check and watched.check.done:
-        yield from _wrapped("The nodes did not run: see what is wrong.", width)
+        yield from _wrapped("The nodes didn't run: see what's wrong.", width)
     else:
         yield from _wrapped("Their output appears here once the check has run them.", width)
 

@@ -74,7 +74,7 @@ def readable(package: Package, spec: Spec) -> tuple[str | None, list[Finding]]:
             Finding(
                 "launch-file",
                 f"The package has no launch file {spec.launch.file}."
-                + (f" There is {other}." if other else ""),
+                + (f" There's {other}." if other else ""),
                 other,
                 1 if other else None,
                 expected=f"launch/{spec.launch.file}",

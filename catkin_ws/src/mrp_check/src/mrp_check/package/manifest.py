@@ -31,7 +31,7 @@ def parse(package: Package) -> tuple[Manifest | None, Finding | None]:
         text = " ".join(str(error).replace(f"Error(s) in package '{FILE}':", "").split())
         return None, Finding(
             "manifest",
-            f"package.xml is not valid: {text}",
+            f"package.xml isn't valid: {text}",
             FILE,
             _line_of(package, text),
             expected="a manifest as catkin reads it",

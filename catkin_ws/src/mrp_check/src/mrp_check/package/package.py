@@ -74,9 +74,9 @@ class Package:
     def __init__(self, root: str | pathlib.Path) -> None:
         self.root = pathlib.Path(root).absolute()
         if not self.root.exists():
-            raise PackageError(f"There is no folder {root}.")
+            raise PackageError(f"There's no folder {root}.")
         if not self.root.is_dir():
-            raise PackageError(f"{root} is no folder; expected the folder of a package.")
+            raise PackageError(f"{root} isn't a folder; expected the folder of a package.")
         self._bytes: dict[str, bytes] = {}
         self._large: set[str] = set()
         self.left_out: list[str] = []

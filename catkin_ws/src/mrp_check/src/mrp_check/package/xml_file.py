@@ -66,7 +66,7 @@ def stray(
         for text, line in element.texts if element.tag not in readers else ():
             yield Finding(
                 id_,
-                f"There is text between the tags here, and nothing reads it: {text[:40]}",
+                f"There's text between the tags here, but nothing reads it: {text[:40]}",
                 file,
                 line,
                 HABIT,
@@ -92,7 +92,7 @@ def xml_finding(
         cause, hint = _bad_token(package, path, line)
     return Finding(
         id_,
-        f"{path} is no valid XML: {what}, noticed in line {line}. {hint}".strip(),
+        f"{path} isn't valid XML: {what}, noticed on line {line}. {hint}".strip(),
         path,
         cause,
         expected="XML in which each tag that is opened is closed, and each value is in quotes",
@@ -108,7 +108,7 @@ def _bad_token(package: Package, path: str, line: int) -> tuple[int, str]:
     for number in range(line, 0, -1):
         text = lines[number - 1] if number <= len(lines) else ""
         if number == line and re.search(r"<!--(?:(?!-->).)*--(?!>)", text):
-            return line, "A comment must not contain two hyphens (--)."
+            return line, "A comment can't contain two hyphens (--)."
         # A tag that never ends swallows the lines below it.
         if number < line and text.count("<") > text.count(">"):
             return number, "The tag that begins there has no end."
@@ -142,7 +142,7 @@ def _unclosed(package: Package, path: str, noticed: int | None) -> tuple[int, st
             return where, f"<{opened}> is opened there and not closed."
         if stack:
             opened, where = stack[-1]
-            return line, f"<{opened}> of line {where} is closed by </{name}>."
+            return line, f"<{opened}> on line {where} is closed by </{name}>."
         return line, f"</{name}> closes something that isn't open."
     if stack:
         return stack[-1][1], f"<{stack[-1][0]}> is opened there and not closed."

@@ -29,7 +29,7 @@ def text(report):
             errors = [f for f in findings if f.severity == ERROR and not f.consequence_of]
             _add(case, "failure", lines, message=errors[0].message)
         elif verdict == UNCHECKED:
-            _add(case, "skipped", message=report.unseen.get(id_, "could not be checked"))
+            _add(case, "skipped", message=report.unseen.get(id_, "couldn't be checked"))
         elif lines:
             _add(case, "system-out", lines)
     if report.verdict == UNCHECKED:

@@ -99,7 +99,7 @@ def text(report, colours=False, everything=False):
     for finding in report.suppressed:
         lines += ["", *_wrapped("", suppressed_line(finding, report), "  ")]
     if report.left_out and everything:
-        left_out = f"Left out, as only a contract can say it: {', '.join(report.left_out)}."
+        left_out = f"Left out, because only a contract can say it: {', '.join(report.left_out)}."
         lines += ["", *_wrapped("", left_out, "")]
     isolation = [plain(report.isolation)] if report.isolation else []
     return "\n".join([*lines, "", *isolation, summary(report)]).lstrip("\n")
@@ -235,7 +235,7 @@ def summary(report):
     kind = "public requirements" if report.is_public else "requirements"
     met, broken = verdicts.count(MET), verdicts.count(BROKEN)
     unchecked = verdicts.count(UNCHECKED)
-    rest = f"; {unchecked} could not be checked" if unchecked else ""
+    rest = f"; {unchecked} couldn't be checked" if unchecked else ""
     rest += (f"; warnings: {warnings}" if warnings else "") + suppressed
     if broken or unchecked:
         return f"{broken} of {len(verdicts)} {kind} are not met{rest}."

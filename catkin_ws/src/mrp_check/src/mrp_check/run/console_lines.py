@@ -15,7 +15,7 @@ def not_logged(node: Node, text: str, wanted: str) -> Finding:
     """Return the finding about a line that is printed, and should be logged."""
     return node.finding(
         "console",
-        f"{node.name} prints “{text}” without logging it: it does not reach /rosout, and has"
+        f"{node.name} prints “{text}” without logging it: it doesn't reach /rosout, and has"
         " neither level nor time.",
         node.places.of(node.name, Kind.PRINT, Kind.SUBSCRIBER, Kind.INIT),
         expected=f"[INFO] [time]: {wanted}",

@@ -21,7 +21,7 @@ def always(case: Case) -> str | None:
 
 
 def manifest(case: Case) -> str | None:
-    return None if case.manifest[0] else "package.xml cannot be read"
+    return None if case.manifest[0] else "package.xml can't be read"
 
 
 def code(case: Case) -> str | None:
@@ -30,19 +30,19 @@ def code(case: Case) -> str | None:
 
 
 def cmake(case: Case) -> str | None:
-    return None if "CMakeLists.txt" in case.package.files else "there is no CMakeLists.txt"
+    return None if "CMakeLists.txt" in case.package.files else "there's no CMakeLists.txt"
 
 
 def launch(case: Case) -> str | None:
     if case.launch and not case.launch.error:
         return None
     is_there = case.package.of_kind("launch")
-    return "roslaunch cannot read the launch file" if is_there else "there is no launch file"
+    return "roslaunch can't read the launch file" if is_there else "there's no launch file"
 
 
 def built(case: Case) -> str | None:
     if case.built is None:
-        return "CMake did not succeed"
+        return "CMake didn't succeed"
     return None if case.built.ok else "not everything was compiled"
 
 
@@ -73,7 +73,7 @@ def _read(case: Case, name: str) -> str | None:
     if "nodes" in vars(case) and case.nodes[name].is_up:
         return None
     unread = [f for f in case.facts.sources.get(name, ()) if f in case.facts.unread]
-    return f"{unread[0]} cannot be read" if unread else _no_source(case, name)
+    return f"{unread[0]} can't be read" if unread else _no_source(case, name)
 
 
 def _python_read(case: Case, name: str) -> str | None:
@@ -87,7 +87,7 @@ read, python_read = of_nodes(_read), of_nodes(_python_read)
 
 
 def compiled(case: Case) -> str | None:
-    return "CMake did not succeed" if case.built is None else cpp(case)
+    return "CMake didn't succeed" if case.built is None else cpp(case)
 
 
 def when(
@@ -105,7 +105,7 @@ def when(
         if not role(node.wanted):
             return None
         if not node.is_up:
-            return f"{name} did not run"
+            return f"{name} didn't run"
         return None if is_seen(node) else f"{name} {what}"
 
     return of_nodes(why)
@@ -119,5 +119,5 @@ def of_publisher(
 
 
 up = when(lambda node: True, "")
-meets = when(Node.meets, "was not seen on its topic")
-alone = when(lambda node: node.own_name, "did not run outside of the launch file")
+meets = when(Node.meets, "wasn't seen on its topic")
+alone = when(lambda node: node.own_name, "didn't run outside of the launch file")

@@ -47,7 +47,9 @@ class _Writer:
         self.used: set[str] = set()
         self.comments: dict[str, list[str]] = {name: [] for name in self.nodes}
         if not self.nodes:
-            raise CannotCheck(f"no contract is written, as no node of {self.package.name} ran.")
+            raise CannotCheck(
+                f"no contract was written, because no node of {self.package.name} ran."
+            )
         self.topics = self._topics()
         offered = [one for node in self.nodes.values() for one in node.offers]
         self.services = {one.name: one for one in offered if _is_word(one.name) and one.type}
@@ -186,7 +188,7 @@ class _Writer:
         bits = [_UINT.fullmatch(one.type) for one in node.publishes]
         if len(bits) == 1 and bits[0]:
             modulus = 2 ** int(bits[0].group(1))
-            body = _VALUES.sub(rf"\1  # modulus: {modulus}, if it is to wrap round", body)
+            body = _VALUES.sub(rf"\1  # modulus: {modulus}, if it should wrap around", body)
         return f"{name}:\n{textwrap.indent(body, '  ')}"
 
     def _node(self, name: str, node: Behaviour) -> Entry:
@@ -252,7 +254,7 @@ class _Writer:
                 yield one.name
             else:
                 self.comments[name].append(
-                    f"It calls {one.name}, a service whose type was not seen."
+                    f"It calls {one.name}, a service whose type wasn't seen."
                 )
 
     def _parameters(self, name: str) -> Entry:

@@ -98,17 +98,17 @@ class Sessions:
             try:
                 return crossing.from_json(kind, done.output)
             except crossing.CrossingError as error:
-                raise CannotCheck(f"What the observer says cannot be read: {error}") from None
+                raise CannotCheck(f"What the observer says can't be read: {error}") from None
         said = (done.errors.strip().splitlines() or [f"it ended with {done.code}"])[-1]
         why = done.limit_text(self._limits)
         if not why and "Traceback" in done.errors:
             raise CannotCheck(f"The observer itself failed: {said}. Please report it.")
-        problems.append(f"the nodes could not be observed: {why or said}")
+        problems.append(f"the nodes couldn't be observed: {why or said}")
         return None
 
 
 def too_busy(seconds: float) -> CannotCheck:
     return CannotCheck(
-        f"The nodes did not come up within {seconds:.0f} s, though they were at work: this machine"
-        " is too busy. Try again with less at the same time."
+        f"The nodes didn't come up within {seconds:.0f} s, though they were working: this machine"
+        " is too busy. Try again with fewer programs running."
     )

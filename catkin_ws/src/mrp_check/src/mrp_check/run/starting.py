@@ -72,7 +72,7 @@ def _raised(node: Traces, place: Where, kind: str, text: str) -> Finding:
     return node.finding(
         id_of_error(kind, text, "starts"),
         f"{node.name} ends as soon as it is started: {kind}: {text}"
-        + (f" It is not on this machine: {uses.absent(name, 'python')}." if apart else ""),
+        + (f" It isn't on this machine: {uses.absent(name, 'python')}." if apart else ""),
         place,
         HINT if is_known or apart else SEEN,
         expected=_EXPECTED,
@@ -117,7 +117,7 @@ def _failed(node: Traces, code: int | None, started_ros: bool) -> Finding:
 def _not_registered(node: Traces) -> Finding:
     return node.finding(
         "node-start",
-        f"{node.name} runs, but the master has not heard of it.",
+        f"{node.name} runs, but the master hasn't heard of it.",
         node.places.of(node.name, Kind.INIT, Kind.LOOP),
         expected=f"a node {node.path}",
         seen="no node of that name",

@@ -77,7 +77,7 @@ class Result:
     def limit_text(self, limits: Limits) -> str | None:
         """Return a sentence that says which limit was broken, or None."""
         said = {
-            "time": f"it did not end within {limits.time:.0f} s",
+            "time": f"it didn't end within {limits.time:.0f} s",
             "memory": f"it used more than {limits.memory // MEGABYTE} MB of memory",
             "processes": f"it started more than {limits.processes} processes and threads",
             "disk": f"it wrote more than {limits.disk // MEGABYTE} MB, or too deep folders",
@@ -217,7 +217,7 @@ def _result(reader: _Reader, flood: bool) -> Result:
             + (f": {said[-1]}" if said else "")
         ) from None
     if not report.all_dead:
-        raise ConfineError("some processes of the package could not be killed")
+        raise ConfineError("some processes of the package couldn't be killed")
     return Result(
         code=report.code if report.ended_by is None else None,
         ended_by="output" if flood else report.ended_by,

@@ -161,7 +161,7 @@ class _Examination:
         except CannotCheck as error:
             self._lose(ids, error)
         except confine.ConfineError as error:
-            self._lose(ids, CannotCheck(f"A command could not be run confined: {error}."))
+            self._lose(ids, CannotCheck(f"A command couldn't be run confined: {error}."))
         except Exception as error:  # the checker's own fault: no finding, and no end of it all
             place = traceback.extract_tb(error.__traceback__)[-1]
             file = pathlib.Path(place.filename).name

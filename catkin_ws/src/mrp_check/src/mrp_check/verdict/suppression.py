@@ -79,7 +79,7 @@ def _wrong(comment: Comment, idle: bool, has_contract: bool) -> Iterator[Finding
     """
     place = comment.file, comment.line
     if comment.id not in REQUIREMENTS:
-        message = f"A comment suppresses '{comment.id}': there is no such requirement."
+        message = f"A comment suppresses '{comment.id}': there's no such requirement."
         message += near(comment.id, REQUIREMENTS)
         yield Finding("text", message, *place, HABIT, expected=_FORM)
     elif has_contract:

@@ -132,7 +132,7 @@ def _shown(message: Mapping[str, object]) -> str:
 
 
 _asked = evidence.when(
-    lambda node: node.own_name, "did not run", lambda wanted: wanted.offers or wanted.calls
+    lambda node: node.own_name, "didn't run", lambda wanted: wanted.offers or wanted.calls
 )
 
 
