@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A name with a number behind it: use it for a tool of which several run at once, and not for a
-// node that has parameters, or that others ask for by its name.
+// Use an anonymous name for a tool of which several run at once. A node that has parameters, or
+// that others ask for by name, needs a fixed one.
 
 #include <ros/ros.h>
 #include <std_msgs/UInt32.h>

@@ -1,6 +1,6 @@
 #!/usr/bin/env python
 # SPDX-License-Identifier: BSD-3-Clause
-"""Changes a message after it was published: do not, because a latched publisher sends it again."""
+"""Changes a message after it was published. Don't: a latched publisher sends it again."""
 
 import rospy
 from std_msgs.msg import UInt32

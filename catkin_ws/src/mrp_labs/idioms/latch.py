@@ -1,7 +1,7 @@
 #!/usr/bin/env python
 # SPDX-License-Identifier: BSD-3-Clause
-"""A latched publisher: use it for what changes seldom and late subscribers need, such as a map, and
-not for a stream of values."""
+"""Use a latched publisher for what rarely changes and late subscribers need, such as a map. For a
+stream of values, don't."""
 
 import rospy
 from std_msgs.msg import UInt32

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Logs at each level: use debug for what helps to find a mistake, info for what a user wants to
-// know, and warn and above for what somebody must do something about.
+// Logs at each level. Use debug to find mistakes, info for what a user wants to know, and warn and
+// above for what somebody must act on.
 
 #include <ros/ros.h>
 
@@ -20,7 +20,7 @@ private:
     ROS_INFO("an info line");
     ROS_WARN("a warning");
     ROS_ERROR("an error");
-    ROS_FATAL("a fatal error, and the node goes on");
+    ROS_FATAL("a fatal error, but the node keeps running");
     ROS_INFO_THROTTLE(3600, "at most once an hour");
   }
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env python
 # SPDX-License-Identifier: BSD-3-Clause
-"""Logs at each level: use debug for what helps to find a mistake, info for what a user wants to
-know, and warn and above for what somebody must do something about."""
+"""Logs at each level. Use debug to find mistakes, info for what a user wants to know, and warn and
+above for what somebody must act on."""
 
 import rospy
 
@@ -16,7 +16,7 @@ class LogLevels:
         rospy.loginfo("an info line")
         rospy.logwarn("a warning")
         rospy.logerr("an error")
-        rospy.logfatal("a fatal error, and the node goes on")
+        rospy.logfatal("a fatal error, but the node keeps running")
         rospy.loginfo_throttle(3600, "at most once an hour")
 
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Listens to loop_talker: use ros::spin in a node that only reacts, and not a loop of your own.
+// Listens to loop_talker. A node that only reacts needs no loop of its own: use ros::spin.
 
 #include <ros/ros.h>
 #include <std_msgs/String.h>

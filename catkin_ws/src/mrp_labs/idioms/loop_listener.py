@@ -1,6 +1,6 @@
 #!/usr/bin/env python
 # SPDX-License-Identifier: BSD-3-Clause
-"""Listens to loop_talker: use rospy.spin in a node that only reacts, and not a loop of your own."""
+"""Listens to loop_talker. A node that only reacts needs no loop of its own: use rospy.spin."""
 
 import rospy
 from std_msgs.msg import String

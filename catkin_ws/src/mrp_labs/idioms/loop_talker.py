@@ -1,7 +1,7 @@
 #!/usr/bin/env python
 # SPDX-License-Identifier: BSD-3-Clause
-"""Publishes from a loop with a rate: use it in a node that does one thing at a time, and not in one
-with several periods or with callbacks."""
+"""Publishes from a loop with a rate. Use it in a node that does one thing at a time. For several
+periods, or callbacks, use timers."""
 
 import rospy
 from std_msgs.msg import String

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A loop in a node with a subscriber: use it where each turn needs the newest value, and not to
-// work on each value, which belongs in the callback.
+// Use a loop with a subscriber where each turn needs the newest value. To work on every value, do
+// it in the callback.
 
 #include <ros/ros.h>
 #include <std_msgs/UInt32.h>
@@ -13,7 +13,7 @@ public:
     ros::Rate rate(10);  // turns a second
     while (ros::ok())
     {
-      ros::spinOnce();  // here alone the callbacks run: the loop must come round often
+      ros::spinOnce();  // callbacks only run here, so don't let the loop get slow
       publisher_.publish(newest_);
       rate.sleep();
     }

@@ -1,7 +1,7 @@
 #!/usr/bin/env python
 # SPDX-License-Identifier: BSD-3-Clause
-"""A loop in a node with a subscriber: use it where each turn needs the newest value, and not to
-work on each value, which belongs in the callback."""
+"""Use a loop with a subscriber where each turn needs the newest value. To work on every value, do
+it in the callback."""
 
 import rospy
 from std_msgs.msg import UInt32

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A global name: use it for what all robots share, such as a map, and not for what each robot has
-// of its own.
+// Use a global name for what all robots share, such as a map. What each robot has of its own needs
+// a relative one.
 
 #include <ros/ros.h>
 #include <std_msgs/UInt32.h>

@@ -1,7 +1,7 @@
 #!/usr/bin/env python
 # SPDX-License-Identifier: BSD-3-Clause
-"""A global name: use it for what all robots share, such as a map, and not for what each robot has
-of its own."""
+"""Use a global name for what all robots share, such as a map. What each robot has of its own needs
+a relative one."""
 
 import rospy
 from std_msgs.msg import UInt32

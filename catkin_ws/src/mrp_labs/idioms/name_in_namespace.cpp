@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Names in a namespace below the node's: use it for a part with several topics, and not in place of
-// a group in the launch file.
+// Use names in a namespace below the node's for a part with several topics. To group nodes, use a
+// group in the launch file.
 
 #include <ros/ros.h>
 #include <std_msgs/UInt32.h>

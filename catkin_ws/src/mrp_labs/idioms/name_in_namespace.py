@@ -1,7 +1,7 @@
 #!/usr/bin/env python
 # SPDX-License-Identifier: BSD-3-Clause
-"""Names in a namespace below the node's: use it for a part with several topics, and not in place of
-a group in the launch file."""
+"""Use names in a namespace below the node's for a part with several topics. To group nodes, use a
+group in the launch file."""
 
 import rospy
 from std_msgs.msg import UInt32

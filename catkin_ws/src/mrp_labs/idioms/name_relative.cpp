@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A relative name: use it for every topic on which nodes meet, and not for what belongs to one node
-// alone.
+// Use a relative name for every topic on which nodes meet. What belongs to only one node gets a
+// private name.
 
 #include <ros/ros.h>
 #include <std_msgs/UInt32.h>

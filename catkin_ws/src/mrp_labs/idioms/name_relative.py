@@ -1,7 +1,7 @@
 #!/usr/bin/env python
 # SPDX-License-Identifier: BSD-3-Clause
-"""A relative name: use it for every topic on which nodes meet, and not for what belongs to one node
-alone."""
+"""Use a relative name for every topic on which nodes meet. What belongs to only one node gets a
+private name."""
 
 import rospy
 from std_msgs.msg import UInt32

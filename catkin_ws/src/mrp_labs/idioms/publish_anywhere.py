@@ -1,7 +1,7 @@
 #!/usr/bin/env python
 # SPDX-License-Identifier: BSD-3-Clause
-"""Publishes from a subscriber's callback, without a timer: use it to answer a message, and not to
-publish at a rate of your own."""
+"""Publishes from a subscriber's callback, without a timer. Use it to answer a message. To publish
+at a rate of your own, use a timer."""
 
 import rospy
 from std_msgs.msg import UInt32

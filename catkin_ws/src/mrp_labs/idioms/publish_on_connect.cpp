@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Publishes to each new subscriber alone: use it where each is to get a message of its own, and not
-// where a latched message does.
+// Publishes to each new subscriber by itself. Use it where each gets a message of its own. If all
+// get the same one, latch it.
 
 #include <cstdint>
 

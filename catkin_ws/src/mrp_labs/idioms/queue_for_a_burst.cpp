@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A publisher's queue as long as its longest burst: use it where each message counts, and not for
-// values that are soon out of date.
+// Use a publisher's queue as long as its longest burst where each message counts. Values that are
+// soon out of date need only a short one.
 
 #include <string>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A subscriber's queue of 1: use it where only the newest value counts, such as a sensor's, and not
-// where each value counts.
+// Use a subscriber's queue of 1 where only the newest value counts, such as a sensor's. Where each
+// value counts, use a longer one.
 
 #include <ros/ros.h>
 #include <std_msgs/UInt32.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Reads a parameter once and at each turn: use the first for what never changes, and the second,
-// which asks the master, for what somebody sets while the node runs.
+// Reads a parameter once and at each turn. Use the first for what never changes. The second asks
+// the master: use it for what may change while the node runs.
 
 #include <string>
 

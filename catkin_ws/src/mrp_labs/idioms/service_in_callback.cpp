@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Calls a service in a callback: use it for answers that come at once, and not for slow ones, for
-// which all messages of the topic would wait.
+// Calls a service in a callback. Use it for answers that come at once: while you wait for a slow
+// one, all messages of the topic wait, too.
 
 #include <ros/ros.h>
 #include <roscpp/Empty.h>

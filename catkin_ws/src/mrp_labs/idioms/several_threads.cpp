@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Callbacks in several threads: use them where one callback must not hold up another, and not
-// without a lock around what they share.
+// Use several threads where one callback must not hold up another, and put a lock around what the
+// callbacks share.
 
 #include <mutex>
 #include <thread>

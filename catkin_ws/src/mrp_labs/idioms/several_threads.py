@@ -1,7 +1,7 @@
 #!/usr/bin/env python
 # SPDX-License-Identifier: BSD-3-Clause
-"""Callbacks in several threads: use them where one callback must not hold up another, and not
-without a lock around what they share."""
+"""Use several threads where one callback must not hold up another, and put a lock around what the
+callbacks share."""
 
 import threading
 

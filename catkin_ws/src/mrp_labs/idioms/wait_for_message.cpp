@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Waits for one message at a time: use it for what is latched, or published all the time, and not
-// where each message counts.
+// Waits for one message at a time. Use it for what is latched, or published all the time. Where
+// each message counts, use a subscriber.
 
 #include <ros/ros.h>
 #include <std_msgs/UInt32.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Waits for its subscribers before the first message: use it where no message may be lost and their
-// number is known, and not otherwise, because it waits for ever.
+// Waits for its subscribers before the first message. Use it if no message may be lost and you know
+// how many there are: it waits forever.
 
 #include <cstdint>
 
