@@ -44,7 +44,7 @@ Task:
 
     The description says nothing.
 
-    The page: `package`.
+    Read more: `package`.
 Hint: Look at the first lines.
 Learned: A package says what it is for.
 """

@@ -117,7 +117,7 @@ Task:
     # A title
 
     A text,
-      which goes on. The page: `queues`.
+      which goes on. Read more: `queues`.
 Hint: Look
     at it.
 Learned: It works.
@@ -146,7 +146,7 @@ def test_head_is_read(tmp_path):
             tells="colon",
             order=3,
             kind="fix",
-            task="# A title\n\nA text,\n  which goes on. The page: `queues`.",
+            task="# A title\n\nA text,\n  which goes on. Read more: `queues`.",
             hint="Look\nat it.",
             learned="It works.",
         )

@@ -82,7 +82,7 @@ class Defect:
     @property
     def page(self) -> str:
         """The page that explains what the exercise needs: its task names it."""
-        match = re.search(r"The page: `(\w+)`", self.task)
+        match = re.search(r"Read more: `(\w+)`", self.task)
         return match.group(1) if match else ""
 
 

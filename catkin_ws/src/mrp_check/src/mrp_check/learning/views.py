@@ -66,7 +66,7 @@ def task(watched: Watched, hint: bool, explains: bool, width: int) -> Iterator[L
     """
     exercise, check = watched.exercise, watched.check
     text = exercise.defect.task.split("\n", 2)[2]
-    yield from _text(re.sub(r"The page: `\w+`.*", "", text), width, exercise.defect.title)
+    yield from _text(re.sub(r"Read more: `\w+`.*", "", text), width, exercise.defect.title)
     yield "", ""
     if check and check.passed:
         yield from _wrapped(f"You've learned: {exercise.defect.learned}", width, "passed")
