@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The packages that judge the checker: correct ones in other styles, and broken ones.
+"""The checker's own test packages: correct ones in other styles, and broken ones.
 
 packages.py of mrp_check lays them out. DEFECTS are those that the checker must find.
 """

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Whose marks are others than in an earlier call, and why.
+"""Which marks changed since an earlier call, and why.
 
 A file beside the reports keeps the marks of the last call, and of the last one before it that had
 others: the same command says the same again. With that file of an earlier hand-in, it is said what

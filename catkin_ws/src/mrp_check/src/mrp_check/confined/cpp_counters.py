@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""How a C++ source counts: steps, first values, and where a counter begins anew."""
+"""How a C++ source counts: steps, first values, and where a counter starts over."""
 
 from __future__ import annotations
 

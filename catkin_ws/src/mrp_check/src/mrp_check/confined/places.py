@@ -18,7 +18,7 @@ class Kind(enum.Enum):
     TIMER = "timer"
     COUNTER = "counter"  # the first value of what is counted
     STEP = "step"  # its change
-    RESET = "reset"  # where it begins anew
+    RESET = "reset"  # where it starts over
     DATA = "data"  # a message's field is set
     LOG = "log"
     PRINT = "print"

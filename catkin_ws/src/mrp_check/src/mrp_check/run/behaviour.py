@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What a node did, in the words of a contract: learnt from its runs, where no contract says it."""
+"""Describe what a node did as a contract would, for packages without one."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Where in the package's sources the cause is of what was seen to happen."""
+"""Find the source line behind an observed failure."""
 
 from __future__ import annotations
 

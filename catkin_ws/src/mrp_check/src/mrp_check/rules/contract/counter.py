@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The counter's type in C++, and where it begins anew, against the largest value."""
+"""The counter's type in C++, and where it starts over, against the largest value."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ def _of(node: SourceNode) -> Iterator[Finding]:
 def _resets(node: SourceNode, used: Collection[str], step: int, modulus: int) -> Iterator[Finding]:
     for place in node.places(Kind.RESET):
         limit, value = place.limit, place.value
-        # Within the last two steps of the range whoever begins anew does no harm.
+        # Within the last two steps of the range, starting over does no harm.
         if place.text in used and limit < modulus - 2 * step:
             yield node.finding(
                 "wrap",

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""No node is made of another node's sources: by CMakeLists.txt, or by the launch file."""
+"""Each node is built from its own sources, and started from its own executable."""
 
 from __future__ import annotations
 
