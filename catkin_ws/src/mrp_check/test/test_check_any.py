@@ -29,7 +29,7 @@ FOUND = [
     (NOTE, "launch-file", "launch/asks.launch: $(arg who)", "'who' arg"),
     (ERROR, "launch-nodes", 'launch/all.launch: "nobody.py"', "no executable of that name"),
     (ERROR, "scripts", "scripts/old.py: env python", "asks for 'python'"),
-    (ERROR, "scripts", "scripts/ends.py: #!", "is not executable"),
+    (ERROR, "scripts", "scripts/ends.py: #!", "isn't executable"),
     (ERROR, "python-syntax", "scripts/print.py: print", "print is a function"),
     (ERROR, "scripts", "scripts/print.py: env python", "asks for 'python'"),
     (ERROR, "spin", "scripts/ends.py: ", "ends by itself|never calls"),
@@ -37,7 +37,7 @@ FOUND = [
     (ERROR, "topic", 'scripts/near.py: "chater"', "publishes on /chatter|nobody publishes"),
     (ERROR, "type", "scripts/number.py: Int32", "std_msgs/String"),
     (ERROR, "python-names", "scripts/raises.py: message.text", "text"),
-    (WARNING, "dependencies", "package.xml: depend", "does not name .*std_msgs"),
+    (WARNING, "dependencies", "package.xml: depend", "doesn't name .*std_msgs"),
     (WARNING, "starts", "scripts/near.py: ~limit", "sets limt"),
     (ERROR, "starts", "scripts/near.py: ~limit", "KeyError"),
     (NOTE, "starts", "scripts/client.py: switch", "waits for the service switch"),
@@ -47,14 +47,14 @@ FOUND = [
 ]
 # The same of what works here, or cannot be checked here.
 DOUBTED = [
-    (WARNING, "dependencies", "package.xml: depend", "does not name .*nowhere_msgs"),
-    (WARNING, "dependencies", "CMakeLists.txt: find_package", "does not name nowhere_msgs"),
+    (WARNING, "dependencies", "package.xml: depend", "doesn't name .*nowhere_msgs"),
+    (WARNING, "dependencies", "CMakeLists.txt: find_package", "doesn't name nowhere_msgs"),
     (WARNING, "targets", "CMakeLists.txt: add_dependencies", "no such target"),
     (WARNING, "starts", "src/busy.cpp: /home/", "/home/nobody/table.txt"),
     (WARNING, "starts", "scripts/waves.py: /home/", "/home/nobody/waves.txt"),
     (WARNING, "starts", "launch/busy.launch: /home/", "/home/nobody/map.pgm"),
     (WARNING, "starts", "src/client.cpp: client.call", "wait"),
-    (WARNING, "dependencies", "package.xml: depend", "does not name .*turtlesim"),
+    (WARNING, "dependencies", "package.xml: depend", "doesn't name .*turtlesim"),
     (WARNING, "scripts", "scripts/tool.py: env python", "asks for 'python'"),
 ]
 

@@ -40,8 +40,8 @@ def test_unbalanced_brace_is_found_by_the_indentation():
         ("expected ‘;’ before ‘return’", "a semicolon is missing"),
         ("‘ros’ has not been declared", "#include <ros/ros.h> is missing"),
         ("‘uint32_t’ was not declared in this scope", "#include <cstdint> is missing"),
-        ("‘countr’ was not declared in this scope; did you mean ‘counter’?", "counter is meant"),
-        ("std_msgs/UInt23.h: No such file or directory", "std_msgs/UInt32.h is meant"),
+        ("‘countr’ was not declared in this scope; did you mean ‘counter’?", "Did you mean counter?"),
+        ("std_msgs/UInt23.h: No such file or directory", "Did you mean std_msgs/UInt32.h?"),
         (
             "class_loader/class_loader.h: No such file or directory",
             "called class_loader/class_loader.hpp",
@@ -54,7 +54,7 @@ def test_unbalanced_brace_is_found_by_the_indentation():
             "binding reference of type ‘ros::ParameterAdapter<std_msgs::UInt32_<std::allocator<"
             "void> >&>::Parameter’ {aka ‘std_msgs::UInt32_<std::allocator<void> >&’} to ‘const"
             " std_msgs::UInt32_<std::allocator<void> >’ discards qualifiers",
-            "a std_msgs::UInt32& that is not const",
+            "a std_msgs::UInt32& that isn't const",
         ),
         ("something that nobody has seen before", "something that nobody has seen before"),
     ],
@@ -176,7 +176,7 @@ def test_a_header_that_this_machine_has_not_is_no_misspelt_one(tmp_path, monkeyp
 @pytest.mark.parametrize(
     ("line", "text", "said"),
     [
-        ("ROS_INF0(x);", "‘ROS_INF0’ was not declared in this scope", "ROS_INFO is meant"),
+        ("ROS_INF0(x);", "‘ROS_INF0’ was not declared in this scope", "Did you mean ROS_INFO?"),
         ("ROS_ERROR(no rate!!);", "‘no’ was not declared in this scope", "no quotation marks"),
         ("bind(f, _1);", "‘_1’ was not declared in this scope", "only in boost::placeholders"),
         ("#include <old/Go.h>", "old/Go.h: No such file or directory", "made by some_pkg itself"),

@@ -71,7 +71,7 @@ BROKEN = {
         "  <arg name",
         '  <arg name="model" default="$(find nowhere)/a.urdf"/>\n  <arg name',
         [("launch-file", 2)],
-        "not there: nowhere",
+        "isn't there: nowhere",
     ),
     "name_twice": (
         PUBLISHER_PY,

@@ -198,7 +198,7 @@ def test_without_hidden_requirements_nothing_is_left_out():
     [
         (lambda folder: (folder / "work.tar.gz").touch(), "work.tar.gz is an empty file"),
         (lambda folder: None, "no package.xml"),
-        (lambda folder: folder.rmdir(), "There is no submission"),
+        (lambda folder: folder.rmdir(), "There's no submission"),
         (lambda folder: (folder / "package.xml").mkdir(), "no package.xml"),
     ],
     ids=["archive", "empty", "none", "folder"],

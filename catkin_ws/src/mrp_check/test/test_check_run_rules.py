@@ -204,7 +204,7 @@ def test_a_target_that_is_waited_for_and_does_not_exist_is_found_where_cmake_sto
     model = Model(package.root, [], complete=False)
     finding = configuring.finding(package, output, package.root, model)
     assert (finding.file, finding.line) == ("CMakeLists.txt", 4)
-    assert "Perhaps some_pkg_gencpp is meant." in finding.message
+    assert "Did you mean some_pkg_gencpp?" in finding.message
 
 
 @pytest.mark.parametrize(
@@ -216,8 +216,8 @@ def test_a_target_that_is_waited_for_and_does_not_exist_is_found_where_cmake_sto
         ("action/A.action", "---\n---\nbool done\n", None),
         ("msg/A.msg", "int32 a\nstring\n", "Invalid declaration: string"),
         ("srv/A.srv", "\nint32 1st\n---\n", "1st is not a legal message field name"),
-        ("msg/A.msg", "\nint a\n", "Perhaps int32 is meant."),
-        ("msg/A.msg", "\nCC a\n", "Perhaps C is meant."),
+        ("msg/A.msg", "\nint a\n", "Did you mean int32?"),
+        ("msg/A.msg", "\nCC a\n", "Did you mean C?"),
         ("msg/A.msg", "\nstd_msgs/Strng a\n", "std_msgs has no message Strng. Perhaps String"),
     ],
     ids=range(9),

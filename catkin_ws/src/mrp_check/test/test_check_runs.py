@@ -18,7 +18,7 @@ FOUND = [
     (ERROR, "warnings", "scripts/frames.py: logwarn", "though both are published"),
     (ERROR, "type", "scripts/number.py: Int32", "nothing arrives"),
     (ERROR, "starts", "scripts/rate.py: get_param", "It dies under launch/all.launch"),
-    (ERROR, "spin", "src/asks.cpp: spinOnce", "under launch/asks.launch, and"),
+    (ERROR, "spin", "src/asks.cpp: spinOnce", "under launch/asks.launch, but"),
     (ERROR, "topic", "scripts/once.py: rospy.Publisher", "no subscriber is connected yet"),
     (WARNING, "spin", "scripts/hurries.py: while", "keeps a processor busy"),
     (WARNING, "spin", "src/fast.cpp: while", "keeps a processor busy"),

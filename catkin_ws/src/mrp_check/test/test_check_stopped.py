@@ -93,7 +93,7 @@ def test_a_signal_ends_all(tmp_path, monkeypatch, seconds, what, number):
         checker.send_signal(number)
         _, errors = checker.communicate()
     assert checker.returncode == 1
-    assert "stopped before its end" in errors
+    assert "stopped early" in errors
     assert "Traceback" not in errors
     assert [path for folder in scratch.iterdir() for path in folder.iterdir()] == []
     assert not processes_with(seconds)

@@ -1,7 +1,7 @@
 #!/usr/bin/env python
 # SPDX-License-Identifier: BSD-3-Clause
-"""Calls a service in a callback. Use it for answers that come at once: while you wait for a slow one,
-all messages of the publisher wait, too."""
+"""Calls a service in a callback. Use it for answers that come at once: while you wait for a slow
+one, all messages of the publisher wait, too."""
 
 import rospy
 from roscpp.srv import Empty, EmptyResponse
