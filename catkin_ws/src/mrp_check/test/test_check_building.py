@@ -40,8 +40,8 @@ def test_unbalanced_brace_is_found_by_the_indentation():
         ("expected ‘;’ before ‘return’", "a semicolon is missing"),
         ("‘ros’ has not been declared", "#include <ros/ros.h> is missing"),
         ("‘uint32_t’ was not declared in this scope", "#include <cstdint> is missing"),
-        ("‘countr’ was not declared in this scope; did you mean ‘counter’?", "Did you mean counter?"),
-        ("std_msgs/UInt23.h: No such file or directory", "Did you mean std_msgs/UInt32.h?"),
+        ("‘countr’ was not declared in this scope; did you mean ‘counter’?", "mean counter?"),
+        ("std_msgs/UInt23.h: No such file or directory", "mean std_msgs/UInt32.h?"),
         (
             "class_loader/class_loader.h: No such file or directory",
             "called class_loader/class_loader.hpp",
@@ -194,7 +194,7 @@ def test_a_copy_keeps_a_header_from_being_made(tmp_path):
     files = {"srv__Go_DOT_srv": "---\n", "include__some_pkg__Go_DOT_h": ""}
     package = check_rules.make(tmp_path, src__a_DOT_cpp="\n", **files)
     problem = cpp_words.Problem("src/a.cpp", 1, "some_pkg/Go.h: No such file or directory", "")
-    assert "is not made of Go.srv" in cpp_words.of(package, problem).said
+    assert "isn't generated from Go.srv" in cpp_words.of(package, problem).said
 
 
 def test_headers_are_looked_for_where_nothing_is_compiled(tmp_path):

@@ -106,7 +106,7 @@ BROKEN = {
         "createTimer",
         "kept anywhere",
     ),
-    "no_timer": (PUBLISHER, [(TIMER, "")], "callbacks", "void timerCallback", "nobody ever"),
+    "no_timer": (PUBLISHER, [(TIMER, "")], "callbacks", "void timerCallback", "nothing ever"),
     "short_counter": (
         PUBLISHER,
         [("uint32_t counter_", "uint16_t counter_")],

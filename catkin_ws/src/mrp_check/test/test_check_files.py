@@ -68,7 +68,7 @@ def test_windows_line_ends_of_cpp_are_a_note(tmp_path):
 @pytest.mark.parametrize(
     ("old", "new", "line", "says"),
     [
-        ("</name>", "</nam>", 3, "<name> of line 3 is closed by </nam>"),
+        ("</name>", "</nam>", 3, "<name> on line 3 is closed by </nam>"),
         ("</description>", "", 5, "<description> is opened"),
         ("</package>", "", 2, "<package> is opened there and not closed"),
         ("<version>0.1.0</version>", "", 2, "version"),
@@ -138,7 +138,7 @@ def test_a_dependency_of_a_launch_file_or_of_python_2_is_named(files, name, tmp_
     without = dataclasses.replace(check_rules.PUB_SUB, is_contract=False)
     found = file_findings(dependencies, package, spec=without)
     said = [one.message for one in found if one.severity == "warning"]
-    assert len(said) == bool(name) and all(f"does not name {name}" in text for text in said)
+    assert len(said) == bool(name) and all(f"doesn't name {name}" in text for text in said)
 
 
 def test_misspelt_dependency_is_its_own_lines_fault(tmp_path):
@@ -172,7 +172,7 @@ def test_comment_uses_nothing(source, tmp_path):
         ("find_package(catkin REQUIRED COMPONENTS roscpp rospy std_msgs)\n", "", 2, "find_package"),
         ("catkin_package(CATKIN_DEPENDS roscpp rospy std_msgs)\n", "", 3, "catkin_package"),
         ("catkin_package(", "add_executable(b src/a.cpp)\ncatkin_package(", 5, "comes after"),
-        ("catkin_install", "add_executable(b src/aa.cpp)\ncatkin_install", 5, "Did you mean src/a.cpp?"),
+        ("catkin_install", "add_executable(b src/aa.cpp)\ncatkin_install", 5, "mean src/a.cpp?"),
         ("catkin_package(", "catkin_package(INCLUDE_DIRS include ", 4, "no such folder"),
     ],
     ids=range(5),
@@ -268,7 +268,7 @@ def test_code_is_made_of_the_messages_of_an_action(tmp_path):
 
 @pytest.mark.parametrize(
     ("folder", "says"),
-    [("srv/", []), ("", ["looks for srv/Ask.srv, and the file lies at Ask.srv: CMake stops."])],
+    [("srv/", []), ("", ["looks for srv/Ask.srv, but the file is at Ask.srv, so CMake stops."])],
 )
 def test_a_definition_lies_where_cmake_looks_for_it(folder, says, tmp_path):
     makes = "add_service_files(FILES Ask.srv)\ngenerate_messages()\ncatkin_package"
@@ -291,7 +291,7 @@ def test_a_definition_lies_where_cmake_looks_for_it(folder, says, tmp_path):
     ("without", "file", "says"),
     [
         ("", "", ""),
-        ("add_dependencies(a some_pkg_gencpp)\n", "CMakeLists.txt: add_exec", "does not wait"),
+        ("add_dependencies(a some_pkg_gencpp)\n", "CMakeLists.txt: add_exec", "doesn't wait"),
         ("generate_messages()\n", "CMakeLists.txt: add_service_files", "never calls generate"),
         ("add_service_files(FILES Ask.srv)\n", "CMakeLists.txt: find_pac", "add_service_files()"),
     ],

@@ -218,7 +218,7 @@ def test_a_target_that_is_waited_for_and_does_not_exist_is_found_where_cmake_sto
         ("srv/A.srv", "\nint32 1st\n---\n", "1st is not a legal message field name"),
         ("msg/A.msg", "\nint a\n", "Did you mean int32?"),
         ("msg/A.msg", "\nCC a\n", "Did you mean C?"),
-        ("msg/A.msg", "\nstd_msgs/Strng a\n", "std_msgs has no message Strng. Perhaps String"),
+        ("msg/A.msg", "\nstd_msgs/Strng a\n", "std_msgs has no message Strng. Did you mean String"),
     ],
     ids=range(9),
 )

@@ -44,7 +44,7 @@ def test_what_asks_for_python_may_not_be_executable_either(tmp_path):
     package = check_rules.make(tmp_path, src__odd_DOT_py=NODE, CMakeLists_DOT_txt=text_)
     (package.root / "src/odd.py").chmod(0o644)
     first, second = file_findings(scripts, package, started={"src/odd.py": None})
-    assert "asks for 'python'" in first.message and "isn't executable:" in second.message
+    assert "asks for 'python'" in first.message and "isn't executable," in second.message
 
 
 def test_a_copy_of_a_script_may_be_the_one_that_is_executable(tmp_path):

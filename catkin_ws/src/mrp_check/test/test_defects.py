@@ -171,5 +171,5 @@ def test_head_that_cannot_be_read_is_named(old, new, fault, tmp_path):
 
 
 def test_folder_without_defects_is_an_error(tmp_path):
-    with pytest.raises(defects.DefectError, match=r"^Expected patches in .*; there is none\.$"):
+    with pytest.raises(defects.DefectError, match=r"^Expected patches in .*; there's none\.$"):
         defects.read_all(tmp_path)
