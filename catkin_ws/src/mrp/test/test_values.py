@@ -20,7 +20,7 @@ COUNT = 10  # values of each publisher
 
 # The clock begins just after 0, because 0 is the time of a node that has not heard the clock yet:
 # so it does not matter whether a node creates its timer before or after it first hears it.
-BEGIN = 0.01  # seconds
+BEGIN = 10_000_000  # nanoseconds
 PATIENCE = 2.0  # seconds of the wall's clock
 
 
@@ -31,8 +31,9 @@ class TestValues(unittest.TestCase):
         cls.clock = rospy.Publisher("/clock", Clock, queue_size=10, latch=True)
 
     def turn_clock(self, periods):
-        now = 2 * BEGIN + periods * contract.PERIOD
-        self.clock.publish(Clock(rospy.Time.from_sec(now)))
+        # Not in seconds: 4.02 as a float is less than 3.52 and a period, and a timer waits on.
+        now = 2 * BEGIN + periods * int(contract.PERIOD * 1e9)
+        self.clock.publish(Clock(rospy.Time(nsecs=now)))
 
     def subscribe(self, values):
         subscriber = rospy.Subscriber(contract.TOPIC, UInt32, lambda msg: values.append(msg.data))
@@ -40,7 +41,7 @@ class TestValues(unittest.TestCase):
         return subscriber
 
     def check(self, publisher):
-        self.clock.publish(Clock(rospy.Time.from_sec(BEGIN)))
+        self.clock.publish(Clock(rospy.Time(nsecs=BEGIN)))
         values = []
         subscriber = self.subscribe(values)
         with run(publisher) as process:
