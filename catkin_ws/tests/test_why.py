@@ -29,7 +29,7 @@ from mrp_check.code import python_read
 from mrp_check.rules.files import launch_file
 from mrp_testing.master import uri_of
 from mrp_testing.ports import free_port
-from mrp_testing.process import LIVE, Process
+from mrp_testing.process import LIVE, Process, processes_with
 from mrp_testing.waiting import wait_until, within
 from mrp_testing.workspace import ROOT, WORKSPACE
 
@@ -198,12 +198,15 @@ def test_text_is_printed(entry, tmp_path, env):
     process = Process("bash", "-c", f"cd {folder}\n{entry.try_}", env=env, extra_env=LIVE)
     with process:
         wait_until(lambda: process.code is not None or not missing(entry, process), process.__str__)
-        end(process)
+        end(process, tmp_path)
     assert missing(entry, process) == [], str(process)
 
 
-def end(process):
-    """End a shell and all that it runs: what is in the foreground, as Ctrl-C does."""
+def end(process, folder):
+    """End a shell and all that it runs: what is in the foreground, as Ctrl-C does.
+
+    folder: stands in the environment of all these processes, and of no others
+    """
     try:
         os.killpg(process.pid, signal.SIGINT)
         # roslaunch may stand still for good after an error.
@@ -211,6 +214,9 @@ def end(process):
         os.killpg(process.pid, signal.SIGKILL)
     except ProcessLookupError:
         pass
+    # The master of a roslaunch that was killed goes on, in a session of its own.
+    for pid in processes_with(str(folder)):
+        os.kill(pid, signal.SIGKILL)
     process.wait()
 
 
