@@ -74,8 +74,8 @@ def test_a_picture_says_in_words_what_it_draws():
     of = object.__new__
     graph = {
         "topics": {"/a": "std_msgs/UInt32", "/b": "std_msgs/String"},
-        "publishers": [["/one", "/a"], ["/two", "/a"]],
-        "subscribers": [["/two", "/b"]],
+        "publishers": ["/one -> /a", "/two -> /a"],
+        "subscribers": ["/b -> /two"],
     }
     assert of(picture.Graph).alt(graph) == (
         "Topic /a, type std_msgs/UInt32: published by /one, /two; subscribed to by no node. "

@@ -37,7 +37,7 @@ def test_a_mark_opens_a_box_that_escape_closes(browser, addresses, size, mode):
     for text in (
         "There are two such queues",
         "mrp_labs/publisher_queue/test_publisher_queue passed on 20",
-        "A publisher's queue while the connection is full",  # the docstring of the test's file
+        "Fills a publisher's queue: 5 drops the",  # the docstring of the test's file
         "test_publisher_queue.py, line ",
         'Lab(\n        "publisher_queue.launch"',
     ):

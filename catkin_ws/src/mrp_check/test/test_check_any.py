@@ -102,7 +102,7 @@ def test_what_another_machine_may_have_is_no_error(tmp_path):
 @pytest.mark.parametrize(
     ("has_cmake", "says"),
     [
-        (False, "some_pkg is not correct: The package has no CMakeLists.txt"),
+        (False, "some_pkg isn't correct: The package has no CMakeLists.txt"),
         (True, "no node of some_pkg ran."),
     ],
     ids=["not_built", "not_run"],

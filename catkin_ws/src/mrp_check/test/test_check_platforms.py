@@ -282,7 +282,7 @@ def test_zip_has_a_page_for_each_student(tmp_path):
 def test_a_name_without_a_number_is_said_and_not_guessed(tmp_path, capsys):
     check_command.write_pages(tmp_path / "marks.csv", CLASS, CONTRACT)
     said = capsys.readouterr().err.splitlines()
-    assert [line.split(" is not in ")[0] for line in said] == [
+    assert [line.split(" isn't in ")[0] for line in said] == [
         "check: carl",
         "check: Dee_5_assignsubmission_file_a.zip",
         "check: Dee_5_assignsubmission_file_b.zip",

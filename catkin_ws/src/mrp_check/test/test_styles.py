@@ -86,6 +86,6 @@ def test_head_without_a_diff_changes_files_of_its_base(lay_out):
 
 
 def test_diff_that_does_not_fit_is_named(lay_out):
-    fault = r"some\.patch does not fit .* as packages\.py shows\. The command `patch` says: "
+    fault = r"some\.patch doesn't fit .* as packages\.py shows\. The command `patch` says: "
     with pytest.raises(packages.PatchError, match=fault):
         lay_out(PATCH.replace("+first", ""))
