@@ -285,6 +285,17 @@ def test_names_paths_and_numbers_do_not_count(expected, text, index):
             "  a/CMakeLists.txt:114 (catkin_package)",
         ),
         (
+            "package-config-not-found",
+            "CMake Error at a/CMakeLists.txt:83 (find_package):\n"
+            '  Could not find a package configuration file provided by "tf2_sensor_msgs"\n'
+            "  with any of the following names:\n\n"
+            "    tf2_sensor_msgsConfig.cmake\n    tf2_sensor_msgs-config.cmake\n\n"
+            '  Add the installation prefix of "tf2_sensor_msgs" to CMAKE_PREFIX_PATH or\n'
+            '  set "tf2_sensor_msgs_DIR" to a directory containing one of the above files.\n'
+            '  If "tf2_sensor_msgs" provides a separate development package or SDK, be\n'
+            "  sure it has been installed.",
+        ),
+        (
             "cmake-rule-missing",
             "make[2]: *** No rule to make target 'a/CMakeFiles/b.dir/build'.  Stop.",
         ),

@@ -216,13 +216,14 @@ class Index:
             word: math.log(1 + len(entries) / len(having)) * (0.6 if " " in word else 1)
             for word, having in entries_of.items()
         }
-        # A text that says what a general entry says, and names somebody: it needs this name.
+        # A text that says what a general entry says, and names somebody, such as a package of
+        # ROS 2: it needs this name.
         general = {text.words for text in self._texts if text.entry.general}
         self._special = {
             text
             for text in self._texts
             if text.names and not text.entry.general
-            if any(words <= text.words for words in general)
+            if text.entry.name == _ROS2_ENTRY or any(words <= text.words for words in general)
         }
         self._sums = {text: self._sum(text.words) for text in self._texts}
         of_ros2 = [text.entry for text in self._texts if _OF_ROS2 in text.words]
