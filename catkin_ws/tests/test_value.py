@@ -73,13 +73,15 @@ def test_a_picture_says_in_words_what_it_draws():
 
     of = object.__new__
     graph = {
-        "topics": {"/a": "std_msgs/UInt32", "/b": "std_msgs/String"},
+        "topics": {"/a": "std_msgs/UInt32", "/b": "std_msgs/String", "/c": "std_msgs/String"},
         "publishers": ["/one -> /a", "/two -> /a"],
-        "subscribers": ["/b -> /two"],
+        # A node may have the name of its topic, as /rosout does.
+        "subscribers": ["/b -> /two", "/c -> /c"],
     }
     assert of(picture.Graph).alt(graph) == (
         "Topic /a, type std_msgs/UInt32: published by /one, /two; subscribed to by no node. "
-        "Topic /b, type std_msgs/String: published by no node; subscribed to by /two."
+        "Topic /b, type std_msgs/String: published by no node; subscribed to by /two. "
+        "Topic /c, type std_msgs/String: published by no node; subscribed to by /c."
     )
     assert of(picture.Queue).alt(9, {"one": {1, 2, 3, 9}, "two": {4}}) == (
         "Messages 1 to 9. one received 1 to 3, 9. two received 4."

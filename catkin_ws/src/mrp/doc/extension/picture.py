@@ -47,6 +47,11 @@ class Picture(SphinxDirective):
         return nodes.raw(text, text, format="html", alt=alt)
 
 
+def _ends(graph):
+    """Return the edges (publisher, topic), and the edges (topic, subscriber)."""
+    return [[edge.split(" -> ") for edge in graph[kind]] for kind in ("publishers", "subscribers")]
+
+
 class Graph(Picture):
     file = "graphs.json"
 
@@ -55,8 +60,7 @@ class Graph(Picture):
         lines.append('node [fontname="sans-serif"]')
         for topic, type_ in graph["topics"].items():
             lines.append(f'"topic {topic}" [shape=box label="{topic}\\n{type_}"]')
-        publishers = [edge.split(" -> ") for edge in graph["publishers"]]
-        subscribers = [edge.split(" -> ") for edge in graph["subscribers"]]
+        publishers, subscribers = _ends(graph)
         for node in sorted({node for node, _ in publishers} | {node for _, node in subscribers}):
             # On two lines, so that a phone has room for all of it.
             group, _, name = node.rpartition("/")
@@ -83,10 +87,12 @@ class Graph(Picture):
     def alt(self, graph):
         """Say of each topic which nodes publish it, and which ones subscribe to it."""
         sentences = []
-        ends = [edge.split(" -> ") for edge in graph["publishers"] + graph["subscribers"]]
+        publishers, subscribers = _ends(graph)
         for topic, type_ in graph["topics"].items():
-            publish = ", ".join(node for node, end in ends if end == topic) or "no node"
-            subscribe = ", ".join(node for begin, node in ends if begin == topic) or "no node"
+            publish = ", ".join(node for node, end in publishers if end == topic) or "no node"
+            subscribe = (
+                ", ".join(node for begin, node in subscribers if begin == topic) or "no node"
+            )
             who = f"published by {publish}; subscribed to by {subscribe}"
             sentences.append(f"Topic {topic}, type {type_}: {who}.")
         return " ".join(sentences)
