@@ -114,8 +114,8 @@ def findings(*entries):
     ids=range(16),
 )
 def test_consequences(entries, expected):
-    told = causes.without_repeats(findings(*entries), facts())
-    assert [finding.consequence_of for finding in told] == [None, *expected]
+    reported = causes.without_repeats(findings(*entries), facts())
+    assert [finding.consequence_of for finding in reported] == [None, *expected]
 
 
 class Ran:

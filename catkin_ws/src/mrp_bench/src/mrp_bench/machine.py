@@ -64,7 +64,7 @@ def _probe(processor, seconds, results):
 
 def noise(seconds=0.3):
     """Return the share of the processors' time that is lost to others, between 0 and 1."""
-    # "fork": nothing is imported anew, so all begin at about the same time.
+    # "fork" imports nothing a second time, so all processes begin at about the same time.
     context = multiprocessing.get_context("fork")
     results = context.Queue()
     processes = [

@@ -18,7 +18,7 @@ from mrp_bench.ways import WAYS, size_text
 # What a plan consists of: a way's name, and a Stream.
 Step = collections.namedtuple("Step", "way stream")
 
-# Rounds after which all programs are started anew: no two processes are equally fast.
+# Rounds after which all programs are restarted: no two processes are equally fast.
 _ROUNDS_PER_START = 3
 
 
