@@ -11,16 +11,13 @@ import unittest
 import rospy
 import rostest
 from mrp_testing import contract
+from mrp_testing.clock import TurnedClock
 from mrp_testing.nodes import connections_of, run
 from mrp_testing.waiting import within
-from rosgraph_msgs.msg import Clock
 from std_msgs.msg import UInt32
 
 COUNT = 10  # values of each publisher
 
-# The clock begins just after 0, because 0 is the time of a node that has not heard the clock yet:
-# so it does not matter whether a node creates its timer before or after it first hears it.
-BEGIN = 10_000_000  # nanoseconds
 PATIENCE = 2.0  # seconds of the wall's clock
 
 
@@ -28,12 +25,6 @@ class TestValues(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         rospy.init_node("test_values")
-        cls.clock = rospy.Publisher("/clock", Clock, queue_size=10, latch=True)
-
-    def turn_clock(self, periods):
-        # Not in seconds: 4.02 as a float is less than 3.52 and a period, and a timer waits on.
-        now = 2 * BEGIN + periods * int(contract.PERIOD * 1e9)
-        self.clock.publish(Clock(rospy.Time(nsecs=now)))
 
     def subscribe(self, values):
         subscriber = rospy.Subscriber(contract.TOPIC, UInt32, lambda msg: values.append(msg.data))
@@ -41,25 +32,24 @@ class TestValues(unittest.TestCase):
         return subscriber
 
     def check(self, publisher):
-        self.clock.publish(Clock(rospy.Time(nsecs=BEGIN)))
         values = []
         subscriber = self.subscribe(values)
-        with run(publisher) as process:
+        with TurnedClock() as clock, run(publisher) as process:
             process.wait_for(
                 lambda: connections_to_test(publisher), "the test's subscriber is connected"
             )
             # The first turn may come before the node hears the clock at all.
             periods = 1
-            self.turn_clock(periods)
+            clock.turn(contract.PERIOD)
             while not within(PATIENCE, lambda: values) and periods < COUNT:
                 periods += 1
-                self.turn_clock(periods)
+                clock.turn(contract.PERIOD)
             # From here on: one value a period, not more and not less.
             while len(values) < COUNT:
                 count = len(values)
                 self.assertLessEqual(count, periods, f"too many: {values}")
                 periods += 1
-                self.turn_clock(periods)
+                clock.turn(contract.PERIOD)
                 process.wait_for(
                     lambda: len(values) > count,
                     lambda: f"one more value after a period: {values}",
@@ -69,13 +59,13 @@ class TestValues(unittest.TestCase):
             self.assertLessEqual(len(values), periods, f"too many: {values}")
 
             # Not latched: a late subscriber hears the next value first, not the last one again.
-            late = self.hear_late(publisher, process, subscriber, periods + 1)
+            late = self.hear_late(publisher, process, subscriber, clock)
         first = contract.FIRST_VALUE[publisher]
         self.assertEqual(values, [first + i * contract.STEP for i in range(len(values))])
         self.assertEqual(late, values[-1] + contract.STEP, "what the late subscriber hears")
 
-    def hear_late(self, publisher, process, subscriber, periods):
-        """Return the first value that is heard in so many periods, in place of the subscriber."""
+    def hear_late(self, publisher, process, subscriber, clock):
+        """Return the first value that is heard in one more period, in place of the subscriber."""
         before = connections_to_test(publisher)
         subscriber.unregister()
         late = []
@@ -83,7 +73,7 @@ class TestValues(unittest.TestCase):
         process.wait_for(
             lambda: connections_to_test(publisher) - before, "the late subscriber is connected"
         )
-        self.turn_clock(periods)
+        clock.turn(contract.PERIOD)
         process.wait_for(lambda: late, "the late subscriber hears a value")
         return late[0]
 
