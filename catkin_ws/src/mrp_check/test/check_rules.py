@@ -1,12 +1,16 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Small packages for the tests of the checker's rules: a rule sees the files, nothing is built."""
 
+import html.parser
 import os
 import pathlib
+import subprocess
 import types
 
 from mrp_check import sandbox
 from mrp_check.code import facts, python_facts, python_read, source_node, uses
+from mrp_check.confined import cpp_headers, crossing
+from mrp_check.confined.places import Answer, Task
 from mrp_check.contract import spec
 from mrp_check.contract.requirements import Rule
 from mrp_check.package import cmake, manifest
@@ -72,6 +76,31 @@ def hand_in(folder, name, cmake="cmake_minimum_required(VERSION 3.10)\n"):
     return make(folder / name, CMakeLists_DOT_txt=cmake).root
 
 
+class Tags(html.parser.HTMLParser):
+    """The tags and the texts of a page; it fails where one is not closed."""
+
+    def __init__(self, text):
+        super().__init__()
+        self.tags, self.texts, self.open = [], [], []
+        self.feed(text)
+        assert self.open == []
+
+    def handle_starttag(self, tag, attributes):
+        self.tags.append(tag)
+        if tag not in ("meta", "br"):
+            self.open.append(tag)
+
+    def handle_endtag(self, tag):
+        assert self.open.pop() == tag
+
+    def handle_data(self, data):
+        self.texts.append(data)
+
+    @property
+    def text(self):
+        return "".join(self.texts)
+
+
 def case_of(package, folder, contract=PUB_SUB, **known):
     """Return a Case for a package in a new folder; close its `catkin` in the end.
 
@@ -81,6 +110,16 @@ def case_of(package, folder, contract=PUB_SUB, **known):
     one = case.Case(package, contract, folder, 120, lambda sentence: None)
     vars(one).update(known)
     return one
+
+
+def said_by_clang(folder, headers="none", flags=(cpp_headers.STANDARD,)):
+    """Return what cpp_facts.py says of src/a.cpp in a folder; headers: ROS's, read before."""
+    task = Task(str(folder), str(headers), [[str(folder / "src/a.cpp"), *flags]])
+    program = pathlib.Path(cpp_headers.__file__).with_name("cpp_facts.py")
+    command = ["/usr/bin/python3", program, crossing.to_json(task)]
+    done = subprocess.run(command, stdout=subprocess.PIPE, check=True)
+    (said,) = crossing.from_json(Answer, done.stdout).values()
+    return said
 
 
 def model_of(package):

@@ -30,6 +30,33 @@ def is_found(finding, defect, folder):
     return any(_is_at(finding, file, pattern, folder) for file, pattern in defect.places)
 
 
+def is_told(finding, folder, severity, id_, place, message=""):
+    """Say whether a Finding is that one.
+
+    place: its file, and what stands in its line, such as "src/a.cpp: while"; message: a pattern
+    """
+    file, _, text = place.partition(": ")
+    if (finding.severity, finding.id, finding.file) != (severity, id_, file) or not finding.line:
+        return False
+    line = (folder / file).read_text().splitlines()[finding.line - 1]
+    return text in line and bool(re.search(message, finding.message))
+
+
+def shown(findings):
+    """Return findings, or those of a report's data, as lines for who reads why a test failed."""
+    text = "{severity} {id} {file}:{line} {message} | {expected} | {seen} (from {consequence_of})"
+    return "\n".join(text.format(**(f if isinstance(f, dict) else vars(f))) for f in findings)
+
+
+def contents(folder):
+    """Return path -> (may be executed, bytes) of all files of a folder."""
+    files = [path for path in pathlib.Path(folder).rglob("*") if path.is_file()]
+    return {
+        str(path.relative_to(folder)): (bool(path.stat().st_mode & 0o100), path.read_bytes())
+        for path in files
+    }
+
+
 def _is_at(finding, file, pattern, folder):
     if finding["file"] != file or not finding["line"]:
         return False

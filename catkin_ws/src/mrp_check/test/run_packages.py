@@ -47,7 +47,8 @@ _LAUNCH_OF_ASKS = """\
 </launch>
 """
 _HEAD = "#!/usr/bin/env python3\nimport rospy\n"
-_TALKER = """\
+_SOURCES = {
+    "talker.py": """\
 from std_msgs.msg import String
 
 rospy.init_node("talker")
@@ -56,8 +57,8 @@ rate = rospy.Rate(10)
 while not rospy.is_shutdown():
     publisher.publish("hello")
     rate.sleep()
-"""
-_DEAF = """\
+""",
+    "deaf.py": """\
 from std_msgs.msg import String
 
 
@@ -68,8 +69,8 @@ def hear():
 rospy.init_node("deaf")
 subscriber = rospy.Subscriber("chatter", String, hear)
 rospy.spin()
-"""
-_OPEN_GOAL = """\
+""",
+    "open_goal.py": """\
 import actionlib
 from actionlib.msg import TestAction, TestResult
 
@@ -83,8 +84,8 @@ rospy.init_node("open_goal")
 server = actionlib.SimpleActionServer("open_goal", TestAction, execute, auto_start=False)
 server.start()
 rospy.spin()
-"""
-_CANCELED_GOAL = """\
+""",
+    "canceled_goal.py": """\
 import actionlib
 from actionlib.msg import TestAction, TestResult
 
@@ -103,8 +104,8 @@ rospy.init_node("canceled_goal")
 server = actionlib.SimpleActionServer("canceled_goal", TestAction, execute, auto_start=False)
 server.start()
 rospy.spin()
-"""
-_CLIENT = """\
+""",
+    "client.py": """\
 import actionlib
 from actionlib.msg import TestAction, TestGoal
 
@@ -118,8 +119,8 @@ canceled_goal.send_goal(TestGoal(goal=3))
 rospy.sleep(0.5)
 canceled_goal.cancel_goal()
 rospy.spin()
-"""
-_FRAMES = """\
+""",
+    "frames.py": """\
 import tf2_ros
 
 rospy.init_node("frames")
@@ -132,8 +133,8 @@ while not rospy.is_shutdown():
     except tf2_ros.TransformException as error:
         rospy.logwarn("no transform: %s", error)
     rate.sleep()
-"""
-_SENDS_FRAMES = """\
+""",
+    "sends_frames.py": """\
 import tf2_ros
 from geometry_msgs.msg import TransformStamped
 
@@ -147,8 +148,8 @@ while not rospy.is_shutdown():
     transform.header.stamp = rospy.Time.now()
     broadcaster.sendTransform(transform)
     rate.sleep()
-"""
-_SERVICE = """\
+""",
+    "service.py": """\
 from std_srvs.srv import SetBool, SetBoolResponse
 
 
@@ -159,8 +160,8 @@ def switch(request):
 rospy.init_node("service")
 service = rospy.Service("switch", SetBool, switch)
 rospy.spin()
-"""
-_CALLER = """\
+""",
+    "caller.py": """\
 from std_srvs.srv import SetBool
 
 rospy.init_node("caller")
@@ -173,8 +174,8 @@ except rospy.ServiceException as error:
     rospy.spin()
 except rospy.ROSInterruptException:
     pass
-"""
-_NUMBER = """\
+""",
+    "number.py": """\
 from std_msgs.msg import Int32
 
 
@@ -185,16 +186,16 @@ def hear(message):
 rospy.init_node("number")
 subscriber = rospy.Subscriber("chatter", Int32, hear)
 rospy.spin()
-"""
-_ONCE = """\
+""",
+    "once.py": """\
 from std_msgs.msg import String
 
 rospy.init_node("once")
 publisher = rospy.Publisher("greeting", String, queue_size=10)
 publisher.publish("hello")
 rospy.spin()
-"""
-_HEARS_ONCE = """\
+""",
+    "hears_once.py": """\
 from std_msgs.msg import String
 
 
@@ -205,21 +206,28 @@ def hear(message):
 rospy.init_node("hears_once")
 subscriber = rospy.Subscriber("greeting", String, hear)
 rospy.spin()
-"""
-_RATE = """\
+""",
+    "rate.py": """\
 rospy.init_node("rate")
 rate = rospy.Rate(rospy.get_param("rate"))
 while not rospy.is_shutdown():
     rate.sleep()
-"""
-# Nothing keeps its loop waiting.
-_HURRIES = """\
+""",
+    # No launch file starts it: so all run together once more. It holds the lock that rospy holds
+    # while it asks the master: if Ctrl-C comes then, rospy's own handler waits for it for ever.
+    "unlaunched.py": """\
+rospy.init_node("unlaunched")
+with rospy.get_master().target._lock:
+    rospy.spin()
+""",
+    # Nothing keeps its loop waiting.
+    "hurries.py": """\
 rospy.init_node("hurries")
 rate = rospy.Rate(10)
 while not rospy.is_shutdown():
     count = rospy.get_time()
-"""
-_HURRIES_CPP = """\
+""",
+    "fast.cpp": """\
 #include <ros/ros.h>
 
 int main(int argc, char** argv)
@@ -233,15 +241,8 @@ int main(int argc, char** argv)
     // sleep
   }
 }
-"""
-# No launch file starts it: so all run together once more. It holds the lock that rospy holds while
-# it asks the master for something: if Ctrl-C comes then, rospy's own handler waits for it for ever.
-_UNLAUNCHED = """\
-rospy.init_node("unlaunched")
-with rospy.get_master().target._lock:
-    rospy.spin()
-"""
-_ASKS = """\
+""",
+    "asks.cpp": """\
 #include <ros/ros.h>
 #include <std_msgs/String.h>
 
@@ -265,46 +266,24 @@ int main(int argc, char** argv)
     ros::spinOnce();
   }
 }
-"""
+""",
+}
+_LOOP = "while not rospy.is_shutdown():\n"
+_BUFFER = "buffer = tf2_ros.Buffer()\n"
+_LISTENER = "listener = tf2_ros.TransformListener(buffer)\n"
 # What is wrong in a file, and what is right.
 _RIGHT = {
-    "deaf.py": [("def hear():", "def hear(message):")],
-    "open_goal.py": [("if goal.goal > 5", "if goal.goal > 0")],
-    "canceled_goal.py": [("            break\n", "            return\n")],
-    "frames.py": [
-        (
-            "while not rospy.is_shutdown():\n    buffer = tf2_ros.Buffer()\n    listener = tf2_ros"
-            ".TransformListener(buffer)\n",
-            "buffer = tf2_ros.Buffer()\nlistener = tf2_ros.TransformListener(buffer)\n"
-            "while not rospy.is_shutdown():\n",
-        )
-    ],
-    "service.py": [("succes=", "success=")],
-    "number.py": [("Int32", "String")],
-    "once.py": [("queue_size=10", "queue_size=10, latch=True")],
-    "rate.py": [('"rate"))', '"~rate"))')],
-    "hurries.py": [("    count = rospy.get_time()\n", "    rate.sleep()\n")],
-    "fast.cpp": [("// sleep", "rate.sleep();")],
-    "asks.cpp": [("key < 1", "key < 0")],
-}
-_SOURCES = {
-    "talker.py": _TALKER,
-    "deaf.py": _DEAF,
-    "open_goal.py": _OPEN_GOAL,
-    "canceled_goal.py": _CANCELED_GOAL,
-    "client.py": _CLIENT,
-    "frames.py": _FRAMES,
-    "sends_frames.py": _SENDS_FRAMES,
-    "service.py": _SERVICE,
-    "caller.py": _CALLER,
-    "number.py": _NUMBER,
-    "once.py": _ONCE,
-    "hears_once.py": _HEARS_ONCE,
-    "rate.py": _RATE,
-    "unlaunched.py": _UNLAUNCHED,
-    "hurries.py": _HURRIES,
-    "fast.cpp": _HURRIES_CPP,
-    "asks.cpp": _ASKS,
+    "deaf.py": ("def hear():", "def hear(message):"),
+    "open_goal.py": ("if goal.goal > 5", "if goal.goal > 0"),
+    "canceled_goal.py": ("            break\n", "            return\n"),
+    "frames.py": (f"{_LOOP}    {_BUFFER}    {_LISTENER}", f"{_BUFFER}{_LISTENER}{_LOOP}"),
+    "service.py": ("succes=", "success="),
+    "number.py": ("Int32", "String"),
+    "once.py": ("queue_size=10", "queue_size=10, latch=True"),
+    "rate.py": ('"rate"))', '"~rate"))'),
+    "hurries.py": ("    count = rospy.get_time()\n", "    rate.sleep()\n"),
+    "fast.cpp": ("// sleep", "rate.sleep();"),
+    "asks.cpp": ("key < 1", "key < 0"),
 }
 
 
@@ -315,9 +294,9 @@ def make(folder, is_right):
     files["launch__all_DOT_launch"] = _LAUNCH
     files["launch__asks_DOT_launch"] = _LAUNCH_OF_ASKS
     for name, source in _SOURCES.items():
-        for wrong, right in _RIGHT.get(name, ()) if is_right else ():
-            assert wrong in source, name
-            source = source.replace(wrong, right)
+        wrong, right = _RIGHT.get(name, ("", ""))
+        assert wrong in source, name
+        source = source.replace(wrong, right) if is_right and wrong else source
         stem, _, ending = name.partition(".")
         is_cpp = ending == "cpp"
         file = f"src__{stem}_DOT_cpp" if is_cpp else f"scripts__{stem}_DOT_py"

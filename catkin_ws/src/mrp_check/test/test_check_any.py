@@ -11,6 +11,7 @@ import any_packages
 import check_rules
 import jsonschema
 import pytest
+from check_sets import is_told, shown
 from mrp_check.cli import check as command
 from mrp_check.code import executables
 from mrp_check.contract.finding import ERROR, NOTE, WARNING
@@ -61,10 +62,6 @@ DOUBTED = [
 
 def checked(folder):
     return check.check(Package(folder), None, timeout=300)
-
-
-def shown(findings):
-    return "\n".join(f"{f.severity} {f.id} {f.file}:{f.line} {f.message}" for f in findings)
 
 
 def test_what_beginners_write_has_no_error(tmp_path, report_schema):
@@ -262,11 +259,3 @@ def failure_id(found):
     return next(
         case.get("name") for case in found.iter("testcase") if case.find("failure") is not None
     )
-
-
-def is_told(finding, folder, severity, id_, where, message):
-    file, text = where.split(": ", 1)
-    if (finding.severity, finding.id, finding.file) != (severity, id_, file):
-        return False
-    lines = (folder / file).read_text().splitlines()
-    return text in lines[finding.line - 1] and bool(re.search(message, finding.message))

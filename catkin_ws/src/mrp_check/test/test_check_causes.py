@@ -10,6 +10,10 @@ from mrp_check.verdict import causes
 pytestmark = pytest.mark.quick
 
 
+MISSING = "dependencies package.xml:9 files -"
+FAILED = "compile src/a.cpp:1 build -"
+
+
 def facts():
     found = Facts()
     found.sources = {"a": ["src/a.py"], "b": ["src/b.py"]}
@@ -17,99 +21,55 @@ def facts():
 
 
 def findings(*entries):
-    return [
-        Finding(id_, "It is so.", file, line, stage=stage, node=node, severity="error")
-        for id_, file, line, stage, node in entries
-    ]
+    """Return an error for each entry, such as "spin src/a.py:1 static a"; - is none."""
+    found = []
+    for entry in entries:
+        id_, place, stage, node = (None if word == "-" else word for word in entry.split())
+        file, _, line = (place or "").partition(":")
+        found.append(Finding(id_, "It is so.", file or None, int(line) if line else None))
+        found[-1].stage, found[-1].node, found[-1].severity = stage, node, "error"
+    return found
 
 
+# What is found -> of what each but the first is a consequence.
 @pytest.mark.parametrize(
     ("entries", "expected"),
     [
         # What one node does wrong, it does wrong when it runs; another is sent values all the same.
-        ([("spin", "src/a.py", 1, "static", "a"), ("starts", "src/a.py", 1, "run", "a")], ["spin"]),
-        (
-            [
-                ("python-syntax", "src/a.py", 1, "static", None),
-                ("values", "src/a.py", 5, "run", "a"),
-            ],
-            ["python-syntax"],
-        ),
-        (
-            [
-                ("python-syntax", "src/a.py", 1, "static", None),
-                ("received", "src/b.py", 5, "run", "b"),
-            ],
-            [None],
-        ),
-        (
-            [
-                ("python-names", "src/a.py", 5, "static", None),
-                ("spin", "src/a.py", 5, "static", "a"),
-            ],
-            ["python-names"],
-        ),
+        (["spin src/a.py:1 static a", "starts src/a.py:1 run a"], ["spin"]),
+        (["python-syntax src/a.py:1 static -", "values src/a.py:5 run a"], ["python-syntax"]),
+        (["python-syntax src/a.py:1 static -", "received src/b.py:5 run b"], [None]),
+        (["python-names src/a.py:5 static -", "spin src/a.py:5 static a"], ["python-names"]),
         # Another node's own fault is its own.
-        ([("spin", "src/a.py", 1, "static", "a"), ("exit", "src/b.py", 5, "stop", "b")], [None]),
-        ([("queue", "src/a.py", 1, "static", "a"), ("values", "src/a.py", 5, "run", "a")], [None]),
+        (["spin src/a.py:1 static a", "exit src/b.py:5 stop b"], [None]),
+        (["queue src/a.py:1 static a", "values src/a.py:5 run a"], [None]),
         # What was seen of a program that ran does not follow from what may hinder its building.
-        ([("messages", "CMakeLists.txt", 1, "files", None), ("exit", "a", 5, "stop", "b")], [None]),
+        (["messages CMakeLists.txt:1 files -", "exit a:5 stop b"], [None]),
         # What keeps all from being built.
-        (
-            [("configure", "CMakeLists.txt", 1, "build", None), ("starts", None, None, "run", "b")],
-            ["configure"],
-        ),
-        (
-            [
-                ("targets", "CMakeLists.txt", 4, "files", None),
-                ("configure", "CMakeLists.txt", 4, "build", None),
-            ],
-            ["targets"],
-        ),
+        (["configure CMakeLists.txt:1 build -", "starts - run b"], ["configure"]),
+        (["targets CMakeLists.txt:4 files -", "configure CMakeLists.txt:4 build -"], ["targets"]),
         # Of two possible causes, the one that stands where CMake stops.
         (
-            [
-                ("dependencies", "package.xml", 9, "files", None),
-                ("cmake", "CMakeLists.txt", 4, "files", None),
-                ("configure", "CMakeLists.txt", 4, "build", None),
-            ],
+            [MISSING, "cmake CMakeLists.txt:4 files -", "configure CMakeLists.txt:4 build -"],
             [None, "cmake"],
         ),
         (
             [
-                ("dependencies", "package.xml", 9, "files", None),
-                ("package-name", "CMakeLists.txt", 2, "files", None),
-                ("configure", "CMakeLists.txt", 4, "build", None),
+                MISSING,
+                "package-name CMakeLists.txt:2 files -",
+                "configure CMakeLists.txt:4 build -",
             ],
             [None, "package-name"],
         ),
         # Two faults of the same kind in two sources are two.
-        (
-            [
-                ("compile", "src/a.cpp", 4, "build", None),
-                ("compile", "src/b.cpp", 4, "build", None),
-            ],
-            [None],
-        ),
+        (["compile src/a.cpp:4 build -", "compile src/b.cpp:4 build -"], [None]),
         # Without the launch file, the checker starts the nodes by its own.
-        ([("launch-file", None, None, "files", None), ("rate", "src/a.py", 5, "run", "a")], [None]),
+        (["launch-file - files -", "rate src/a.py:5 run a"], [None]),
         # A script that is no node of the exercise keeps no node from anything.
-        (
-            [
-                ("python-names", "src/c.py", 5, "static", None),
-                ("rate", "src/a.py", 5, "run", "a"),
-            ],
-            [None],
-        ),
+        (["python-names src/c.py:5 static -", "rate src/a.py:5 run a"], [None]),
         # A second instance of a defect is another defect.
-        ([("wrap", "src/a.py", 5, "static", "a"), ("wrap", "src/a.py", 9, "static", "a")], [None]),
-        (
-            [
-                ("targets", "CMakeLists.txt", 4, "static", "a"),
-                ("launch-nodes", "a.launch", 9, "static", "b"),
-            ],
-            [None],
-        ),
+        (["wrap src/a.py:5 static a", "wrap src/a.py:9 static a"], [None]),
+        (["targets CMakeLists.txt:4 static a", "launch-nodes a.launch:9 static b"], [None]),
     ],
     ids=range(16),
 )
@@ -128,16 +88,12 @@ class Ran:
 
 
 @pytest.mark.parametrize(
-    ("cause", "result"),
-    [
-        (("configure", "CMakeLists.txt", 1, "build", None), ("rate", "src/a.py", 5, "run", "a")),
-        (("python-names", "src/a.py", 5, "static", None), ("rate", "src/a.py", 5, "run", "a")),
-    ],
-    ids=range(2),
+    "cause", ["configure CMakeLists.txt:1 build -", "python-names src/a.py:5 static -"]
 )
-def test_what_was_seen_all_the_same_is_no_consequence(cause, result):
-    assert causes.without_repeats(findings(cause, result), facts())[1].consequence_of == cause[0]
-    seen = causes.without_repeats(findings(cause, result), facts(), {"a": Ran()})
+def test_what_was_seen_all_the_same_is_no_consequence(cause):
+    entries = cause, "rate src/a.py:5 run a"
+    assert causes.without_repeats(findings(*entries), facts())[1].consequence_of in cause
+    seen = causes.without_repeats(findings(*entries), facts(), {"a": Ran()})
     assert seen[1].consequence_of is None
 
 
@@ -147,10 +103,7 @@ def test_what_was_seen_all_the_same_is_no_consequence(cause, result):
     ids=range(3),
 )
 def test_a_missing_header_follows_from_its_own_package(missing, cause):
-    undeclared, failed = findings(
-        ("dependencies", "package.xml", 9, "files", None),
-        ("compile", "src/a.cpp", 1, "build", None),
-    )
+    undeclared, failed = findings(MISSING, FAILED)
     undeclared.packages, failed.packages = ("std_srvs",), missing
     causes.without_repeats([undeclared, failed])
     assert failed.consequence_of == cause
@@ -166,27 +119,22 @@ def test_a_missing_header_follows_from_its_own_package(missing, cause):
     ids=range(3),
 )
 def test_what_stands_behind_a_header_that_is_not_made_stands_for_itself(missing, file, cause):
-    unmade, failed = findings(
-        ("messages", file, 9, "files", None), ("compile", "src/a.cpp", 1, "build", None)
-    )
+    unmade, failed = findings(f"messages {file}:9 files -", FAILED)
     failed.packages = missing
     causes.without_repeats([unmade, failed])
     assert failed.consequence_of == cause
 
 
 def test_what_one_line_lacks_is_told_of_each():
-    first, second = findings(*[("dependencies", "package.xml", 9, "files", None)] * 2)
+    first, second = findings(MISSING, MISSING)
     first.expected, second.expected = "<depend>std_msgs</depend>", "<depend>std_srvs</depend>"
     assert causes.without_repeats([first, second]) == [first, second]
 
 
 def test_the_same_is_told_once():
-    entry = ("spin", "src/a.py", 1, "static", "a")
-    assert len(causes.without_repeats(findings(entry, entry), facts())) == 1
-    of_no_node = ("spin", "src/a.py", 1, "static", None)
-    assert len(causes.without_repeats(findings(of_no_node, entry), facts())) == 1
-    of_another = ("spin", "src/a.py", 1, "static", "b")
-    assert len(causes.without_repeats(findings(entry, of_another), facts())) == 2
+    for other, count in (("a", 1), ("-", 1), ("b", 2)):
+        entries = f"spin src/a.py:1 static {other}", "spin src/a.py:1 static a"
+        assert len(causes.without_repeats(findings(*entries), facts())) == count
 
 
 def test_last_words_have_no_time():
@@ -196,6 +144,6 @@ def test_last_words_have_no_time():
 
 
 def test_a_node_may_end_before_it_gets_to_an_undefined_name():
-    entries = ("python-names", "src/a.py", 5, "static", None), ("starts", "src/a.py", 9, "run", "a")
+    entries = "python-names src/a.py:5 static -", "starts src/a.py:9 run a"
     _, end = causes.without_repeats(findings(*entries), facts(), has_contract=False)
     assert end.consequence_of is None

@@ -212,6 +212,18 @@ def test_who_is_wrong_about_the_name_is_decided_by_the_others(tmp_path):
     assert (finding.file, finding.line) == ("package.xml", 3)
 
 
+def with_messages(folder, calls, generator="message_generation", **files):
+    """Make a package with these calls in the place of catkin_package()."""
+    needs = f"<depend>{generator}</depend><depend>message_runtime</depend></package>"
+    text_ = CMAKE.replace("catkin_package(CATKIN_DEPENDS roscpp rospy std_msgs)", calls)
+    return check_rules.make(
+        folder,
+        package_DOT_xml=MANIFEST.replace("</package>", needs),
+        CMakeLists_DOT_txt=text_.replace("roscpp rospy", f"{generator} roscpp rospy"),
+        **files,
+    )
+
+
 @pytest.mark.parametrize(
     ("generator", "configures", "severities"),
     [
@@ -223,17 +235,8 @@ def test_who_is_wrong_about_the_name_is_decided_by_the_others(tmp_path):
 )
 def test_what_makes_messages(generator, configures, severities, tmp_path):
     """actionlib_msgs brings along what makes messages: CMake goes through."""
-    text_ = CMAKE.replace(
-        "catkin_package", "add_message_files(FILES A.msg)\ngenerate_messages()\n#"
-    )
-    package = check_rules.make(
-        tmp_path,
-        package_DOT_xml=MANIFEST.replace(
-            "</package>", f"<depend>{generator}</depend><depend>message_runtime</depend></package>"
-        ),
-        CMakeLists_DOT_txt=text_.replace("roscpp rospy", f"{generator} roscpp rospy"),
-        msg__A_DOT_msg="int32 a\n",
-    )
+    calls = "add_message_files(FILES A.msg)\ngenerate_messages()"
+    package = with_messages(tmp_path, calls, generator, msg__A_DOT_msg="int32 a\n")
     model = check_rules.model_of(package)
     model.complete = configures
     found = file_findings(messages, package, model=model)
@@ -256,33 +259,20 @@ def test_generate_messages_is_known_where_its_package_is_found(finds, says, tmp_
 
 
 def test_code_is_made_of_the_messages_of_an_action(tmp_path):
-    calls = "add_action_files(FILES Do.action)\ngenerate_messages()\ncatkin_package"
-    text_ = CMAKE.replace("catkin_package", calls).replace("rospy", "rospy message_generation", 1)
+    calls = "add_action_files(FILES Do.action)\ngenerate_messages()\ncatkin_package()"
     made = {f"msg__{name}_DOT_msg": "" for name in ("DoActionGoal", "DoResult", "DoAction", "Do2")}
-    package = check_rules.make(
-        tmp_path, action__Do_DOT_action="---\n---\n", CMakeLists_DOT_txt=text_, **made
-    )
+    package = with_messages(tmp_path, calls, action__Do_DOT_action="---\n---\n", **made)
     found = [one.message for one in file_findings(messages, package)]
     assert [text_[: text_.index(".msg")] for text_ in found if ".msg is" in text_] == ["msg/Do2"]
 
 
 @pytest.mark.parametrize(
     ("folder", "says"),
-    [("srv/", []), ("", ["looks for srv/Ask.srv, but the file is at Ask.srv, so CMake stops."])],
+    [("srv__", []), ("", ["looks for srv/Ask.srv, but the file is at Ask.srv, so CMake stops."])],
 )
 def test_a_definition_lies_where_cmake_looks_for_it(folder, says, tmp_path):
-    makes = "add_service_files(FILES Ask.srv)\ngenerate_messages()\ncatkin_package"
-    package = check_rules.make(
-        tmp_path,
-        package_DOT_xml=MANIFEST.replace(
-            "</package>",
-            "<depend>message_generation</depend><depend>message_runtime</depend></package>",
-        ),
-        CMakeLists_DOT_txt=CMAKE.replace("catkin_package", makes).replace(
-            "roscpp rospy", "message_generation roscpp rospy"
-        ),
-        **{f"{folder}Ask.srv".replace("/", "__").replace(".", "_DOT_"): "int32 a\n---\n"},
-    )
+    calls = "add_service_files(FILES Ask.srv)\ngenerate_messages()\ncatkin_package()"
+    package = with_messages(tmp_path, calls, **{f"{folder}Ask_DOT_srv": "int32 a\n---\n"})
     found = file_findings(messages, package)
     assert [finding.message.partition("() ")[2] for finding in found] == says
 
@@ -297,21 +287,12 @@ def test_a_definition_lies_where_cmake_looks_for_it(folder, says, tmp_path):
     ],
 )
 def test_own_service_is_made_before_it_is_used(without, file, says, tmp_path):
-    more = (
+    calls = (
         "add_service_files(FILES Ask.srv)\ngenerate_messages()\ncatkin_package()\n"
         "add_executable(a src/a.cpp)\nadd_dependencies(a some_pkg_gencpp)\n"
     )
-    text_ = re.sub(r"catkin_package\(.*\n", more.replace(without, ""), CMAKE)
-    package = check_rules.make(
-        tmp_path,
-        package_DOT_xml=MANIFEST.replace(
-            "</package>",
-            "<depend>message_generation</depend><depend>message_runtime</depend></package>",
-        ),
-        CMakeLists_DOT_txt=text_.replace("roscpp rospy", "message_generation roscpp rospy"),
-        srv__Ask_DOT_srv="---\n",
-        src__a_DOT_cpp="#include <some_pkg/AskRequest.h>\n",
-    )
+    files = {"src__a_DOT_cpp": "#include <some_pkg/AskRequest.h>\n", "srv__Ask_DOT_srv": "---\n"}
+    package = with_messages(tmp_path, calls.replace(without, ""), **files)
     found = [
         f"{one.file}: {package.lines(one.file)[one.line - 1]} {one.message}"
         for one in file_findings(messages, package)

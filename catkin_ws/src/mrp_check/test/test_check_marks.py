@@ -8,12 +8,12 @@ import re
 import zipfile
 
 import pytest
-from check_rules import ASKED, hand_in
+from check_rules import ASKED, Tags, hand_in
 from mrp_check.classroom import by_hand, class_table, classroom, mail, moodle, moved
 from mrp_check.cli import check as check_command
 from mrp_check.contract import errors, spec
 from mrp_check.verdict import check
-from test_check_class import SPEC_FILE, Room, Tags
+from test_check_class import SPEC_FILE, Room
 
 pytestmark = pytest.mark.quick
 

@@ -29,28 +29,38 @@ from mrp_testing.waiting import wait_until
 pytestmark = pytest.mark.slow
 
 
-def observed_case(tmp_path, folder, observed):
-    """Return the case of a package of which the observer has seen that."""
-    spec = spec_of(["right"], [])
-    scratch = tmp_path / "scratch"
-    return check_rules.case_of(Package(folder), scratch, spec, facts=Facts(), observed=observed)
+PATH, TOPIC = "/lab/publisher_right", "/lab/of_right"
+
+
+def case_of(tmp_path, change=("", ""), **known):
+    """Return the case of a package with a publisher, right but for a change."""
+    folder = make_package(tmp_path / "lab_pkg", {"right": change}, {})
+    known = {"facts": Facts(), **known}
+    return check_rules.case_of(
+        Package(folder), tmp_path / "scratch", spec_of(["right"], []), **known
+    )
+
+
+def judged(tmp_path, ids, launch=None, direct=None):
+    """Return the ids of what the stages run and stop find when the observer has seen that, and
+    which of these ids nobody can judge: id -> why."""
+    observed = observing.Observed(launch=launch, executables={"publisher_right": tmp_path})
+    observed.direct = direct
+    case = case_of(tmp_path, observed=observed)
+    found = [finding.id for rule in OF_RUN for finding in rule.findings(case)]
+    case.close()
+    return found, check.unseen(case, ids)
 
 
 def test_texts_on_a_number_topic_are_found_and_no_fault_of_the_checker(tmp_path):
     """Of what arrives, nothing is a number: its type is wrong, and its values were never seen."""
-    folder = make_package(tmp_path / "lab_pkg", {"right": ("", "")}, {})
-    path, topic = "/lab/publisher_right", "/lab/of_right"
     seen = Seen(
-        publications=[Registration(path, topic, "std_msgs/String", 0)],
-        messages=[Message(path, topic, {"data": "1"}, time / 2) for time in range(8)],
+        publications=[Registration(PATH, TOPIC, "std_msgs/String", 0)],
+        messages=[Message(PATH, TOPIC, {"data": "1"}, time / 2) for time in range(8)],
     )
     launch = LaunchResult(ending="enough", asked=5, lines=[], seen=seen)
-    observed = observing.Observed(launch=launch, executables={"publisher_right": folder})
-    case = observed_case(tmp_path, folder, observed)
-    found = [finding.id for rule in OF_RUN for finding in rule.findings(case)]
-    case.close()
+    found, unseen = judged(tmp_path, ["values", "rate", "latch", "exit", "type"], launch)
     assert "type" in found and "values" not in found
-    unseen = check.unseen(case, ["values", "rate", "latch", "exit", "type"])
     assert unseen == {
         "values": "publisher_right published no number",
         "exit": "publisher_right wasn't seen to end",
@@ -148,20 +158,15 @@ def test_a_process_that_gets_no_processor_is_not_idle(monkeypatch):
 
 def test_how_a_node_ends_that_was_still_starting_is_not_judged(tmp_path):
     """By itself, on a busy machine, it was asked to end while it still imported rospy."""
-    folder = make_package(tmp_path / "lab_pkg", {"right": ("", "")}, {})
-    path, topic = "/lab/publisher_right", "/lab/of_right"
-    seen = Seen(publications=[Registration(path, topic, "std_msgs/UInt32", 0)])
+    seen = Seen(publications=[Registration(PATH, TOPIC, "std_msgs/UInt32", 0)])
     launch = LaunchResult(ending="enough", asked=12, lines=[], seen=seen)
-    observed = observing.Observed(launch=launch, executables={"publisher_right": folder})
     interrupted = Alone(
         asked=9.0, stopped_in=0.1, code=-2, lines=[(9.0, "err", "KeyboardInterrupt")]
     )
-    observed.direct = DirectResult({"publisher_right": interrupted})
-    case = observed_case(tmp_path, folder, observed)
-    found = [finding.id for rule in OF_RUN for finding in rule.findings(case)]
-    case.close()
+    direct = DirectResult({"publisher_right": interrupted})
+    found, unseen = judged(tmp_path, ["exit"], launch, direct)
     assert "exit" not in found
-    assert check.unseen(case, ["exit"]) == {"exit": "publisher_right wasn't seen to end"}
+    assert unseen == {"exit": "publisher_right wasn't seen to end"}
 
 
 @pytest.mark.usefixtures("open_folders")
@@ -182,14 +187,11 @@ def test_observer_leaves_nothing_in_tmp(tmp_path, monkeypatch):
 
 
 def test_what_a_dead_node_would_do_was_never_seen(tmp_path):
-    folder = make_package(tmp_path / "lab_pkg", {"right": ("", "")}, {})
-    observed = observing.Observed(executables={"publisher_right": folder})
-    observed.direct = DirectResult({"publisher_right": Alone(code=1, ended_after=0.1)})
-    case = observed_case(tmp_path, folder, observed)
-    case.close()
-    asked = [one for one in REQUIREMENTS.items() if case.spec.asks(one[0])]
+    spec = spec_of(["right"], [])
+    asked = [one for one in REQUIREMENTS.items() if spec.asks(one[0])]
     of_run = [id_ for id_, one in asked if one.stage in ("run", "stop")]
-    unseen = check.unseen(case, of_run)
+    dead = DirectResult({"publisher_right": Alone(code=1, ended_after=0.1)})
+    _, unseen = judged(tmp_path, of_run, direct=dead)
     # Nobody asks it to hear anything.
     assert {*of_run} - {*unseen} == {"received"}
     assert {*unseen.values()} == {"publisher_right didn't run"}
@@ -197,47 +199,36 @@ def test_what_a_dead_node_would_do_was_never_seen(tmp_path):
 
 @pytest.mark.parametrize("heard", [True, False])
 def test_a_publisher_that_was_never_connected_to_is_not_silent(tmp_path, heard):
-    folder = make_package(tmp_path / "lab_pkg", {"right": ("", "")}, {})
-    path, topic = "/lab/publisher_right", "/lab/of_right"
-    seen = Seen(publications=[Registration(path, topic, "std_msgs/Int16", 0, heard)])
+    seen = Seen(publications=[Registration(PATH, TOPIC, "std_msgs/Int16", 0, heard)])
     launch = LaunchResult(ending="enough", asked=12, lines=[], seen=seen)
-    observed = observing.Observed(launch=launch, executables={"publisher_right": folder})
-    case = observed_case(tmp_path, folder, observed)
-    found = [finding.id for rule in OF_RUN for finding in rule.findings(case)]
-    case.close()
+    found, unseen = judged(tmp_path, ["values"], launch)
     assert ("values" in found) == heard
-    assert check.unseen(case, ["values"]) == {"values": "publisher_right published no number"}
+    assert unseen == {"values": "publisher_right published no number"}
 
 
 @pytest.mark.parametrize("waited", [0.0, 0.1, 0.6])
 @pytest.mark.parametrize("period", [0.5, 1.0, 5.0])
 def test_a_publisher_that_waited_for_a_processor_is_not_slow(tmp_path, period, waited):
     """It is slow by itself if it would be without the time in which Linux did not let it run."""
-    folder = make_package(tmp_path / "lab_pkg", {"right": ("", "")}, {})
-    path, alone, topic = "/lab/publisher_right", "/check_0/publisher_right", "of_right"
+    alone, topic = "/check_0/publisher_right", "of_right"
     sent = [(2 * number + 1, number * period) for number in range(8)]
     seen, by_itself = (
         Seen(
             publications=[Registration(name, f"{space}/{topic}", "std_msgs/UInt32", 0)],
             messages=[Message(name, f"{space}/{topic}", {"data": v}, at) for v, at in sent],
         )
-        for name, space in ((path, "/lab"), (alone, "/check_0"))
+        for name, space in ((PATH, "/lab"), (alone, "/check_0"))
     )
     launch = LaunchResult(
-        ending="enough", asked=8 * period, lines=[], seen=seen, waited={path: waited}
+        ending="enough", asked=8 * period, lines=[], seen=seen, waited={PATH: waited}
     )
     direct = DirectResult({"publisher_right": Alone(alone)}, seen=by_itself)
-    observed = observing.Observed(
-        launch=launch, direct=direct, executables={"publisher_right": folder}
-    )
-    case = observed_case(tmp_path, folder, observed)
-    found = [finding.id for rule in OF_RUN for finding in rule.findings(case)]
-    case.close()
+    found, unseen = judged(tmp_path, ["rate"], launch, direct)
     is_slow = period * (1 - waited) > 0.55
     assert ("rate" in found) == is_slow
     is_open = period > 0.5 and not is_slow
     said = "publisher_right was slow on a machine that's too busy to tell"
-    assert check.unseen(case, ["rate"]) == ({"rate": said} if is_open else {})
+    assert unseen == ({"rate": said} if is_open else {})
 
 
 EVERY_SECOND = range(8)
@@ -256,10 +247,8 @@ SAYS = [
 @pytest.mark.parametrize(("values", "times", "says"), SAYS, ids=range(len(SAYS)))
 def test_a_written_contract_says_no_more_than_was_seen(values, times, says):
     path, topic = "/check_0/node", "/check_0/numbers"
-    seen = Seen(
-        publications=[Registration(path, topic, "std_msgs/Some", 0)],
-        messages=[Message(path, topic, {"data": v}, float(t)) for v, t in zip(values, times)],
-    )
+    messages = [Message(path, topic, {"data": v}, float(t)) for v, t in zip(values, times)]
+    seen = Seen([Registration(path, topic, "std_msgs/Some", 0)], messages=messages)
     direct = DirectResult({"node.py": Alone(path, asked=20)}, seen=seen)
     node = behaviour.Behaviour("node.py", [], direct)
     (named,) = node.publishes
@@ -302,68 +291,12 @@ with Observer() as observer:
 """
 
 
-def _said_by(code):
-    """Return what Python code prints that makes an Observer: there can be one in a process."""
-    done = subprocess.run(
-        [sys.executable, "-c", code],
-        stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=60,
-    )  # fmt: skip
-    assert done.returncode == 0, done.stdout
-    return done.stdout
-
-
-def test_the_observer_lets_a_publisher_go_on_that_is_to_end():
-    """One that waits for the master's answer cannot end: that was called its own fault."""
-    assert _said_by(_HELD) == "held\nlet go\nFalse\n"
-
-
-_KNOCK = """\
-        import socket
-        import threading
-        import rosgraph
-        from rospy.impl import tcpros_base
-
-        master = rospy.core.xmlrpcapi(rosgraph.get_master_uri())
-
-        def knock():
-            while not master._lock.locked():
-                pass
-            socket.create_connection(tcpros_base.get_tcpros_server_address()).close()
-
-        threading.Thread(target=knock).start()
-        self.publisher = """
-
-
-def test_a_publisher_that_lets_nobody_in_while_it_announces_is_heard_afterwards(tmp_path):
-    """rospy logs that somebody who connected is gone, and asks the master for a parameter first,
-    which waits for the answer about the publisher: so the observer cannot connect before."""
-    parts = {"right": ("        self.publisher = ", _KNOCK)}
-    folder = make_package(tmp_path / "lab_pkg", parts, {})
-    known = {"built": None, "facts": Facts()}
-    scratch = tmp_path / "scratch"
-    case = check_rules.case_of(Package(folder), scratch, spec_of(["right"], []), **known)
-    runs = case.observed.launch, case.observed.direct
-    case.close()
-    assert [any(one.topic.endswith("/of_right") for one in run.seen.messages) for run in runs] == [
-        True,
-        True,
-    ]
-
-
-def test_the_observer_reads_who_has_registered_while_others_register():
-    assert _said_by(_WHILE_OTHERS_REGISTER) == "registered\n"
-
-
 _ASKED = """
 import rospy
 from mrp_check.confined.observe import Observer
 with Observer():
     print(*(len(rospy.get_param(name).split()) for name in ("rosdistro", "/rosversion")))
 """
-
-
-def test_the_master_has_the_parameters_that_roscore_sets():
-    assert _said_by(_ASKED) == "1 1\n"
 
 
 _TOLD_TWICE = """
@@ -389,17 +322,56 @@ with Observer():
 """
 
 
-def test_the_observer_never_connects_twice_at_once_to_a_publisher():
-    """rospy would leave one that says nothing, and the publisher would wait for it for good."""
-    assert _said_by(_TOLD_TWICE) == "one after the other\n"
+@pytest.mark.parametrize(
+    ("code", "said"),
+    [
+        (_WHILE_OTHERS_REGISTER, "registered"),
+        # One that waits for the master's answer cannot end: that was called its own fault.
+        (_HELD, "held\nlet go\nFalse"),
+        (_ASKED, "1 1"),
+        # rospy would leave one that says nothing, and the publisher would wait for it for good.
+        (_TOLD_TWICE, "one after the other"),
+    ],
+    ids=["registered", "held", "parameters", "connected_twice"],
+)
+def test_the_observer_in_a_process_of_its_own(code, said):
+    command = [sys.executable, "-c", code]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=60)
+    assert (done.stdout, done.returncode) == (f"{said}\n", 0), done.stderr
+
+
+_KNOCK = """\
+        import socket
+        import threading
+        import rosgraph
+        from rospy.impl import tcpros_base
+
+        master = rospy.core.xmlrpcapi(rosgraph.get_master_uri())
+
+        def knock():
+            while not master._lock.locked():
+                pass
+            socket.create_connection(tcpros_base.get_tcpros_server_address()).close()
+
+        threading.Thread(target=knock).start()
+        self.publisher = """
+
+
+def test_a_publisher_that_lets_nobody_in_while_it_announces_is_heard_afterwards(tmp_path):
+    """rospy logs that somebody who connected is gone, and asks the master for a parameter first,
+    which waits for the answer about the publisher: so the observer cannot connect before."""
+    case = case_of(tmp_path, ("        self.publisher = ", _KNOCK), built=None)
+    runs = case.observed.launch, case.observed.direct
+    case.close()
+    for run in runs:
+        assert any(one.topic.endswith("/of_right") for one in run.seen.messages)
 
 
 @pytest.mark.parametrize(("module", "severity"), [("tkinter", NOTE), ("no_such_module", ERROR)])
 def test_what_a_library_imports_and_debian_keeps_apart_is_no_error(module, severity, tmp_path):
     """turtle, which is here, imports tkinter: Debian has that in a package of its own."""
-    folder = make_package(tmp_path / "lab_pkg", {"right": ("", "")}, {})
-    observed = observing.Observed(executables={"publisher_right": folder})
-    case = observed_case(tmp_path, folder, observed)
+    observed = observing.Observed(executables={"publisher_right": tmp_path})
+    case = case_of(tmp_path, observed=observed)
     place = f'  File "{case.package_folder}/scripts/publisher_right.py", line 2, in <module>'
     error = f"ModuleNotFoundError: No module named '{module}'"
     lines = [(0.1, "err", text) for text in ("Traceback (most recent call last):", place, error)]

@@ -1,21 +1,18 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What clang says of a C++ source: what it asks for and offers, and what may go wrong in it."""
 
-import pathlib
-import subprocess
 import types
 
 import check_rules
 import pytest
 from mrp_check.code.facts import Facts
-from mrp_check.confined import cpp_headers, crossing
-from mrp_check.confined.places import Answer, Kind, Task
+from mrp_check.confined import cpp_headers
+from mrp_check.confined.places import Kind
 from mrp_check.rules.code import arguments, goals, homes, ignored, slow_callback
 from mrp_check.rules.run import ctrl_c, waiting
 
 pytestmark = [pytest.mark.quick, pytest.mark.xdist_group("check_places")]
 
-CPP_FACTS = pathlib.Path(cpp_headers.__file__).with_name("cpp_facts.py")
 BROKEN = """#include <csignal>
 #include <ros/ros.h>
 #include <std_msgs/String.h>
@@ -114,12 +111,7 @@ int main(int argc, char** argv)
 
 def facts_of(folder, source):
     package = check_rules.make(folder / "some_pkg", src__a_DOT_cpp=source)
-    file = str(package.root / "src" / "a.cpp")
-    task = Task(str(package.root), "none", [[file, cpp_headers.STANDARD, "-w"]])
-    done = subprocess.run(
-        ["/usr/bin/python3", CPP_FACTS, crossing.to_json(task)], stdout=subprocess.PIPE, check=True
-    )
-    (said,) = crossing.from_json(Answer, done.stdout).values()
+    said = check_rules.said_by_clang(package.root, flags=(cpp_headers.STANDARD, "-w"))
     assert said.errors == []
     return package, Facts(said.places, {"a": ["src/a.cpp"]})
 

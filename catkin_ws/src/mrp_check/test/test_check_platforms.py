@@ -6,7 +6,6 @@ import dataclasses
 import json
 import zipfile
 
-import jsonschema
 import pytest
 from check_rules import ASKED, hand_in
 from mrp_check.classroom import class_table, gradescope, mail, moodle
@@ -19,49 +18,21 @@ from mrp_check.report import html, json_, terminal
 
 pytestmark = pytest.mark.quick
 
-VISIBILITY = {"enum": ["hidden", "after_due_date", "after_published", "visible"]}
-FORMAT = {"enum": ["text", "html", "simple_format", "md", "ansi"]}
-TEXT, NUMBER = {"type": "string"}, {"type": "number"}
+# The fields of https://gradescope-autograders.readthedocs.io/en/latest/specs/#output-format.
+RESULTS = {"score", "execution_time", "output", "output_format", "test_output_format"}
+RESULTS |= {"test_name_format", "visibility", "stdout_visibility", "extra_data", "tests"}
+TEST = {"score", "max_score", "status", "name", "name_format", "number", "output", "output_format"}
+TEST |= {"tags", "visibility", "extra_data"}
+VISIBILITY = {"hidden", "after_due_date", "after_published", "visible", None}
 
-# All fields of https://gradescope-autograders.readthedocs.io/en/latest/specs/#output-format.
-RESULTS = {
-    "type": "object",
-    "additionalProperties": False,
-    "anyOf": [{"required": ["score"]}, {"required": ["tests"]}],
-    "properties": {
-        "score": NUMBER,
-        "execution_time": NUMBER,
-        "output": TEXT,
-        "output_format": FORMAT,
-        "test_output_format": FORMAT,
-        "test_name_format": FORMAT,
-        "visibility": VISIBILITY,
-        "stdout_visibility": VISIBILITY,
-        "extra_data": {"type": "object"},
-        "leaderboard": {"type": "array"},
-        "tests": {
-            "type": "array",
-            "items": {
-                "type": "object",
-                "additionalProperties": False,
-                "required": ["score"],
-                "properties": {
-                    "score": NUMBER,
-                    "max_score": NUMBER,
-                    "status": {"enum": ["passed", "failed"]},
-                    "name": TEXT,
-                    "name_format": FORMAT,
-                    "number": TEXT,
-                    "output": TEXT,
-                    "output_format": FORMAT,
-                    "tags": {"type": "array", "items": TEXT},
-                    "visibility": VISIBILITY,
-                    "extra_data": {"type": "object"},
-                },
-            },
-        },
-    },
-}
+
+def assert_gradescope_takes(found):
+    assert found.keys() <= RESULTS and found.keys() & {"score", "tests"}
+    for one in (found, *found.get("tests", ())):
+        assert isinstance(one.get("score", 0), (int, float)) and one.get("visibility") in VISIBILITY
+    for test in found.get("tests", ()):
+        assert {"score"} <= test.keys() <= TEST and test["status"] in ("passed", "failed")
+
 
 CONTRACT = dataclasses.replace(
     spec.read(spec.find("pub_sub")), points={"values": 5, "spin": 2.5}, hidden=("spin", "wrap")
@@ -84,7 +55,7 @@ def report(*findings, reason=""):
 
 def results(one, contract=CONTRACT):
     found = json.loads(gradescope.text(one, contract))
-    jsonschema.validate(found, RESULTS)
+    assert_gradescope_takes(found)
     return found
 
 
@@ -211,7 +182,7 @@ def test_what_cannot_be_checked_has_a_score_of_0_and_one_sentence(make, says, tm
         check_command.main(["--gradescope", str(file), str(made)])
     assert end.value.code == 2
     found = json.loads(file.read_text())
-    jsonschema.validate(found, RESULTS)
+    assert_gradescope_takes(found)
     assert found["score"] == 0 and says in found["output"]
     assert found["output"].count("\n") == 0
 

@@ -2,7 +2,6 @@
 """Reads the checker's reports: JSON, JUnit, a page, and the console."""
 
 import dataclasses
-import html.parser
 import io
 import json
 import pathlib
@@ -11,6 +10,7 @@ import xml.etree.ElementTree as ElementTree
 
 import jsonschema
 import pytest
+from check_rules import Tags
 from mrp_check.cli import check as check_command
 from mrp_check.contract import resources
 from mrp_check.contract.finding import Finding
@@ -94,34 +94,10 @@ def test_junit_is_xml_whatever_was_printed():
     ElementTree.fromstring(text)
 
 
-class Reader(html.parser.HTMLParser):
-    """Collects a page's text and tags, and fails where one is not closed."""
-
-    VOID = {"meta", "br"}
-
-    def __init__(self, text):
-        super().__init__()
-        self.open, self.tags, self.text = [], [], ""
-        self.feed(text)
-        assert self.open == []
-
-    def handle_starttag(self, tag, attributes):
-        self.tags.append((tag, dict(attributes)))
-        if tag not in self.VOID:
-            self.open.append(tag)
-
-    def handle_endtag(self, tag):
-        assert self.open.pop() == tag
-
-    def handle_data(self, data):
-        self.text += data
-
-
 @pytest.mark.parametrize("one", REPORTS, ids=lambda one: one.verdict)
 def test_page_needs_nothing_else(one):
-    page = Reader(html_report.text(one))
-    names = {tag for tag, _ in page.tags}
-    assert not names & {"script", "link", "img", "iframe"}
+    page = Tags(html_report.text(one))
+    assert not {*page.tags} & {"script", "link", "img", "iframe"}
     for finding in one.findings:
         assert finding.message in page.text
     assert one.reason in page.text
@@ -142,7 +118,7 @@ def test_report_on_a_file_whose_name_is_no_utf8(text, tmp_path):
 
 
 def test_page_shows_what_a_package_says_as_text():
-    page = Reader(html_report.text(report(Finding("console", "<script>alert(1)</script>"))))
+    page = Tags(html_report.text(report(Finding("console", "<script>alert(1)</script>"))))
     assert "<script>alert(1)</script>" in page.text
 
 
@@ -178,7 +154,7 @@ def test_console_and_page_name_the_text_that_a_tool_prints(monkeypatch):
     one = report(Finding("text", "It.", "a.py", 1, why="script-crlf"))
     address = "https://a.example/mrp/pages/why.html#script-crlf"
     assert f"\n  why:      {address}\n" in terminal.text(one)
-    assert "pages/why.html#script-crlf" in Reader(html_report.text(one)).text
+    assert "pages/why.html#script-crlf" in Tags(html_report.text(one)).text
 
 
 def test_console_has_colours_only_where_asked():
@@ -266,7 +242,7 @@ def test_a_reader_s_paths_begin_at(git, working, base, repository, tmp_path, mon
 def test_what_is_suppressed_is_shown_with_its_reason():
     one = REPORTS[0]
     line = "src/a.py:4: suppressed (lifetime): It is kept elsewhere."
-    assert line in terminal.text(one) and line in Reader(html_report.text(one)).text
+    assert line in terminal.text(one) and line in Tags(html_report.text(one)).text
     assert terminal.text(one).endswith("; suppressed: 1.")
     assert f"<system-out>{line}</system-out>" in junit.text(one)
     (shown,) = json.loads(json_.text(one))["suppressed"]

@@ -3,6 +3,7 @@
 
 import pytest
 import run_packages
+from check_sets import is_told, shown
 from mrp_check.contract.finding import ERROR, NOTE, WARNING
 from mrp_check.run import logged
 from mrp_check.verdict import check
@@ -31,8 +32,8 @@ def test_faults_that_only_a_run_shows(tmp_path):
     report = check.check(package, None)
     assert not report.reason
     found = report.findings
-    missed = [wanted for wanted in FOUND if not any(_is(package, wanted, one) for one in found)]
-    assert not missed, [(one.severity, one.id, one.file, one.line, one.message) for one in found]
+    missed = [one for one in FOUND if not any(is_told(f, package.root, *one) for f in found)]
+    assert not missed, shown(found)
     nodes = {one.node or one.file for one in found if one.severity == ERROR}
     assert not nodes & {"talker.py", "client.py", "caller.py", "sends_frames.py"}
 
@@ -41,15 +42,6 @@ def test_the_same_nodes_without_a_fault(tmp_path):
     report = check.check(run_packages.make(tmp_path, is_right=True), None)
     found = [one for one in report.findings if one.severity in (ERROR, WARNING)]
     assert (report.reason, found) == ("", [])
-
-
-def _is(package, wanted, finding):
-    severity, id_, place, said = wanted
-    file, _, text = place.partition(": ")
-    line = package.line(finding.file, finding.line) if finding.line else ""
-    is_there = finding.file == file and text in line
-    says = any(part in finding.message for part in said.split("|"))
-    return (finding.severity, finding.id) == (severity, id_) and is_there and says
 
 
 @pytest.mark.quick

@@ -7,11 +7,11 @@ must find the one defect, at its place, and nothing else but its consequences.
 
 import json
 import os
-import pathlib
 import subprocess
 
 import check_sets
 import pytest
+from check_sets import shown
 from mrp_check.contract import defects, spec
 from mrp_testing import compiler_cache, scratch
 
@@ -66,15 +66,6 @@ def run_check(tmp_path):
         return data
 
     return run
-
-
-def shown(findings):
-    """Return findings as lines for a reader."""
-    return "\n".join(
-        "{id} {severity} {file}:{line} {message} | {expected} | {seen}".format(**one)
-        + (f" (from {one['consequence_of']})" if one["consequence_of"] else "")
-        for one in findings
-    )
 
 
 @pytest.mark.parametrize("style", parameters(check_sets.STYLES, str))
@@ -141,7 +132,7 @@ def test_exercise_fails_for_its_own_reason_and_its_solution_passes(exercise, tmp
     # The solution makes a correct package of it, which is met: see above.
     check_sets.break_(folder, exercise, "--reverse")
     check_sets.lay_out(exercise.base, tmp_path / "correct")
-    assert contents(folder) == contents(tmp_path / "correct")
+    assert check_sets.contents(folder) == check_sets.contents(tmp_path / "correct")
 
 
 # A correct package -> a defect of it that the contract written from it must tell.
@@ -193,12 +184,3 @@ def test_one_requirement_alone_is_found_broken_too(style, file, old, new, id_, t
     broken.write_text(broken.read_text().replace(old, new))
     report = run_check(tmp_path / "package", check_sets.spec_of(style), "--only", id_)
     assert report["requirements"] == {id_: "broken"}
-
-
-def contents(folder):
-    """Return path -> bytes of all files of a folder."""
-    return {
-        path.relative_to(folder): path.read_bytes()
-        for path in pathlib.Path(folder).rglob("*")
-        if path.is_file()
-    }

@@ -22,22 +22,16 @@ TESTS = check_sets.TUTORIAL / "test"
 @pytest.mark.parametrize("defect", ALL, ids=lambda one: one.name)
 def test_defect_can_be_injected_and_taken_back(defect, tmp_path):
     check_sets.lay_out(defect.base, tmp_path)
-    correct = contents(tmp_path)
+    correct = check_sets.contents(tmp_path)
     check_sets.break_(tmp_path, defect)
-    assert contents(tmp_path) != correct
+    assert check_sets.contents(tmp_path) != correct
     # patch leaves one where a defect's lines are not at their place.
     assert list(tmp_path.rglob("*.orig")) == []
     for file, pattern in defect.places:
         lines = (tmp_path / file).read_bytes().decode("utf-8", "replace").splitlines()
         assert any(re.search(pattern, line) for line in lines), f"{file}: {pattern}"
     check_sets.break_(tmp_path, defect, "--reverse")
-    assert contents(tmp_path) == correct
-
-
-def contents(folder):
-    """Return path -> (mode, bytes) of all files of a folder."""
-    files = (path for path in folder.rglob("*") if path.is_file())
-    return {path.relative_to(folder): (path.stat().st_mode, path.read_bytes()) for path in files}
+    assert check_sets.contents(tmp_path) == correct
 
 
 EXERCISE = ("Order", "Kind", "Task", "Hint", "Learned")

@@ -4,7 +4,6 @@
 test_check_sets.py builds and runs them.
 """
 
-import pathlib
 import xml.etree.ElementTree as ElementTree
 
 import check_sets
@@ -61,19 +60,10 @@ def lay_out(tmp_path, monkeypatch):
     return of
 
 
-def contents(folder):
-    """Return path -> (may be executed, text) of all files of a folder."""
-    files = [path for path in pathlib.Path(folder).rglob("*") if path.is_file()]
-    return {
-        str(path.relative_to(folder)): (bool(path.stat().st_mode & 0o100), path.read_bytes())
-        for path in files
-    }
-
-
 def test_patch_replaces_files_of_its_base(lay_out):
-    assert contents(lay_out(PATCH)) == {"src/a.py": (True, b"first\n")}
+    assert check_sets.contents(lay_out(PATCH)) == {"src/a.py": (True, b"first\n")}
     second = PATCH.replace("nothing", "some").replace("100755", "100644")
-    assert contents(lay_out(second.replace("first", "second"), "other")) == {
+    assert check_sets.contents(lay_out(second.replace("first", "second"), "other")) == {
         "src/a.py": (False, b"second\n")
     }
 
@@ -82,7 +72,7 @@ def test_head_without_a_diff_changes_files_of_its_base(lay_out):
     lay_out(PATCH)
     lay_out(PATCH.replace("a.py", "b.py").replace("nothing", "some"), "two")
     folder = lay_out("Base: two\nWithout: src/a.py\nCRLF: src/b.py\n", "windows")
-    assert contents(folder) == {"src/b.py": (True, b"first\r\n")}
+    assert check_sets.contents(folder) == {"src/b.py": (True, b"first\r\n")}
 
 
 def test_diff_that_does_not_fit_is_named(lay_out):
