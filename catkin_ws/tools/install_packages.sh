@@ -112,7 +112,8 @@ apt_get() {
     bash -c 'exec apt-get "$@" 3>&1' apt-get -o DPkg::Lock::Timeout=600 "$@"
 }
 
-"${as_root[@]}" true  # sudo asks for the password here, where nothing hides its question
+# sudo asks for the password here, where nothing hides its question.
+SUDO_PROMPT="[sudo] password for %u, to install Debian packages${purposes:+ $purposes}: " "${as_root[@]}" true
 [ ! -t 1 ] || echo -n "Fetching the lists of Debian's packages"
 apt_get update -qq > "$log" 2>&1 || {
   echo "warning: apt-get update failed; going on with the package lists as they are:" >&2
