@@ -74,18 +74,14 @@ BENCH := $(CURDIR)/catkin_ws/build/bench
 .NOTPARALLEL:
 
 .PHONY: help
-help:  ## print the targets
-	@sed -n 's/^\([a-z-]*\):.*##/\1/p' $(MAKEFILE_LIST) | \
-	  while read -r target text; do printf '  make %-16s %s\n' "$$target" "$$text"; done
+help:
+	@awk -F ':.*## ' '/^##@/ { print substr($$0, 5) } /^[a-z-]+:.*## / { printf "  make %-16s %s\n", $$1, $$2 }' \
+	  $(MAKEFILE_LIST)
 
 packages-%:
 	@catkin_ws/tools/install_packages.sh $(PACKAGES_$*:%=catkin_ws/apt/%.txt)
 
-.PHONY: deps
-deps: packages-build  ## install the Debian packages that building and running need
-
-.PHONY: build
-build: packages-build $(BUILT_WHOLE)  ## build the whole workspace with catkin_make
+##@ Start here
 
 # Without root it calls itself again, where the packages are or in a container.
 .PHONY: run
@@ -96,9 +92,90 @@ run: packages-run $(BUILT_TUTORIAL)  ## run the four nodes; end them with Ctrl-C
 	@$(IN_WORKSPACE) $(LOCAL) source devel/setup.bash; exec roslaunch mrp pub_sub.launch
 endif
 
+# It has no C++ and no messages of its own, so it runs from its sources. It links to the pages, once
+# `make docs` has built them.
+.PHONY: view
+view: packages-view $(BUILT_TUTORIAL)  ## watch the graph and the messages in a browser; end it with Ctrl-C
+	@$(IN_WORKSPACE) $(LOCAL) source devel/setup.bash; export PYTHONPATH=src/mrp_view/src:"$$PYTHONPATH"; \
+	exec /usr/bin/python3 src/mrp_view/src/view_node.py --tutorial $(SITE) $(VIEW_OPTIONS)
+
+.PHONY: doctor
+doctor:  ## find what keeps the tutorial from running on this machine
+	@test -x /usr/bin/python3 || { echo "[FAIL] expected /usr/bin/python3; there is none"; \
+	  echo "       fix: make deps"; exit 1; }
+	@/usr/bin/python3 -IB catkin_ws/tools/doctor.py
+
+# A text may have quotes, and $(...) of a launch file, which make must not read.
+.PHONY: why
+unexport TEXT
+why: export WHY = $(value TEXT)
+why:  ## say what an error text means, and how to fix it: paste it, pipe it in, or TEXT="..."
+	@/usr/bin/python3 catkin_ws/tools/why.py "$$WHY" || [ $$? = 1 ]
+
+##@ Learn
+
+# From scratch each time: otherwise Sphinx keeps deleted pages, and warns of a page only once.
+.PHONY: docs
+docs: packages-docs  ## build the tutorial's pages
+	@rm -rf $(SITE)
+	@$(IN_WORKSPACE) python=$$(tools/docs_env.sh); "$$python" -m sphinx -q -E -W --keep-going -d build/doctrees src/mrp/doc $(SITE)
+	@echo "Open file://$(SITE)/index.html"
+
+.PHONY: docs-serve
+docs-serve: docs  ## build the pages, and serve them to this machine's browsers
+	@exec /usr/bin/python3 catkin_ws/tools/serve.py $(SITE)
+
+.PHONY: labs
+labs: packages-lab  ## list ten labs to start with, small demos of one fact each; ALL=1: all of them
+	@/usr/bin/python3 catkin_ws/tools/lab.py --list $(if $(ALL),--all)
+
+# It looks up the name before it builds anything.
+.PHONY: lab
+lab: packages-lab known-lab $(BUILT_LABS)  ## run a lab, NAME=latch: it says what to look for, marks it, and ends
+	@$(IN_WORKSPACE) $(LOCAL) source devel/setup.bash; exec tools/lab.py "$(NAME)"
+
+.PHONY: known-lab
+known-lab:
+	@/usr/bin/python3 catkin_ws/tools/lab.py --check "$(NAME)"
+
+# On a terminal it fills the screen, and elsewhere it prints lines.
+.PHONY: learn
+learn: packages-learn  ## show one exercise after the other, and check each when you save it
+	@$(IN_ENVIRONMENT) PYTHONPATH=catkin_ws/src/mrp_check/src exec /usr/bin/python3 \
+	  -m mrp_check.cli.learn catkin_ws/exercises
+
+# HINT=1 shows the hint; RESET=1 starts the exercise again. Exit code 1 only says: not yet.
+.PHONY: exercise
+exercise: packages-check  ## show the next exercise, or check it; HINT=1 gives a hint
+	@$(IN_ENVIRONMENT) PYTHONPATH=catkin_ws/src/mrp_check/src /usr/bin/python3 -m mrp_check.cli.learn --once \
+	  $(if $(HINT),--hint) $(if $(RESET),--reset) catkin_ws/exercises || [ $$? = 1 ]
+
 .PHONY: debug
 debug: packages-debug $(BUILT_TUTORIAL)  ## start one node, NODE=publisher_cpp_node, under gdb or pdb, beside make run
 	@$(IN_WORKSPACE) $(LOCAL) source devel/setup.bash; exec tools/debug.sh "$(NODE)"
+
+##@ Your own package
+
+# LANGUAGE on the command line only: as a variable of the environment, it is the desktop's own.
+.PHONY: new
+new:  ## write a package of your own to start from, PKG=~/catkin_ws/src/laser_filter; LANGUAGE=cpp or both
+	@/usr/bin/python3 catkin_ws/tools/new_package.py "$(PKG)" \
+	  $(if $(findstring command,$(origin LANGUAGE)),"--language=$(LANGUAGE)")
+
+# It builds the package in a folder of its own, so nothing of this workspace need be built before.
+.PHONY: check
+check: packages-check  ## check your package, PKG=path; ANY=1: any other ROS package; SPEC=FILE: another contract; ALL=1: notes, too
+	@test -n "$(PKG)" || { echo "error: expected make check PKG=PATH, the folder of a package" >&2; exit 2; }
+	@$(IN_ENVIRONMENT) PYTHONPATH=catkin_ws/src/mrp_check/src exec /usr/bin/python3 \
+	  catkin_ws/src/mrp_check/scripts/check "$(PKG)" $(if $(ANY),--any) $(if $(ALL),--all) $(if $(SPEC),--spec "$(SPEC)")
+
+##@ Work on mrp itself
+
+.PHONY: deps
+deps: packages-build  ## install the Debian packages that building and running need
+
+.PHONY: build
+build: packages-build $(BUILT_WHOLE)  ## build the whole workspace with catkin_make
 
 $(BUILT_WHOLE): $(call sources,catkin_ws/src)
 	@$(IN_WORKSPACE) env $$($(CACHE)) $(CATKIN_MAKE) $(WHOLE); $(FOR_EDITORS)
@@ -128,92 +205,11 @@ test-all: test test-rest  ## run every test
 test-rest: packages-test-all $(BUILT_WHOLE)  ## run the tests that make test leaves out
 	@$(IN_WORKSPACE) $(ALONE) source devel/setup.bash; tools/run_tests.sh slow
 
-.PHONY: labs
-labs: packages-lab  ## list ten labs to start with, small demos of one fact each; ALL=1: all of them
-	@/usr/bin/python3 catkin_ws/tools/lab.py --list $(if $(ALL),--all)
-
-# It looks up the name before it builds anything.
-.PHONY: lab
-lab: packages-lab known-lab $(BUILT_LABS)  ## run a lab, NAME=latch: it says what to look for, marks it, and ends
-	@$(IN_WORKSPACE) $(LOCAL) source devel/setup.bash; exec tools/lab.py "$(NAME)"
-
-.PHONY: known-lab
-known-lab:
-	@/usr/bin/python3 catkin_ws/tools/lab.py --check "$(NAME)"
-
-# It builds the package in a folder of its own, so nothing of this workspace need be built before.
-.PHONY: check
-check: packages-check  ## check your package, PKG=path; ANY=1: any other ROS package; SPEC=FILE: another contract; ALL=1: notes, too
-	@test -n "$(PKG)" || { echo "error: expected make check PKG=PATH, the folder of a package" >&2; exit 2; }
-	@$(IN_ENVIRONMENT) PYTHONPATH=catkin_ws/src/mrp_check/src exec /usr/bin/python3 \
-	  catkin_ws/src/mrp_check/scripts/check "$(PKG)" $(if $(ANY),--any) $(if $(ALL),--all) $(if $(SPEC),--spec "$(SPEC)")
-
-# LANGUAGE on the command line only: as a variable of the environment, it is the desktop's own.
-.PHONY: new
-new:  ## write a package of your own to start from, PKG=~/catkin_ws/src/laser_filter; LANGUAGE=cpp or both
-	@/usr/bin/python3 catkin_ws/tools/new_package.py "$(PKG)" \
-	  $(if $(findstring command,$(origin LANGUAGE)),"--language=$(LANGUAGE)")
-
 # More than 150 whole packages are built and run, and dozens of nodes at once: so it is no part of
 # `make test-all`.
 .PHONY: test-check
 test-check: packages-test-all  ## run the checker on its own test packages; TESTS=NAME: those of a name
 	@$(IN_WORKSPACE) $(ALONE) /usr/bin/python3 -m pytest -n 3 --dist loadgroup -m sets $(if $(TESTS),-k "$(TESTS)") --junit-xml=$(RESULTS)/sets.xml src/mrp_check/test
-
-# On a terminal it fills the screen, and elsewhere it prints lines.
-.PHONY: learn
-learn: packages-learn  ## show one exercise after the other, and check each when you save it
-	@$(IN_ENVIRONMENT) PYTHONPATH=catkin_ws/src/mrp_check/src exec /usr/bin/python3 \
-	  -m mrp_check.cli.learn catkin_ws/exercises
-
-# HINT=1 shows the hint; RESET=1 starts the exercise again. Exit code 1 only says: not yet.
-.PHONY: exercise
-exercise: packages-check  ## show the next exercise, or check it; HINT=1 gives a hint
-	@$(IN_ENVIRONMENT) PYTHONPATH=catkin_ws/src/mrp_check/src /usr/bin/python3 -m mrp_check.cli.learn --once \
-	  $(if $(HINT),--hint) $(if $(RESET),--reset) catkin_ws/exercises || [ $$? = 1 ]
-
-# What else runs on this machine shows in the figures: end it before. The page on speed shows a whole
-# run: copy catkin_ws/build/bench/results.json to catkin_ws/src/mrp/doc/recorded.
-.PHONY: bench
-bench: packages-bench $(BUILT_WHOLE)  ## measure how fast nodes are; QUICK=1: less of it
-	@$(IN_WORKSPACE) $(ALONE) source devel/setup.bash; \
-	exec rosrun mrp_bench bench.py $(if $(QUICK),--quick) $(BENCH)
-
-# It has no C++ and no messages of its own, so it runs from its sources. It links to the pages, once
-# `make docs` has built them.
-.PHONY: view
-view: packages-view $(BUILT_TUTORIAL)  ## watch the graph and the messages in a browser; end it with Ctrl-C
-	@$(IN_WORKSPACE) $(LOCAL) source devel/setup.bash; export PYTHONPATH=src/mrp_view/src:"$$PYTHONPATH"; \
-	exec /usr/bin/python3 src/mrp_view/src/view_node.py --tutorial $(SITE) $(VIEW_OPTIONS)
-
-.PHONY: lint
-lint: packages-lint $(BUILT_TUTORIAL)  ## check the style of all sources
-	@$(IN_WORKSPACE) tools/lint.sh
-
-# From scratch each time: otherwise Sphinx keeps deleted pages, and warns of a page only once.
-.PHONY: docs
-docs: packages-docs  ## build the tutorial's pages
-	@rm -rf $(SITE)
-	@$(IN_WORKSPACE) "$$(tools/docs_env.sh)" -m sphinx -q -E -W --keep-going -d build/doctrees src/mrp/doc $(SITE)
-	@echo "Open file://$(SITE)/index.html"
-
-.PHONY: pictures
-pictures: packages-test-browser $(BUILT_WHOLE)  ## take the pictures of the README and of the pages again
-	@$(IN_WORKSPACE) $(ALONE) source devel/setup.bash; tools/make_pictures.py; tools/make_map.py
-
-.PHONY: docs-serve
-docs-serve: docs  ## build the pages, and serve them to this machine's browsers
-	@exec /usr/bin/python3 catkin_ws/tools/serve.py $(SITE)
-
-# LaTeX takes a minute, and its packages much room: so only the workflow calls it.
-.PHONY: docs-book
-docs-book: packages-docs-book  ## make a book of the pages, as EPUB and as PDF
-	@$(IN_WORKSPACE) tools/make_book.sh
-	@echo "Read $(CURDIR)/catkin_ws/build/book/mrp.pdf, or mrp.epub beside it"
-
-.PHONY: docs-record
-docs-record: packages-test-all  ## do what the pages say, and record what they show; PAGE=latch: of one page
-	@$(IN_WORKSPACE) $(WITH_TESTING) /usr/bin/python3 tools/record_pages.py $(PAGE)
 
 .PHONY: test-browser
 test-browser: packages-test-browser $(BUILT_WHOLE) docs  ## open every page in Chromium and in Firefox
@@ -222,6 +218,31 @@ test-browser: packages-test-browser $(BUILT_WHOLE) docs  ## open every page in C
 	@$(IN_WORKSPACE) $(ALONE) source devel/setup.bash; \
 	/usr/bin/python3 -m pytest -n 2 --dist loadgroup --junit-xml=$(RESULTS)/browser.xml tests/browser
 	@echo "Look at the pages: $(SCREENSHOTS)"
+
+.PHONY: lint
+lint: packages-lint $(BUILT_TUTORIAL)  ## check the style of all sources
+	@$(IN_WORKSPACE) tools/lint.sh
+
+.PHONY: docs-record
+docs-record: packages-test-all  ## do what the pages say, and record what they show; PAGE=latch: of one page
+	@$(IN_WORKSPACE) $(WITH_TESTING) /usr/bin/python3 tools/record_pages.py $(PAGE)
+
+# LaTeX takes a minute, and its packages much room: so only the workflow calls it.
+.PHONY: docs-book
+docs-book: packages-docs-book  ## make a book of the pages, as EPUB and as PDF
+	@$(IN_WORKSPACE) tools/make_book.sh
+	@echo "Read $(CURDIR)/catkin_ws/build/book/mrp.pdf, or mrp.epub beside it"
+
+.PHONY: pictures
+pictures: packages-test-browser $(BUILT_WHOLE)  ## take the pictures of the README and of the pages again
+	@$(IN_WORKSPACE) $(ALONE) source devel/setup.bash; tools/make_pictures.py; tools/make_map.py
+
+# What else runs on this machine shows in the figures: end it before. The page on speed shows a whole
+# run: copy catkin_ws/build/bench/results.json to catkin_ws/src/mrp/doc/recorded.
+.PHONY: bench
+bench: packages-bench $(BUILT_WHOLE)  ## measure how fast nodes are; QUICK=1: less of it
+	@$(IN_WORKSPACE) $(ALONE) source devel/setup.bash; \
+	exec rosrun mrp_bench bench.py $(if $(QUICK),--quick) $(BENCH)
 
 .PHONY: deb
 deb: packages-deb  ## make Debian packages of the four nodes (mrp) and of the checker (mrp-check)
@@ -246,25 +267,14 @@ release-notes:
 	@catkin_ws/tools/install_packages.sh catkin_ws/apt/release.txt >&2
 	@catkin_ws/tools/release.py --notes
 
-.PHONY: doctor
-doctor:  ## find what keeps the tutorial from running on this machine
-	@test -x /usr/bin/python3 || { echo "[FAIL] expected /usr/bin/python3; there is none"; \
-	  echo "       fix: make deps"; exit 1; }
-	@/usr/bin/python3 -IB catkin_ws/tools/doctor.py
-
-# A text may have quotes, and $(...) of a launch file, which make must not read.
-.PHONY: why
-unexport TEXT
-why: export WHY = $(value TEXT)
-why:  ## say what an error text means, and how to fix it: paste it, pipe it in, or TEXT="..."
-	@/usr/bin/python3 catkin_ws/tools/why.py "$$WHY" || [ $$? = 1 ]
-
 .PHONY: clean
 clean:  ## delete all that was built
 	rm -rf catkin_ws/build catkin_ws/devel catkin_ws/install
 	rm -f catkin_ws/src/CMakeLists.txt catkin_ws/.catkin_workspace catkin_ws/compile_commands.json
 
-# Containers. DEBIAN names the release that the images are made of: trixie (13), bookworm (12) or forky (14).
+##@ In containers
+
+# DEBIAN names the release that the images are made of: trixie (13), bookworm (12) or forky (14).
 export DEBIAN ?= trixie
 IMAGE := mrp:$(DEBIAN)
 DOCKER_RESULTS := $(RESULTS)/$(DEBIAN)
