@@ -12,6 +12,7 @@ mrp_check/defects/. Its fields:
     Above: yes                     the cause is above: such an entry comes last; with "only", it's
                                    left out if there is another
     General: yes                   right for any name, where other entries need a certain one
+    Ros: yes                       other programs print this, too: only right if the text shows ROS
     Try: rostopic list             the commands that make ROS print it
     Needs: master                  what they need: see tests/test_why.py, or docker/test/test_why.py
 
@@ -31,7 +32,7 @@ from mrp_check.contract import defects  # noqa: E402
 
 FOLDER = WORKSPACE / "src" / "mrp" / "doc" / "why"
 REQUIRED, SEVERAL = ("Shows", "Why", "Fix", "Try"), ("Shows", "Also")
-FIELDS = (*REQUIRED, "Also", "Page", "Above", "General", "Needs")
+FIELDS = (*REQUIRED, "Also", "Page", "Above", "General", "Ros", "Needs")
 
 
 @dataclasses.dataclass(frozen=True)
@@ -48,6 +49,7 @@ class Entry:
     page: str = ""
     above: str = ""
     general: str = ""
+    ros: str = ""
     needs: str = ""
     defect: defects.Defect = None
 

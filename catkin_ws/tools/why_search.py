@@ -99,8 +99,10 @@ _OTHERS = re.compile(
 _ROS = re.compile(
     r"\bros(?:_|\b|bag|bash|build|cd|clean|comm|console|core|cpp|dep|distro|graph|install|launch"
     r"|lib|make|master|msg|node|out|pack|param|pkg|py|run|serial|service|srv|test|topic|version)"
-    r"|catkin|\.launch\b|package\.xml|_msgs\b|\bxacro|\bgazebo|\brviz|\btf2?[._]|actionlib|nodelet"
-    r"|/devel/|\brqt_",
+    r"|(?:[a-z]_|lib)ros|catkin|\.launch\b|package\.xml|_msgs\b|\bxacro|\bgazebo|\brviz|actionlib|nodelet"
+    r"|/devel/|\brqt_|\btf2?(?:_ros|_geometry|_sensor|::|\.\w+Exception|\.transform)|\bbag\b|genmsg|genpy"
+    r"|generate_distutils|RLException|__name:=|process has died|\.(?:msg|srv|action)\b|11311|\bnoetic|\bmelodic|\bkinetic"
+    r"|robot_|base_link|cv_bridge|turtle|move_?base|moveit|pluginlib|beginner_tutorials|image_transport",
     re.IGNORECASE,
 )
 _WORD = re.compile(r"[^\W\d_]+|\d+")
@@ -120,6 +122,7 @@ _KIND = re.compile("'(module|NoneType)' object")  # no name, though in quotes
 _OF_ENTRY, _OF_TEXT, _BOTH = 0.55, 0.6, 1.1
 _LEAST = 11  # the weight of the words that both have
 _NEAR = 0.85  # of the score of a better answer to the same lines
+_FAR = 0.45  # of the score of the first answer, to other lines
 _RARE, _CANDIDATES = 80, 60  # texts of entries
 _TOGETHER = 2  # lines: messages are broken into that many
 _LONG = 2000  # characters: a line is cut there
@@ -131,7 +134,7 @@ _PROBLEMS = ("rror", "RROR", "xception", "ail", "atal", "FATAL", "arning", "WARN
 # Why the system refuses something. A text and an entry that give different reasons aren't near.
 _REASON = re.compile(
     r"permission denied|no such file or directory|operation not permitted|connection refused"
-    r"|address already in use|no space left|exec format error|executable file not found"
+    r"|address already in use|no space left|exec format error|executable file not found|exit code -\d+"
 )
 # The last lines of roslaunch, make and catkin: the cause is above them. A negative exit code, or
 # one of a shell (128 and the signal), does say something.
@@ -217,14 +220,13 @@ class Index:
             for word, having in entries_of.items()
         }
         # A text that says what a general entry says, and names somebody, such as a package of
-        # ROS 2: it needs this name.
+        # ROS 2: it needs this name, or what else it says.
         general = {text.words for text in self._texts if text.entry.general}
-        self._special = {
-            text
-            for text in self._texts
-            if text.names and not text.entry.general
-            if text.entry.name == _ROS2_ENTRY or any(words <= text.words for words in general)
-        }
+        self._special = {}
+        for text in self._texts:
+            within = [words for words in general if words <= text.words]
+            if text.names and not text.entry.general and (within or text.entry.name == _ROS2_ENTRY):
+                self._special[text] = text.words.difference(*within)
         self._sums = {text: self._sum(text.words) for text in self._texts}
         of_ros2 = [text.entry for text in self._texts if _OF_ROS2 in text.words]
         self._of_ros2 = {entry.name: entry for entry in of_ros2}
@@ -237,15 +239,18 @@ class Index:
         if ros2:
             found = [a for a in self._answers(text.splitlines()) if a.entry.name in self._of_ros2]
             return found[:1] or [Answer(self._of_ros2[_ROS2_ENTRY], (ros2,), 0.0, False)]
-        if _OTHERS.search(text) and not _ROS.search(text):
+        shows_ros = _ROS.search(text)
+        if _OTHERS.search(text) and not shows_ros:
             return []
         for words, others in _ENGLISH.items():
             text = re.sub(others, f" {words} ", text)
         lines = text.splitlines()
         found = self._answers(line for line in lines if not _ENDING.fullmatch(line.strip()))
         found = found or self._answers(lines)
+        found = [answer for answer in found if shows_ros or not answer.entry.ros]
         found = [a for a in found if not any(_outdoes(better, a) for better in found)]
         causes = [answer for answer in found if not answer.entry.above]
+        causes = [answer for answer in causes if answer.score >= _FAR * causes[0].score]
         of_errors = [answer for answer in causes if not answer.warns]
         last = [a for a in found if a.entry.above == "yes" or (a.entry.above and not of_errors)][:1]
         return [*causes[: count - len(last)], *last]
@@ -269,7 +274,10 @@ class Index:
             shared = self._sum(passage.words & text.words)
             of_entry, of_text = shared / self._sums[text], shared / all_words
             same = passage.names & text.names
-            if passage.ends != text.ends or (text in self._special and not same):
+            others = self._special.get(text)
+            if others is not None and not (same or (others and others <= passage.words)):
+                continue
+            if passage.ends != text.ends:
                 continue
             if passage.reasons and text.reasons and passage.reasons.isdisjoint(text.reasons):
                 continue
