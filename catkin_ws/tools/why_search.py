@@ -270,6 +270,7 @@ class Index:
     def _scored(self, passage):
         """Yield an answer for each text that is near to a passage."""
         all_words = self._sum(passage.words)
+        reason = _words(" ".join(passage.reasons))
         for text in self._candidates(passage.words):
             shared = self._sum(passage.words & text.words)
             of_entry, of_text = shared / self._sums[text], shared / all_words
@@ -280,6 +281,8 @@ class Index:
             if passage.ends != text.ends:
                 continue
             if passage.reasons and text.reasons and passage.reasons.isdisjoint(text.reasons):
+                continue
+            if (passage.words & text.words) <= reason < passage.words:
                 continue
             if (of_entry < 0.99 or of_text < 0.7) and not passage.ends:
                 if max(of_entry / _OF_ENTRY, of_text / _OF_TEXT) < 1 or shared < _LEAST:
@@ -322,11 +325,16 @@ def _text(text, **more):
     names |= {name.partition(".")[0] for name in names}
     words = {_OF_ROS2} if _OF_ROS2 in readable else set()
     for part in _NAME.split(readable):
-        found = _WORD.findall(part.lower())
-        words.update(found, (f"{first} {second}" for first, second in itertools.pairwise(found)))
+        words |= _words(part.lower())
     reasons = frozenset(_REASON.findall(text.lower()))
     ends = all(_ENDING.fullmatch(line.strip()) for line in text.splitlines())
     return _Text(frozenset(words), frozenset(names), reasons, ends, **more)
+
+
+def _words(text):
+    """Return the words of a text, and its pairs of words side by side."""
+    found = _WORD.findall(text)
+    return {*found, *(f"{first} {second}" for first, second in itertools.pairwise(found))}
 
 
 def _near_problems(text):
