@@ -30,7 +30,7 @@ from mrp_check.rules.files import launch_file
 from mrp_testing.master import uri_of
 from mrp_testing.ports import free_port
 from mrp_testing.process import LIVE, Process, processes_with
-from mrp_testing.waiting import wait_until, within
+from mrp_testing.waiting import wait_until
 from mrp_testing.workspace import ROOT, WORKSPACE
 
 pytestmark = pytest.mark.slow
@@ -71,13 +71,77 @@ NO_ERRORS = (
     "RuntimeError: There is no current event loop in thread 'MainThread'.",
     "The current process has finished.",
 )
+# What beginners meet: another entry, to the same line or to one that follows from it, would send
+# them astray.
+CLEAR = [
+    ("package-is-there", "mkdir: cannot create directory ‘/home/you/launch’: File exists"),
+    ("files-of-root", "mkdir: cannot create directory '/home/you/launch': Permission denied"),
+    ("no-such-file", "mkdir: cannot create directory 'src/launch': No such file or directory"),
+    ("no-such-file", "touch: cannot touch 'src/a.py': No such file or directory"),
+    ("command-not-found", "bash: rosrum: command not found"),
+    ("script-crlf", "$'\\r': command not found"),
+    ("no-such-target", "make: *** No rule to make target 'check'.  Stop."),
+    ("library-gone", "make[2]: *** No rule to make target 'a.so', needed by 'b'.  Stop."),
+    ("header-not-found", "fatal error: std_msgs/Uint32.h: No such file or directory"),
+    ("no-such-member", "AttributeError: 'TalkerNode' object has no attribute 'publsher'"),
+    ("nosetests-not-found", "nosetests not found"),
+    (
+        "name-not-legal",
+        "terminate called after throwing an instance of 'ros::InvalidNameException'\n"
+        "  what():  Character [;] at element [1] is not valid in Graph Resource Name [a;].\n"
+        "[a-1] process has died [pid 1, exit code -6, cmd a __name:=a __log:=/a.log].\n"
+        "[b-9] process has died",
+    ),
+    (
+        "launch-node-not-found",
+        "ERROR: cannot launch node of type [a/b.py]: can't locate node [b.py] in package [a]\n"
+        "No processes to monitor\nshutting down processing monitor...",
+    ),
+    (
+        "launch-rosparam-value",
+        "error loading <rosparam> tag:\n'param' attribute must be set for non-dictionary values"
+        '\nXML is <rosparam file="a.yaml"/>',
+    ),
+    (
+        "catkin-include-dir",
+        "  catkin_package() include dir 'include' does not exist relative to\n"
+        "  '/home/you/a'\nCall Stack (most recent call first):\n"
+        "  a/CMakeLists.txt:114 (catkin_package)",
+    ),
+    (
+        "package-config-not-found",
+        "CMake Error at a/CMakeLists.txt:83 (find_package):\n"
+        '  Could not find a package configuration file provided by "tf2_sensor_msgs"\n'
+        "  with any of the following names:\n\n"
+        "    tf2_sensor_msgsConfig.cmake\n    tf2_sensor_msgs-config.cmake\n\n"
+        '  Add the installation prefix of "tf2_sensor_msgs" to CMAKE_PREFIX_PATH or\n'
+        '  set "tf2_sensor_msgs_DIR" to a directory containing one of the above files.\n'
+        '  If "tf2_sensor_msgs" provides a separate development package or SDK, be\n'
+        "  sure it has been installed.",
+    ),
+    (
+        "cmake-rule-missing",
+        "make[2]: *** No rule to make target 'a/CMakeFiles/b.dir/build'.  Stop.",
+    ),
+    (
+        "service-error",
+        "service cannot process request: handler returned invalid value:\n"
+        "Invalid number of arguments, args should be [] args are(<class 'a.EmptyResponse'>,)",
+    ),
+    ("package-of-ros2", "$ ros2 launch a b.py\nModuleNotFoundError: No module named 'black'"),
+    (
+        "rosdep-key",
+        "ERROR: the following packages/stacks could not have their rosdep keys resolved\n"
+        "to system dependencies:\na: Cannot locate rosdep definition for [stdmsgs]",
+    ),
+    ("tutorial-not-built", "ModuleNotFoundError: No module named 'mrp_check.cli'"),
+]
 PACKAGE_XML = """<package format="2">
 <name>a</name><version>0.1.0</version><description>a</description>
 <maintainer email="you@mrp.example">you</maintainer>
 <license>BSD-3-Clause</license><buildtool_depend>catkin</buildtool_depend></package>
 """
 RELEASE = str(releases.here())
-ENDING = 10.0  # seconds that a program has to end after Ctrl-C
 
 # Python takes longer to load the master than it lives here: it is loaded once, and then copied.
 MASTERS = multiprocessing.get_context("forkserver")
@@ -203,20 +267,14 @@ def test_text_is_printed(entry, tmp_path, env):
 
 
 def end(process, folder):
-    """End a shell and all that it runs: what is in the foreground, as Ctrl-C does.
-
-    folder: stands in the environment of all these processes, and of no others
-    """
-    try:
-        os.killpg(process.pid, signal.SIGINT)
-        # roslaunch may stand still for good after an error.
-        within(ENDING, lambda: process.code is not None)
+    """Kill a shell and all that it runs: what has the folder in its environment, because no other
+    process does. The text is printed, and roslaunch may take 10 seconds to end at Ctrl-C."""
+    with contextlib.suppress(ProcessLookupError):
         os.killpg(process.pid, signal.SIGKILL)
-    except ProcessLookupError:
-        pass
-    # The master of a roslaunch that was killed goes on, in a session of its own.
+    # roslaunch's nodes and its master have sessions of their own.
     for pid in processes_with(str(folder)):
-        os.kill(pid, signal.SIGKILL)
+        with contextlib.suppress(ProcessLookupError):
+            os.kill(pid, signal.SIGKILL)
     process.wait()
 
 
@@ -229,92 +287,32 @@ def names(index, text):
     return [found.entry.name for found in index.nearest(text)]
 
 
-@pytest.mark.parametrize("entry", ENTRIES, ids=lambda entry: entry.name)
-def test_each_text_leads_to_its_entry(entry, index):
-    for text in (*entry.shows, *entry.also):
-        text = "\n".join(why_entries.shown_on(text))
-        assert entry.name == names(index, text)[0], text
-        # After the last one of these, roslaunch prints nothing more.
-        if entry.name not in ("catkin-make-failed", "roslaunch-stands-still"):
-            assert entry.name == names(index, text + LAST_LINES)[0], text
+def test_each_text_leads_to_its_entry(index):
+    """Also with roslaunch's last lines below it: after some texts, it prints nothing more."""
+    wrong = []
+    for entry in ENTRIES:
+        is_last = entry.name in ("catkin-make-failed", "roslaunch-stands-still")
+        for text in (*entry.shows, *entry.also):
+            text = "\n".join(why_entries.shown_on(text))
+            for pasted in [text] if is_last else [text, text + LAST_LINES]:
+                found = names(index, pasted)
+                if found[:1] != [entry.name]:
+                    wrong.append(f"{entry.name}: {found} for {pasted}")
+    assert not wrong, "\n\n".join(wrong)
 
 
-@pytest.mark.parametrize(("expected", "text"), THREADS, ids=[text[:60] for _, text in THREADS])
-def test_names_paths_and_numbers_do_not_count(expected, text, index):
-    found = set(names(index, text))
-    assert not found if expected == ["outside"] else found & set(expected)
+def test_names_paths_and_numbers_do_not_count(index):
+    wrong = []
+    for expected, text in THREADS:
+        found = names(index, text)
+        if found if expected == ["outside"] else not {*found} & {*expected}:
+            wrong.append(f"{' or '.join(expected)}: {found} for {text}")
+    assert not wrong, "\n\n".join(wrong)
 
 
-# What beginners meet: another entry, to the same line or to one that follows from it, would send
-# them astray.
-@pytest.mark.parametrize(
-    ("expected", "text"),
-    [
-        ("package-is-there", "mkdir: cannot create directory ‘/home/you/launch’: File exists"),
-        ("files-of-root", "mkdir: cannot create directory '/home/you/launch': Permission denied"),
-        ("no-such-file", "mkdir: cannot create directory 'src/launch': No such file or directory"),
-        ("no-such-file", "touch: cannot touch 'src/a.py': No such file or directory"),
-        ("command-not-found", "bash: rosrum: command not found"),
-        ("script-crlf", "$'\\r': command not found"),
-        ("no-such-target", "make: *** No rule to make target 'check'.  Stop."),
-        ("library-gone", "make[2]: *** No rule to make target 'a.so', needed by 'b'.  Stop."),
-        ("header-not-found", "fatal error: std_msgs/Uint32.h: No such file or directory"),
-        ("no-such-member", "AttributeError: 'TalkerNode' object has no attribute 'publsher'"),
-        ("nosetests-not-found", "nosetests not found"),
-        (
-            "name-not-legal",
-            "terminate called after throwing an instance of 'ros::InvalidNameException'\n"
-            "  what():  Character [;] at element [1] is not valid in Graph Resource Name [a;].\n"
-            "[a-1] process has died [pid 1, exit code -6, cmd a __name:=a __log:=/a.log].\n"
-            "[b-9] process has died",
-        ),
-        (
-            "launch-node-not-found",
-            "ERROR: cannot launch node of type [a/b.py]: can't locate node [b.py] in package [a]\n"
-            "No processes to monitor\nshutting down processing monitor...",
-        ),
-        (
-            "launch-rosparam-value",
-            "error loading <rosparam> tag:\n'param' attribute must be set for non-dictionary values"
-            '\nXML is <rosparam file="a.yaml"/>',
-        ),
-        (
-            "catkin-include-dir",
-            "  catkin_package() include dir 'include' does not exist relative to\n"
-            "  '/home/you/a'\nCall Stack (most recent call first):\n"
-            "  a/CMakeLists.txt:114 (catkin_package)",
-        ),
-        (
-            "package-config-not-found",
-            "CMake Error at a/CMakeLists.txt:83 (find_package):\n"
-            '  Could not find a package configuration file provided by "tf2_sensor_msgs"\n'
-            "  with any of the following names:\n\n"
-            "    tf2_sensor_msgsConfig.cmake\n    tf2_sensor_msgs-config.cmake\n\n"
-            '  Add the installation prefix of "tf2_sensor_msgs" to CMAKE_PREFIX_PATH or\n'
-            '  set "tf2_sensor_msgs_DIR" to a directory containing one of the above files.\n'
-            '  If "tf2_sensor_msgs" provides a separate development package or SDK, be\n'
-            "  sure it has been installed.",
-        ),
-        (
-            "cmake-rule-missing",
-            "make[2]: *** No rule to make target 'a/CMakeFiles/b.dir/build'.  Stop.",
-        ),
-        (
-            "service-error",
-            "service cannot process request: handler returned invalid value:\n"
-            "Invalid number of arguments, args should be [] args are(<class 'a.EmptyResponse'>,)",
-        ),
-        ("package-of-ros2", "$ ros2 launch a b.py\nModuleNotFoundError: No module named 'black'"),
-        (
-            "rosdep-key",
-            "ERROR: the following packages/stacks could not have their rosdep keys resolved\n"
-            "to system dependencies:\na: Cannot locate rosdep definition for [stdmsgs]",
-        ),
-        ("tutorial-not-built", "ModuleNotFoundError: No module named 'mrp_check.cli'"),
-    ],
-)
-def test_a_clear_answer_stands_alone(expected, text, index):
-    assert names(index, text) == [expected]
+def test_a_clear_answer_stands_alone(index):
+    found = [(*names(index, text), text) for _, text in CLEAR]
+    assert found == CLEAR
 
 
 def test_make_why_answers_a_text():
@@ -326,9 +324,8 @@ def test_make_why_answers_a_text():
     assert "/pages/launching.html" in done.stdout
 
 
-@pytest.mark.parametrize("text", NO_ERRORS)
-def test_nothing_is_near_what_is_no_error(text, index):
-    assert names(index, text) == []
+def test_nothing_is_near_what_is_no_error(index):
+    assert [text for text in NO_ERRORS if index.nearest(text)] == []
     assert why.answer([]).startswith("No text I know is close to this one.")
 
 

@@ -99,10 +99,11 @@ _OTHERS = re.compile(
 _ROS = re.compile(
     r"\bros(?:_|\b|bag|bash|build|cd|clean|comm|console|core|cpp|dep|distro|graph|install|launch"
     r"|lib|make|master|msg|node|out|pack|param|pkg|py|run|serial|service|srv|test|topic|version)"
-    r"|(?:[a-z]_|lib)ros|catkin|\.launch\b|package\.xml|_msgs\b|\bxacro|\bgazebo|\brviz|actionlib|nodelet"
-    r"|/devel/|\brqt_|\btf2?(?:_ros|_geometry|_sensor|::|\.\w+Exception|\.transform)|\bbag\b|genmsg|genpy"
-    r"|generate_distutils|RLException|__name:=|process has died|\.(?:msg|srv|action)\b|11311|\bnoetic|\bmelodic|\bkinetic"
-    r"|robot_|base_link|cv_bridge|turtle|move_?base|moveit|pluginlib|beginner_tutorials|image_transport",
+    r"|(?:[a-z]_|lib)ros|catkin|\.launch\b|package\.xml|_msgs\b|\bxacro|\bgazebo|\brviz|actionlib"
+    r"|nodelet|pluginlib|/devel/|\brqt_|genmsg|genpy|cv_bridge|image_transport|move_?base|moveit"
+    r"|\btf2?(?:_ros|_geometry|_sensor|::|\.\w+Exception|\.transform)|\bbag\b|beginner_tutorials"
+    r"|generate_distutils|RLException|__name:=|process has died|\.(?:msg|srv|action)\b|11311"
+    r"|turtle|robot_|base_link|\b(?:kinetic|melodic|noetic)",
     re.IGNORECASE,
 )
 _WORD = re.compile(r"[^\W\d_]+|\d+")
@@ -131,10 +132,12 @@ _MOST = 100_000  # characters around errors, at each end of a very long text
 _AT_EACH_END = 2_000  # places of a word, at each end of a very long text
 _NO_DIGITS = dict.fromkeys(map(ord, "0123456789"))
 _PROBLEMS = ("rror", "RROR", "xception", "ail", "atal", "FATAL", "arning", "WARN", "not ", "died")
-# Why the system refuses something. A text and an entry that give different reasons aren't near.
+# Why the system refuses something, or which signal ended a program. A text and an entry that give
+# different reasons aren't near, and a reason that both have doesn't make them so.
 _REASON = re.compile(
     r"permission denied|no such file or directory|operation not permitted|connection refused"
-    r"|address already in use|no space left|exec format error|executable file not found|exit code -\d+"
+    r"|address already in use|no space left|exec format error|executable file not found"
+    r"|exit code -\d+"
 )
 # The last lines of roslaunch, make and catkin: the cause is above them. A negative exit code, or
 # one of a shell (128 and the signal), does say something.
