@@ -134,6 +134,16 @@ CLEAR = [
         "ERROR: the following packages/stacks could not have their rosdep keys resolved\n"
         "to system dependencies:\na: Cannot locate rosdep definition for [stdmsgs]",
     ),
+    (
+        "apt-key",
+        "W: GPG error: https://repo.vpn.example/debian stable InRelease: The following signatures "
+        "couldn't be verified because the public key is not available: NO_PUBKEY 71EB474019940E11\n"
+        "E: The repository 'https://repo.vpn.example/debian stable InRelease' is not signed.\n"
+        "N: Updating from such a repository can't be done securely, and is therefore disabled by "
+        "default.",
+    ),
+    ("not-a-package", "from a.srv import Add\nImportError: No module named srv"),
+    ("no-module-msg", "from a.srv import Add\nImportError: No module named a.srv"),
     ("tutorial-not-built", "ModuleNotFoundError: No module named 'mrp_check.cli'"),
 ]
 PACKAGE_XML = """<package format="2">

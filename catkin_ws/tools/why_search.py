@@ -82,7 +82,7 @@ _ROS2_ENTRY = "package-of-ros2"  # the answer to it, if none is nearer
 # Other languages and programs, and what shows that a text is about ROS all the same.
 _OTHERS = re.compile(
     r"\.(?:[cm]?js|jsx|tsx?|java|kt|rs|rb|php|cs|swift|c):[\d(]|\.go:\d+:\d"
-    r"|\bat \S+ \(\S+:\d|^goroutine |^panic: |^configure: |\bgit@|\bgithub\.com|nodesource"
+    r"|\bat \S+ \(\S+:\d|^ +at [\w.]+\(|^goroutine |^panic: |^configure: |\bgit@|\bgithub\.com|nodesource"
     r"|docker-ce|/lib/modules/|\bfixture '"
     r"|\b(?:npm|yarn|node_modules|webpack|java|gradle|maven|cargo|rustc|PHP|CUDA|pytest)\b"
     r"|\b(?:ENOENT|EACCES|EPERM|EADDRINUSE)\b"
@@ -116,7 +116,8 @@ _NAME = re.compile(
     r"|(?<=command not found: )\S+"
 )
 _CMAKE_RULE = re.compile(r"'[^'\s]*CMakeFiles/[^'\s]+\.dir/build'")  # no name of the reader's
-_NO_MODULE = re.compile(r"No module named ([\w.]+)")  # Python 2 has no quotes
+# Python 2 has no quotes. That of generated code isn't only a name.
+_NO_MODULE = re.compile(r"No module named '?([\w.]+?)(\.msg|\.srv)?(?![\w.])'?")
 _KIND = re.compile("'(module|NoneType)' object")  # no name, though in quotes
 # How much of an entry's words a text must have, or how much of the text's words the entry must
 # explain; and the least sum of the two.
@@ -159,7 +160,7 @@ _EVERYWHERE = re.compile(
     r"|process\[.*\]: started with pid .*|\[\S+\] killing on exit|done"
     r"|all processes on machine have died, roslaunch will exit"
     r"|(?:\.\.\. )?shutting down processing monitor(?:\.\.\.| complete)"
-    r"|\S+:\d+ \(\w+\)|.*: In (?:\w+ )*(?:function|constructor) .*:"
+    r"|-- (?:\+\+\+|==>) .*|\S+:\d+ \(\w+\)|.*: In (?:\w+ )*(?:function|constructor) .*:"
 )
 # What begins a warning; indented lines below belong to it. That the standard of C++ is too old is a
 # cause, though g++ only warns.
@@ -224,12 +225,14 @@ class Index:
         }
         # A text that says what a general entry says, and names somebody, such as a package of
         # ROS 2: it needs this name, or what else it says.
-        general = {text.words for text in self._texts if text.entry.general}
+        general = [text for text in self._texts if text.entry.general]
         self._special = {}
         for text in self._texts:
-            within = [words for words in general if words <= text.words]
+            within = [other for other in general if other.words <= text.words]
             if text.names and not text.entry.general and (within or text.entry.name == _ROS2_ENTRY):
-                self._special[text] = text.words.difference(*within)
+                names = text.names.difference(*(other.names for other in within))
+                words = text.words.difference(*(other.words for other in within))
+                self._special[text] = names, words if within else frozenset()
         self._sums = {text: self._sum(text.words) for text in self._texts}
         of_ros2 = [text.entry for text in self._texts if _OF_ROS2 in text.words]
         self._of_ros2 = {entry.name: entry for entry in of_ros2}
@@ -278,9 +281,12 @@ class Index:
             shared = self._sum(passage.words & text.words)
             of_entry, of_text = shared / self._sums[text], shared / all_words
             same = passage.names & text.names
-            others = self._special.get(text)
-            if others is not None and not (same or (others and others <= passage.words)):
+            if _OF_ROS2 in text.words - passage.words:
                 continue
+            if text in self._special:
+                own_names, own_words = self._special[text]
+                if same.isdisjoint(own_names) and not frozenset() < own_words <= passage.words:
+                    continue
             if passage.ends != text.ends:
                 continue
             if passage.reasons and text.reasons and passage.reasons.isdisjoint(text.reasons):
@@ -294,8 +300,8 @@ class Index:
                     continue
             score = shared * (0.3 + 0.7 * of_entry) * (0.3 + 0.7 * of_text)
             score += sum(self._weight[word] for word in same)
-            if text in self._special:
-                score *= 0.7 + 0.3 * len(same) / len(text.names)
+            if text in self._special and own_names:
+                score *= 0.7 + 0.3 * len(same & own_names) / len(own_names)
             doubtful = min(of_entry, of_text) < 0.3 or of_entry + of_text < 0.9
             yield Answer(text.entry, passage.lines, score, doubtful, passage.warns, passage.below)
 
@@ -319,7 +325,7 @@ def _outdoes(better, answer):
 
 def _text(text, **more):
     """Return the words of a text, with pairs of words, and the words of its names."""
-    readable = _NO_MODULE.sub(r"No module named '\1'", text)
+    readable = _NO_MODULE.sub(r"No module named '\1' \2", text)
     readable = _KIND.sub(r"\1 object", readable)
     readable = _CMAKE_RULE.sub("CMakeFiles dir build", readable)
     readable = _ROS2.sub(f" {_OF_ROS2} ", readable)
