@@ -123,7 +123,7 @@ _KIND = re.compile("'(module|NoneType)' object")  # no name, though in quotes
 # explain; and the least sum of the two.
 _OF_ENTRY, _OF_TEXT, _BOTH = 0.55, 0.6, 1.1
 _LEAST = 11  # the weight of the words that both have
-_NEAR = 0.85  # of the score of a better answer to the same lines
+_NEAR = 0.9  # of the score of a better answer to the same lines
 _FAR = 0.45  # of the score of the first answer, to other lines
 _RARE, _CANDIDATES = 80, 60  # texts of entries
 _TOGETHER = 2  # lines: messages are broken into that many
