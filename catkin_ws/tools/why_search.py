@@ -82,8 +82,8 @@ _ROS2_ENTRY = "package-of-ros2"  # the answer to it, if none is nearer
 # Other languages and programs, and what shows that a text is about ROS all the same.
 _OTHERS = re.compile(
     r"\.(?:[cm]?js|jsx|tsx?|java|kt|rs|rb|php|cs|swift|c):[\d(]|\.go:\d+:\d"
-    r"|\bat \S+ \(\S+:\d|^ +at [\w.]+\(|^goroutine |^panic: |^configure: |\bgit@|\bgithub\.com|nodesource"
-    r"|docker-ce|/lib/modules/|\bfixture '"
+    r"|\bat \S+ \(\S+:\d|^ +at [\w.]+\(|^goroutine |^panic: |^configure: |\bgit@"
+    r"|\bgithub\.com|nodesource|docker-ce|/lib/modules/|\bfixture '"
     r"|\b(?:npm|yarn|node_modules|webpack|java|gradle|maven|cargo|rustc|PHP|CUDA|pytest)\b"
     r"|\b(?:ENOENT|EACCES|EPERM|EADDRINUSE)\b"
     r"|\b(?:nvidia-(?!container|docker)|cuda-)\w|\blibcu\w+\.so"
