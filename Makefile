@@ -58,8 +58,8 @@ CATKIN_MAKE := catkin_make -j$(shell nproc) -DPYTHON_EXECUTABLE=/usr/bin/python3
 TUTORIAL := -DCATKIN_WHITELIST_PACKAGES=mrp -DCATKIN_ENABLE_TESTING=OFF
 LABS := "-DCATKIN_WHITELIST_PACKAGES=mrp;mrp_labs" -DCATKIN_ENABLE_TESTING=OFF
 WHOLE := -DCATKIN_WHITELIST_PACKAGES= -DCATKIN_ENABLE_TESTING=ON
-# What an editor reads: how each C++ file is compiled, and which fields each message has.
-FOR_EDITORS := ln -sf build/compile_commands.json .; source devel/setup.bash; tools/make_stubs.py build/stubs
+# What an editor reads: how each C++ file is compiled.
+FOR_EDITORS := ln -sf build/compile_commands.json .
 BUILT_TUTORIAL := catkin_ws/devel/.built_tutorial
 BUILT_LABS := catkin_ws/devel/.built_labs
 BUILT_WHOLE := catkin_ws/devel/.built_whole
