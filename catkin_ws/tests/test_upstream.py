@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What ROS itself does wrong: with its patch in doc/upstream/, each lab goes as one would expect.
+"""What ROS itself does wrong: with the patch of its report, each lab goes as one would expect.
 
-What happens without it is shown by the lab's own test, which the report names. The patches are
-applied to a copy of what is installed.
+What happens without it is shown by the lab's own test, which the report in doc/upstream/ names. The
+patches are applied to a copy of what is installed.
 """
 
 import os
@@ -45,9 +45,14 @@ def apply(name, folder):
     """Apply a patch to a copy of what is installed; return the copy's folders of packages."""
     for source, package in SOURCES.items():
         shutil.copytree(INSTALLED / package, folder / source / package)
-    patch = UPSTREAM / f"{name}.patch"
-    subprocess.run(["patch", "-p1", "--input", patch], cwd=folder, check=True)
+    patch(name, folder)
     return [str(folder / source) for source in SOURCES]
+
+
+def patch(name, folder):
+    """Apply the first patch of a report to a folder."""
+    diff = (UPSTREAM / f"{name}.md").read_text().split("```diff\n")[1].split("```")[0]
+    subprocess.run(["patch", "-p1"], cwd=folder, input=diff, check=True, text=True)
 
 
 def node(program):
@@ -56,10 +61,8 @@ def node(program):
     return Process(sys.executable, "-c", begin + program, extra_env=LIVE)
 
 
-def test_every_report_has_its_patch_and_its_test():
-    reports = {path.stem for path in UPSTREAM.glob("*.md")}
-    assert reports == {path.stem for path in UPSTREAM.rglob("*.patch")}
-    assert all(f"test_{name}" in globals() for name in reports)
+def test_every_report_has_its_test():
+    assert all(f"test_{path.stem}" in globals() for path in UPSTREAM.glob("*.md"))
 
 
 def test_log_line_ends_the_newer_node(patched):
@@ -97,13 +100,12 @@ def test_cmake_4_refuses_every_workspace(tmp_path):
     """No CMake complains, not even one that warns of what CMake 4 refuses."""
     (tmp_path / "cmake").mkdir()
     shutil.copy("/usr/share/catkin/cmake/toplevel.cmake", tmp_path / "cmake")
-    patch = UPSTREAM / "catkin" / "cmake_4_refuses_every_workspace.patch"
     # catkin's own CMakeLists.txt, which the patch changes as well, is not installed.
     (tmp_path / "CMakeLists.txt").write_text(
         "cmake_minimum_required(VERSION 3.0.2)\n\n"
         "set(catkin_EXTRAS_DIR ${CMAKE_CURRENT_SOURCE_DIR}/cmake)\n\n"
     )
-    subprocess.run(["patch", "-p1", "--input", patch], cwd=tmp_path, check=True)
+    patch("cmake_4_refuses_every_workspace", tmp_path)
     (tmp_path / "src").mkdir()
     # What a CMake before 4 does not refuse, it says: which version the workspace is written for.
     text = (tmp_path / "cmake" / "toplevel.cmake").read_text()
