@@ -12,11 +12,11 @@ from rosgraph_msgs.msg import Clock
 
 class LabClock:
     def __init__(self, parameters):
-        self.begin = parameters.number("begin", 1000, least=1)  # the first time, in seconds
-        self.factor = parameters.number("factor", 1, least=1)  # how much faster it goes
-        self.period = parameters.seconds("period", 0.01)  # seconds between two messages
-        self.jump = parameters.number("jump", 0)  # seconds: forward, then back, forward, ...
-        self.jump_every = parameters.number("jump_every", 5, least=1)  # seconds, not simulated
+        self.begin = parameters.get("begin", 1000)  # the first time, in seconds
+        self.factor = parameters.get("factor", 1)  # how much faster it goes
+        self.period = parameters.get("period", 0.01)  # seconds between two messages
+        self.jump = parameters.get("jump", 0)  # seconds: forward, then back, forward, ...
+        self.jump_every = parameters.get("jump_every", 5)  # seconds, not simulated
         parameters.no_others()
 
     def run(self):

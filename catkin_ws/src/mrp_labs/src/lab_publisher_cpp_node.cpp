@@ -7,7 +7,6 @@
 #include <cstdint>
 #include <cstdio>
 #include <fstream>
-#include <limits>
 #include <memory>
 #include <string>
 #include <thread>
@@ -23,36 +22,29 @@ class LabPublisher
 {
 public:
   explicit LabPublisher(mrp_labs::Parameters& parameters)
-      : topic_(parameters.topic("topic", "great_topic")),
-        queue_size_(parameters.number("queue_size", 10)),
-        latch_(parameters.flag("latch", false)),
+      : topic_(parameters.get<std::string>("topic", "great_topic")),
+        queue_size_(parameters.get("queue_size", 10)),
+        latch_(parameters.get("latch", false)),
         timer_type_(parameters.choice("timer", {"ros", "wall", "steady", "rate", "sleep"})),
-        period_(parameters.seconds("period", 0.5)),
-        work_(parameters.seconds("work", 0)),
-        burst_(parameters.number("burst", 1, 1)),
-        first_burst_(parameters.number("first_burst", burst_, 1)),
-        count_(parameters.number("count", 0)),
-        start_(parameters.number("start", 1, std::numeric_limits<int>::min())),
-        step_(parameters.number("step", 1, std::numeric_limits<int>::min())),
+        period_(parameters.get("period", 0.5)),
+        work_(parameters.get("work", 0.0)),
+        burst_(parameters.get("burst", 1)),
+        first_burst_(parameters.get("first_burst", burst_)),
+        count_(parameters.get("count", 0)),
+        start_(parameters.get("start", 1)),
+        step_(parameters.get("step", 1)),
         values_(parameters.texts("values")),
-        size_(parameters.number("size", 0)),
-        delay_(parameters.seconds("delay", 0)),
-        wait_for_subscribers_(parameters.number("wait_for_subscribers", 0)),
-        show_memory_(parameters.flag("show_memory", false)),
-        show_namespaces_(parameters.flag("show_namespaces", false)),
-        shown_type_(parameters.flag("show_type", false) ? type() + " " : "")
+        size_(parameters.get("size", 0)),
+        delay_(parameters.get("delay", 0.0)),
+        wait_for_subscribers_(parameters.get("wait_for_subscribers", 0)),
+        show_memory_(parameters.get("show_memory", false)),
+        show_namespaces_(parameters.get("show_namespaces", false)),
+        shown_type_(parameters.get("show_type", false) ? type() + " " : "")
   {
     parameters.noOthers();
     for (const std::string& value : values_)
     {
-      try
-      {
-        message(value);
-      }
-      catch (const std::invalid_argument&)
-      {
-        throw parameters.wrong("values", "a list of texts of " + type() + " messages");
-      }
+      message(value);  // an error, if the text does not fit the type
     }
   }
 
@@ -235,7 +227,7 @@ int main(int argc, char* argv[])
     }
     ros::spin();
   }
-  catch (const std::invalid_argument& error)
+  catch (const std::exception& error)
   {
     ROS_FATAL_STREAM(ros::this_node::getName() << ": " << error.what());
     return 1;

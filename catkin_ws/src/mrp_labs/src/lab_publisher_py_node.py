@@ -6,7 +6,6 @@ Its private parameters, in a lab's launch file, say what it publishes, and how.
 """
 
 import contextlib
-import math
 import os
 import sys
 import threading
@@ -21,33 +20,29 @@ from mrp_labs.start import print_namespaces, wait, work
 class LabPublisher:
     def __init__(self, parameters):
         self.type = parameters.choice("type", list(MESSAGE_TYPES))
-        self.topic = parameters.topic("topic", "great_topic")
+        self.topic = parameters.get("topic", "great_topic")
         self.queue_size = parameters.number_or_none("queue_size", 10)  # 0: unlimited
-        self.latch = parameters.flag("latch", False)
+        self.latch = parameters.get("latch", False)
         self.timer_type = parameters.choice(
             "timer", ["ros", "ros-reset", "steady", "rate", "sleep"]
         )
-        self.period = parameters.seconds("period", 0.5)
-        self.work = parameters.seconds("work", 0)  # seconds that each turn takes, by the ROS clock
-        self.burst = parameters.number("burst", 1, least=1)  # messages in each period
-        self.first_burst = parameters.number("first_burst", self.burst, least=1)
-        self.count = parameters.number("count", 0)  # messages in all, 0: no end
-        self.start_value = parameters.number("start", 1, least=-math.inf)
-        self.step = parameters.number("step", 1, least=-math.inf)
-        self.values = parameters.texts("values")
-        self.size = parameters.number("size", 0)  # bytes, to which a String is filled up
-        self.delay = parameters.seconds("delay", 0)  # seconds before it advertises
-        self.wait_for_subscribers = parameters.number("wait_for_subscribers", 0)
-        self.show_memory = parameters.flag("show_memory", False)
-        self.show_namespaces = parameters.flag("show_namespaces", False)
-        self.shown_type = self.type + " " if parameters.flag("show_type", False) else ""
+        self.period = parameters.get("period", 0.5)
+        self.work = parameters.get("work", 0.0)  # seconds that each turn takes, by the ROS clock
+        self.burst = parameters.get("burst", 1)  # messages in each period
+        self.first_burst = parameters.get("first_burst", self.burst)
+        self.count = parameters.get("count", 0)  # messages in all, 0: no end
+        self.start_value = parameters.get("start", 1)
+        self.step = parameters.get("step", 1)
+        self.values = [str(value) for value in parameters.get("values", [])]
+        self.size = parameters.get("size", 0)  # bytes, to which a String is filled up
+        self.delay = parameters.get("delay", 0.0)  # seconds before it advertises
+        self.wait_for_subscribers = parameters.get("wait_for_subscribers", 0)
+        self.show_memory = parameters.get("show_memory", False)
+        self.show_namespaces = parameters.get("show_namespaces", False)
+        self.shown_type = self.type + " " if parameters.get("show_type", False) else ""
         parameters.no_others()
         for value in self.values:
-            try:
-                self.message(value)
-            except (ValueError, TypeError):
-                allowed = f"a list of texts of {self.type} messages"
-                raise parameters.wrong("values", allowed) from None
+            self.message(value)  # an error, if the text does not fit the type
         self.sent = 0
 
     def start(self):
@@ -161,7 +156,7 @@ def main():
         publishers = [LabPublisher(parameters) for parameters in Parameters().of_each_topic()]
         for publisher in publishers:
             publisher.start()
-    except ValueError as error:
+    except (ValueError, TypeError) as error:
         rospy.logfatal(f"{rospy.get_name()}: {error}")
         sys.exit(1)
     rospy.spin()

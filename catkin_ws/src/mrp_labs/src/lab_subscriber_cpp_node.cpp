@@ -19,16 +19,16 @@ class LabSubscriber
 {
 public:
   explicit LabSubscriber(mrp_labs::Parameters& parameters)
-      : topic_(parameters.topic("topic", "great_topic")),
-        other_topic_(parameters.topic("other_topic", "")),
-        queue_size_(parameters.number("queue_size", 10)),
-        callback_duration_(parameters.seconds("callback_duration", 0)),
-        concurrent_(parameters.flag("concurrent", false)),
-        wait_for_publishers_(parameters.number("wait_for_publishers", 0)),
-        delay_(parameters.seconds("delay", 0)),
-        show_thread_(parameters.flag("show_thread", false)),
-        show_namespaces_(parameters.flag("show_namespaces", false)),
-        shown_type_(parameters.flag("show_type", false) ? type() + " " : "")
+      : topic_(parameters.get<std::string>("topic", "great_topic")),
+        other_topic_(parameters.get<std::string>("other_topic", "")),
+        queue_size_(parameters.get("queue_size", 10)),
+        callback_duration_(parameters.get("callback_duration", 0.0)),
+        concurrent_(parameters.get("concurrent", false)),
+        wait_for_publishers_(parameters.get("wait_for_publishers", 0)),
+        delay_(parameters.get("delay", 0.0)),
+        show_thread_(parameters.get("show_thread", false)),
+        show_namespaces_(parameters.get("show_namespaces", false)),
+        shown_type_(parameters.get("show_type", false) ? type() + " " : "")
   {
     parameters.noOthers();
   }
@@ -141,8 +141,8 @@ int main(int argc, char* argv[])
     mrp_labs::Parameters parameters;
     const std::string spinner =
         parameters.choice("spinner", {"spin", "multi-threaded", "async", "once"});
-    const int threads = parameters.number("threads", 2, 1);
-    const ros::Duration spin_period(parameters.seconds("spin_period", 0.1));
+    const int threads = parameters.get("threads", 2);
+    const ros::Duration spin_period(parameters.get("spin_period", 0.1));
     std::vector<std::shared_ptr<void>> subscribers;
     for (mrp_labs::Parameters& of_topic : parameters.ofEachTopic())
     {
@@ -179,7 +179,7 @@ int main(int argc, char* argv[])
       ros::spin();
     }
   }
-  catch (const std::invalid_argument& error)
+  catch (const std::exception& error)
   {
     ROS_FATAL_STREAM(ros::this_node::getName() << ": " << error.what());
     return 1;

@@ -19,16 +19,16 @@ from mrp_labs.start import print_namespaces, wait
 class LabSubscriber:
     def __init__(self, parameters):
         self.type = parameters.choice("type", list(MESSAGE_TYPES))
-        self.topic = parameters.topic("topic", "great_topic")
-        self.other_topic = parameters.topic("other_topic", "")
+        self.topic = parameters.get("topic", "great_topic")
+        self.other_topic = parameters.get("other_topic", "")
         self.queue_size = parameters.number_or_none("queue_size", 10)
-        self.buff_size = parameters.number("buff_size", 65536, least=1)  # bytes
-        self.callback_duration = parameters.seconds("callback_duration", 0)
-        self.wait_for_publishers = parameters.number("wait_for_publishers", 0)
-        self.delay = parameters.seconds("delay", 0)  # seconds from then on before it subscribes
-        self.show_thread = parameters.flag("show_thread", False)
-        self.show_namespaces = parameters.flag("show_namespaces", False)
-        self.shown_type = self.type + " " if parameters.flag("show_type", False) else ""
+        self.buff_size = parameters.get("buff_size", 65536)  # bytes
+        self.callback_duration = parameters.get("callback_duration", 0.0)
+        self.wait_for_publishers = parameters.get("wait_for_publishers", 0)
+        self.delay = parameters.get("delay", 0.0)  # seconds from then on before it subscribes
+        self.show_thread = parameters.get("show_thread", False)
+        self.show_namespaces = parameters.get("show_namespaces", False)
+        self.shown_type = self.type + " " if parameters.get("show_type", False) else ""
         parameters.no_others()
 
     def start(self):

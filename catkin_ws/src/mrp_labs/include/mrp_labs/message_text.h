@@ -98,7 +98,7 @@ Number toNumber(const std::string& text)
   }
   if (text.empty() || end != text.c_str() + text.size())
   {
-    throw std::invalid_argument(text);
+    throw std::invalid_argument("expected the text of a number, found " + text);
   }
   return number;
 }
@@ -127,7 +127,7 @@ void fromWords(const std::string& text, Values&... values)
   (stream >> ... >> values);
   if (!stream || !(stream >> std::ws).eof())
   {
-    throw std::invalid_argument(text);
+    throw std::invalid_argument("expected the text of a message, found " + text);
   }
 }
 
