@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The measured node in C++: a publisher, a subscriber, or both in one process. Arguments:
+// The measured node in C++: a publisher, a subscriber, or both in one process. Its queues are
+// unlimited, so nothing is lost. Arguments:
 //   publish=N     publishes as soon as N subscribers are there
 //   subscribe=1   subscribes
 //   only_small=1  has the topic of 8 bytes alone
-//   queue=10      both queues; 0: unlimited
 //   shared=1      publishes shared pointers: within the process there is no copy
 //   direct=1      calls back in the receiving thread
 //   no_delay=1    asks the publisher for TCP_NODELAY

@@ -1,11 +1,10 @@
 #!/usr/bin/env python
 # SPDX-License-Identifier: BSD-3-Clause
-"""The measured node in Python: a publisher or a subscriber. Arguments:
+"""The measured node in Python: a publisher or a subscriber. Its queues are unlimited. Arguments:
 
 publish=N     publishes as soon as N subscribers are there
 subscribe=1   subscribes
 only_small=1  has the topic of 8 bytes alone
-queue=10      both queues; 0: unlimited
 timer_slack=N what rospy's time.sleep(0) after each message may take longer; nanoseconds
 unqueued=1    publishes with queue_size=None: in the thread that calls publish
 no_delay=1    asks the publisher for TCP_NODELAY
@@ -44,7 +43,7 @@ class NodeSender:
     def __init__(self, options):
         self.serialised = options.get("serialised")
         self.batch_size = options.get("batch")
-        queue = None if options.get("unqueued") else options.get("queue", 10)
+        queue = None if options.get("unqueued") else 0
         self.batch = []
         self.small = rospy.Publisher("small", UInt64, queue_size=queue)
         self.publishers = [self.small]
@@ -86,7 +85,7 @@ class NodeReceiver:
     def __init__(self, options, answers):
         self.samples = Samples(answers)
         settings = {
-            "queue_size": options.get("queue", 10) or None,
+            "queue_size": None,
             "tcp_nodelay": bool(options.get("no_delay")),
             "buff_size": options.get("buff_size", 65536),
         }

@@ -45,7 +45,7 @@ private:
   {
     const boost::function<void(const boost::shared_ptr<Message const>&)> function = callback;
     ros::SubscribeOptions subscription;
-    subscription.init<Message>(topic, options_.number("queue", 10), function);
+    subscription.init<Message>(topic, 0, function);
     if (options_.number("direct", 0) != 0)
     {
       subscription.callback_queue = &direct_queue_;

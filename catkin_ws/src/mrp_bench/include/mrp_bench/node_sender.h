@@ -17,14 +17,13 @@ public:
   NodeSender(const Options& options, ros::NodeHandle nh)
       : shared_(options.number("shared", 0) != 0), batch_size_(options.number("batch", 0))
   {
-    const int queue_size = options.number("queue", 10);
-    small_ = nh.advertise<std_msgs::UInt64>("small", queue_size);
+    small_ = nh.advertise<std_msgs::UInt64>("small", 0);
     if (options.number("only_small", 0) != 0)
     {
       return;
     }
-    large_ = nh.advertise<Stamped>("large", queue_size);
-    batches_ = nh.advertise<Batch>("batches", queue_size);
+    large_ = nh.advertise<Stamped>("large", 0);
+    batches_ = nh.advertise<Batch>("batches", 0);
   }
 
   void waitForSubscribers(unsigned count)

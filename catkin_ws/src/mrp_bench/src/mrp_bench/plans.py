@@ -33,10 +33,9 @@ BURST_FAST = [
     "cpp_no_delay",
     "cpp_async",
     "cpp_to_4",
-    "cpp_queue_10",
     "py_batch",
 ]
-BURST_SLOW = ["py_cpp", "py_py", "py_timer_slack", "py_no_delay", "py_to_4", "py_queue_10"]
+BURST_SLOW = ["py_cpp", "py_py", "py_timer_slack", "py_no_delay", "py_to_4"]
 
 # A slice takes long enough that the kernel's buffers do not hold all of it.
 # (size in bytes, messages per second, how many); a rate of 0 is as fast as it goes.
@@ -48,11 +47,9 @@ QUICK = [
     *steps(PAIRS, (64 * kB, 500, 40), (4 * MB, 20, 5)),
     *steps(["cpp_shared", "cpp_nodelet"], (4 * MB, 20, 5)),
     *steps(["raw_cpp", "cpp_batch"], (8, 0, 50000)),
-    *steps(
-        ["raw_py", "cpp_cpp", "cpp_py", "cpp_shared", "cpp_nodelet", "py_unqueued"], (8, 0, 20000)
-    ),
-    *steps(["cpp_queue_10", "py_batch"], (8, 0, 20000)),
-    *steps(["py_cpp", "py_py", "py_queue_10"], (8, 0, 2000)),
+    *steps(["raw_py", "cpp_cpp", "cpp_py", "cpp_shared", "cpp_nodelet"], (8, 0, 20000)),
+    *steps(["py_unqueued", "py_batch"], (8, 0, 20000)),
+    *steps(["py_cpp", "py_py"], (8, 0, 2000)),
 ]
 
 FULL_ROUNDS = 6

@@ -34,21 +34,16 @@ def tree(pid):
     return pids
 
 
-def of_threads(pids, name):
-    """Return the texts of a file in /proc of all threads of these processes."""
-    texts = []
+def cpu(pids):
+    """Return the processor time that all threads of these processes have used, in seconds."""
+    nanoseconds = 0
     for pid in pids:
-        for path in pathlib.Path(f"/proc/{pid}/task").glob(f"*/{name}"):
+        for path in pathlib.Path(f"/proc/{pid}/task").glob("*/schedstat"):
             try:
-                texts.append(path.read_text())
+                nanoseconds += int(path.read_text().split()[0])
             except (FileNotFoundError, ProcessLookupError):
                 pass  # it has just ended
-    return texts
-
-
-def cpu(pids):
-    """Return the processor time that these processes have used so far, in seconds."""
-    return sum(int(text.split()[0]) / 1e9 for text in of_threads(pids, "schedstat"))
+    return nanoseconds / 1e9
 
 
 def megabytes(pid):

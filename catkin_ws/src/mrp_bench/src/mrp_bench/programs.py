@@ -8,14 +8,13 @@ import array
 import collections
 import os
 import queue
-import re
 import signal
 import subprocess
 import threading
 
 import roslib.packages
 
-from mrp_bench.processes import cpu, megabytes, of_threads, tree, with_parent
+from mrp_bench.processes import cpu, tree, with_parent
 
 PACKAGE = "mrp_bench"
 
@@ -28,11 +27,8 @@ Stream = collections.namedtuple("Stream", "size rate count")
 
 # sent: the stamps, in ns. received: of each receiver, stamps and times of arrival in turns.
 # sender_cpu: seconds of processor time. receiver_cpu: that of all receivers, or None if they are
-# in the sender's process. sender_switches: how often a thread of the sender waited for another, or
-# for the kernel.
-Measurement = collections.namedtuple(
-    "Measurement", "sent received sender_cpu receiver_cpu sender_switches"
-)
+# in the sender's process.
+Measurement = collections.namedtuple("Measurement", "sent received sender_cpu receiver_cpu")
 
 
 class ProgramError(Exception):
@@ -108,17 +104,6 @@ class Program:
         """Return the processor time that it has used so far, with its children, in seconds."""
         return cpu(tree(self._popen.pid))
 
-    def switches(self):
-        """Return how often its threads have waited so far, and those of its children."""
-        return sum(
-            int(re.search(r"^voluntary_ctxt_switches:\s*(\d+)", text, re.MULTILINE).group(1))
-            for text in of_threads(tree(self._popen.pid), "status")
-        )
-
-    def megabytes(self):
-        """Return the memory that it and its children use, see processes.megabytes()."""
-        return sum(megabytes(pid) for pid in tree(self._popen.pid))
-
     def ask_to_end(self):
         try:
             self._popen.stdin.close()
@@ -175,7 +160,6 @@ class Running:
         """Let the sender send a Stream, and return what became of it, as a Measurement."""
         self.signal(signal.SIGCONT)
         sender_cpu, receiver_cpu = self.sender.cpu(), _cpu(self.receivers)
-        switches = self.sender.switches()
         self.sender.tell(f"run {stream.size} {stream.rate} {stream.count}")
         sent = self.sender.answer("sent").tolist()
         self.sender.tell("end")
@@ -184,11 +168,8 @@ class Running:
         ]
         sender_cpu = self.sender.cpu() - sender_cpu
         receiver_cpu = _cpu(self.receivers) - receiver_cpu
-        switches = self.sender.switches() - switches
         self.signal(signal.SIGSTOP)
-        return Measurement(
-            sent, received, sender_cpu, receiver_cpu if self.receivers else None, switches
-        )
+        return Measurement(sent, received, sender_cpu, receiver_cpu if self.receivers else None)
 
     def _programs(self):
         return [*self.receivers, *filter(None, [self.sender])]

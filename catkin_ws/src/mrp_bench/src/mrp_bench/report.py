@@ -11,8 +11,7 @@ from mrp_bench import launches, machine, summary, tables
 _ABOUT_MESSAGES = (
     "A latency is the time from just before a message is published until its callback begins. "
     '"x" is the ratio to raw TCP in the same rounds, and in brackets its confidence interval of '
-    '95 %. CPU is in seconds per million messages; "waits" is how often a thread of the sender '
-    "waited for another one or for the kernel, per message."
+    "95 %. CPU is in seconds per million messages."
 )
 
 

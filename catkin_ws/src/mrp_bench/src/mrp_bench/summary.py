@@ -16,12 +16,11 @@ _WARM_UP = 0.1
 # latency_ratio, throughput_ratio: limit's name -> stats.Estimate, without those that were not
 #   measured for this Stream, and without itself
 # sender_cpu, receiver_cpu: seconds per million messages (None: see programs.Measurement)
-# sender_switches: how often a thread of the sender waited, per message
 # sent, lost, disordered: how many messages, of all receivers, in all rounds
 Row = collections.namedtuple(
     "Row",
     "way size rate rounds latency latency_ratio throughput throughput_ratio sender_cpu "
-    "receiver_cpu sender_switches sent lost disordered",
+    "receiver_cpu sent lost disordered",
 )
 
 
@@ -43,7 +42,6 @@ class _Round:
         seconds = (max(arrived) - sent[0]) / 1e9 if arrived else numpy.inf
         self.throughput = (self.sent - self.lost) / len(deliveries) / seconds
         self.sender_cpu = measurement["sender_cpu"] / len(sent) * 1e6
-        self.sender_switches = measurement["sender_switches"] / len(sent)
         cpu = measurement["receiver_cpu"]
         self.receiver_cpu = None if cpu is None else cpu / self.sent * 1e6
 
@@ -85,7 +83,6 @@ def _row(name, size, rate, rounds, limits):
             if limit != name
         },
         sender_cpu=float(numpy.median([round_.sender_cpu for round_ in rounds])),
-        sender_switches=float(numpy.median([round_.sender_switches for round_ in rounds])),
         receiver_cpu=None if None in receiver_cpus else float(numpy.median(receiver_cpus)),
         sent=sum(round_.sent for round_ in rounds),
         lost=sum(round_.lost for round_ in rounds),

@@ -89,7 +89,7 @@ def latency(content):
 def throughput(content):
     """Return a table for each size."""
     header = ["way", "per second", "x C++", "x Python", "lost", "order"]
-    header += ["CPU: sender", "receiver", "waits"]
+    header += ["CPU: sender", "receiver"]
     noisy = content["verdict"]
     return [
         Table(
@@ -101,7 +101,6 @@ def throughput(content):
                     NOISY if noisy else _thousands(row["throughput"]),
                     *(_ratio(row["throughput_ratio"].get(limit), noisy) for limit in LIMITS),
                     *_delivered(row, noisy),
-                    NOISY if noisy else f"{row['sender_switches']:.2f}",
                 ]
                 for row in rows
             ],

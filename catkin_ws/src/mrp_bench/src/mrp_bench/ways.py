@@ -25,23 +25,19 @@ class Way(typing.NamedTuple):
 CPP, PY = "bench_node", "bench_node.py"
 
 
-def _way(name, text, sender, receiver, publish=(), subscribe=(), receivers=1, queue=0):
-    """Return the Way of two nodes; publish, subscribe: arguments of the one and of the other.
-
-    queue: the size of both queues. It is unlimited, so that nothing is lost: a queue's size changes
-    nothing as long as the queue is empty.
-    """
+def _way(name, text, sender, receiver, publish=(), subscribe=(), receivers=1):
+    """Return the Way of two nodes; publish, subscribe: arguments of the one and of the other."""
     return Way(
         name,
         text,
-        (sender, f"publish={receivers}", f"queue={queue}", *publish),
-        (receiver, "subscribe=1", f"queue={queue}", *subscribe),
+        (sender, f"publish={receivers}", *publish),
+        (receiver, "subscribe=1", *subscribe),
         receivers,
     )
 
 
 def _one_process(name, text, *arguments):
-    return Way(name, text, (CPP, "publish=1", "subscribe=1", "queue=0", *arguments), None)
+    return Way(name, text, (CPP, "publish=1", "subscribe=1", *arguments), None)
 
 
 _ALL = [
@@ -65,7 +61,7 @@ _ALL = [
     Way(
         "cpp_nodelet",
         "C++: nodelets in one manager",
-        ("bench_nodelets", "publish=1", "subscribe=1", "queue=0", "shared=1"),
+        ("bench_nodelets", "publish=1", "subscribe=1", "shared=1"),
         None,
     ),
     _way("cpp_batch", "C++: 100 values in a message", CPP, CPP, ("batch=100",)),
@@ -85,8 +81,6 @@ _ALL = [
     _way("py_batch", "Python: 100 values in a message", PY, PY, ("batch=100",)),
     _way("cpp_to_4", "C++ to 4 subscribers in C++", CPP, CPP, receivers=4),
     _way("py_to_4", "Python to 4 subscribers in Python", PY, PY, receivers=4),
-    _way("cpp_queue_10", "C++, the tutorial's queues of 10", CPP, CPP, queue=10),
-    _way("py_queue_10", "Python, the tutorial's queues of 10", PY, PY, queue=10),
 ]
 WAYS = {way.name: way for way in _ALL}
 
