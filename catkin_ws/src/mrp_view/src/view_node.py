@@ -52,7 +52,6 @@ def options(arguments):
         default=2.0,
         help="subscribe once a topic has been stable for this long, in seconds",
     )
-    parser.add_argument("--graph-only", action="store_true", help="do not subscribe to any topic")
     parser.add_argument("--tutorial", default="", help="folder of the tutorial's pages")
     return parser.parse_args(arguments)
 
@@ -75,7 +74,6 @@ class ViewNode:
         self.name = own_name()
         self.loop = tornado.ioloop.IOLoop.current()
         self.listener = Listener(chosen.settle)
-        self.graph_only = chosen.graph_only
         page = pathlib.Path(roslib.packages.get_pkg_dir("mrp_view")) / "page"
         self.view = View(
             self.name,
@@ -128,7 +126,7 @@ class ViewNode:
             self.is_node = True
         if watcher.master == "ended":
             self.listener.end()
-        if watcher.master == "here" and not self.graph_only:
+        if watcher.master == "here":
             try:
                 self.listener.register_again(watcher.observation, watcher.proxy)
                 self.listener.follow(watcher.observation)

@@ -12,6 +12,11 @@ from mrp_testing.viewer import PUBLISHERS, SUBSCRIBERS, TOPIC, Client, PubSub, V
 from mrp_testing.waiting import DEADLINE, wait_until
 from std_msgs.msg import UInt32
 
+UPGRADE = {
+    **{"Connection": "Upgrade", "Upgrade": "websocket"},
+    **{"Sec-WebSocket-Version": "13", "Sec-WebSocket-Key": "dGhlIHNhbXBsZSBub25jZQ=="},
+}
+
 
 class TestView(unittest.TestCase):
     @classmethod
@@ -71,25 +76,34 @@ class TestView(unittest.TestCase):
         publisher.unregister()
 
     def test_only_its_own_page_gets_an_answer(self):
-        """Asks as another site's page in the same browser would: with its name or its origin."""
-        with Viewer("--name", "robot.local") as viewer:
-            host = viewer.address[len("http://") : -1]
-            self.assertEqual(answer(host, "/", Host=host)[0], 200)
-            self.assertEqual(answer(host, "/", Host="robot.local:80")[0], 200)
+        """Asks as another site's page in the same browser would: with its name or its origin.
+
+        Two names are allowed besides: one that was given, and that of Codespaces.
+        """
+        names = ["robot.local", "space-0.app.github.dev"]
+        with Viewer("--name", names[0], extra_env={"CODESPACE_NAME": "space"}) as viewer:
+            at = viewer.address[len("http://") : -1]
+            port = at.split(":")[1]
+            here = [at, f"localhost:{port}"]
+            others = ["evil.example", f"192.0.2.1:{port}"]
+            for host in (*names, *here):
+                self.assertEqual(answer(at, "/", Host=host)[0], 200, host)
+                for origin in (*names, *here, "localhost:1", *others):
+                    # Another page of this machine has another port.
+                    allowed = origin in (*names, *here) or (
+                        origin == "localhost:1" and host in names
+                    )
+                    code, _ = answer(at, "/socket", Host=host, Origin="http://" + origin, **UPGRADE)
+                    self.assertEqual(code, 101 if allowed else 403, (host, origin))
             for path in ("/", "/main.js", "/socket", "/tutorial/index.html", "/none"):
-                code, headers = answer(host, path, Host="evil.example")
-                self.assertEqual(code, 403, path)
-                self.assertNotIn("unsafe-inline", headers["Content-Security-Policy"])
-            upgrade = {
-                **{"Host": host, "Connection": "Upgrade", "Upgrade": "websocket"},
-                **{"Sec-WebSocket-Version": "13", "Sec-WebSocket-Key": "dGhlIHNhbXBsZSBub25jZQ=="},
-            }
-            self.assertEqual(answer(host, "/socket", **upgrade)[0], 403)
-            for origin in ("http://evil.example", "null", "http://localhost:1"):
-                self.assertEqual(answer(host, "/socket", Origin=origin, **upgrade)[0], 403, origin)
-            self.assertEqual(answer(host, "/socket", Origin="http://" + host, **upgrade)[0], 101)
-            self.assertNotEqual(answer(host, "/../package.xml", Host=host)[0], 200)
-            self.assertEqual(listening(int(host.split(":")[1])), {"0100007F"})
+                for host in others:
+                    code, headers = answer(at, path, Host=host, Origin="http://" + at, **UPGRADE)
+                    self.assertEqual(code, 403, (host, path))
+                    self.assertNotIn("unsafe-inline", headers["Content-Security-Policy"])
+            self.assertEqual(answer(at, "/socket", Host=at, **UPGRADE)[0], 403)
+            self.assertEqual(answer(at, "/socket", Host=at, Origin="null", **UPGRADE)[0], 403)
+            self.assertNotEqual(answer(at, "/../package.xml", Host=at)[0], 200)
+            self.assertEqual(listening(int(port)), {"0100007F"})
 
 
 def answer(host, path, **headers):
