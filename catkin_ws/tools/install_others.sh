@@ -9,7 +9,7 @@ cd "$(dirname "$0")/.."
 # Debian has no ruff, and another mypy and vulture on each platform. Its eslint cannot
 # read today's JavaScript. Its npm brings 350 packages, and cannot be installed beside the nodejs of
 # NodeSource.
-# lock.sh writes the files of exact versions and hashes.
+# lock_versions.sh writes the files of exact versions and hashes.
 wanted=$(cat tools/locked/{lint.txt,package-lock.json})
 [ "$(cat build/lint/installed 2> /dev/null)" != "$wanted" ] || exit 0
 /usr/bin/python3 -m venv build/lint

@@ -1,6 +1,6 @@
 #!/bin/bash
 # SPDX-License-Identifier: BSD-3-Clause
-# Usage: lock.sh
+# Usage: lock_versions.sh
 # Locks what comes from PyPI and npm, with everything that it brings along, to versions and hashes: writes
 # tools/locked/*.txt from the *.in beside them, and package-lock.json from package.json. Call it after you have
 # changed one of those.
