@@ -3,6 +3,7 @@
 
 import checks
 import pytest
+from mrp_testing.ports import listening
 from selenium.webdriver.common.keys import Keys
 
 WORDS = ["publisher", "namespace", "latch"]
@@ -61,3 +62,8 @@ def test_it_finds_an_error_text(browser, address):
 
 def test_it_finds_nothing_where_there_is_nothing(browser, address):
     assert search(browser, "xylophone") == []
+
+
+def test_the_server_listens_on_loopback_alone(addresses):
+    port = int(addresses["served"].rsplit(":")[-1].strip("/"))
+    assert listening(port) == {"0100007F"}
