@@ -1,13 +1,15 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Sources two workspaces with a package of the same name in one terminal."""
+"""Sources an install space without its sources, and two workspaces with a package of one name."""
 
+import shutil
 import subprocess
 
 import pytest
-from mrp_testing import scratch
+from mrp_testing import contract, scratch
+from mrp_testing.console import check_console
 
 # One worker of pytest builds for all of these tests.
-pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("two_workspaces")]
+pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("workspaces")]
 
 PACKAGE = "same_name"
 NAMES = ("first", "second")
@@ -52,3 +54,21 @@ def test_the_one_whose_setup_was_sourced_last_is_used(workspaces, order):
     package, prefixes = found.stdout.splitlines()
     assert package == str(workspaces / order[-1] / "src" / PACKAGE), found.stderr
     assert str(workspaces / order[-1]) in prefixes and str(workspaces / order[0]) not in prefixes
+
+
+@pytest.fixture
+def install(tmp_path):
+    """An install space of which neither the sources nor the build exist any more."""
+    scratch.make(tmp_path, "src/mrp")
+    scratch.catkin_make(tmp_path, "install", "-DCATKIN_ENABLE_TESTING=OFF")
+    for name in ("src", "build", "devel"):
+        shutil.rmtree(tmp_path / name)
+    return tmp_path / "install"
+
+
+def test_by_package_and_file(install):
+    env = scratch.environment()
+    port = env["ROS_MASTER_URI"].rsplit(":", 1)[1]
+    launch = ("roslaunch", "-p", port, contract.PACKAGE, contract.LAUNCH_FILE)
+    command = scratch.sourced(install / "setup.bash", *launch)
+    check_console(contract.GROUP, *command, env=env)
