@@ -9,10 +9,11 @@ import rospy
 from mrp_labs.parameters import Parameters
 from rosgraph_msgs.msg import Clock
 
+BEGIN = 1000  # the first time, in seconds
+
 
 class LabClock:
     def __init__(self, parameters):
-        self.begin = parameters.get("begin", 1000)  # the first time, in seconds
         self.factor = parameters.get("factor", 1)  # how much faster it goes
         self.period = parameters.get("period", 0.01)  # seconds between two messages
         self.jump = parameters.get("jump", 0)  # seconds: forward, then back, forward, ...
@@ -22,7 +23,7 @@ class LabClock:
     def run(self):
         publisher = rospy.Publisher("/clock", Clock, queue_size=10)
         rospy.loginfo(
-            f"{rospy.get_name()} publishes /clock from {self.begin} on, {self.factor} times as fast"
+            f"{rospy.get_name()} publishes /clock from {BEGIN} on, {self.factor} times as fast"
         )
         begin = time.monotonic()
         jumps = 0
@@ -32,7 +33,7 @@ class LabClock:
                 jumps += 1
                 direction = "forward" if jumps % 2 else "back"
                 rospy.loginfo(f"{rospy.get_name()} jumps {self.jump} s {direction}")
-            now = self.begin + elapsed * self.factor + self.jump * (jumps % 2)
+            now = BEGIN + elapsed * self.factor + self.jump * (jumps % 2)
             publisher.publish(Clock(rospy.Time.from_sec(now)))
             time.sleep(self.period)  # rospy.sleep would wait for the clock, which is this one
 

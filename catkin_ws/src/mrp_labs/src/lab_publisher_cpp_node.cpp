@@ -35,7 +35,6 @@ public:
         step_(parameters.get("step", 1)),
         values_(parameters.texts("values")),
         size_(parameters.get("size", 0)),
-        delay_(parameters.get("delay", 0.0)),
         wait_for_subscribers_(parameters.get("wait_for_subscribers", 0)),
         show_memory_(parameters.get("show_memory", false)),
         show_namespaces_(parameters.get("show_namespaces", false)),
@@ -58,7 +57,6 @@ public:
 
   void start()
   {
-    mrp_labs::wait(delay_);
     if (show_namespaces_)
     {
       mrp_labs::printNamespaces();
@@ -185,8 +183,7 @@ private:
   const int start_;
   const int step_;
   const std::vector<std::string> values_;
-  const int size_;      // bytes, to which a String is filled up
-  const double delay_;  // seconds before it advertises
+  const int size_;  // bytes, to which a String is filled up
   int wait_for_subscribers_;
   const bool show_memory_;
   const bool show_namespaces_;

@@ -14,7 +14,7 @@ import time
 import rospy
 from mrp_labs.message_text import MESSAGE_TYPES, from_text, pad_to
 from mrp_labs.parameters import Parameters
-from mrp_labs.start import print_namespaces, wait, work
+from mrp_labs.start import print_namespaces, work
 
 
 class LabPublisher:
@@ -35,7 +35,6 @@ class LabPublisher:
         self.step = parameters.get("step", 1)
         self.values = [str(value) for value in parameters.get("values", [])]
         self.size = parameters.get("size", 0)  # bytes, to which a String is filled up
-        self.delay = parameters.get("delay", 0.0)  # seconds before it advertises
         self.wait_for_subscribers = parameters.get("wait_for_subscribers", 0)
         self.show_memory = parameters.get("show_memory", False)
         self.show_namespaces = parameters.get("show_namespaces", False)
@@ -46,7 +45,6 @@ class LabPublisher:
         self.sent = 0
 
     def start(self):
-        wait(self.delay)
         if self.show_namespaces:
             print_namespaces()
 

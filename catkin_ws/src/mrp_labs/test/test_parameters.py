@@ -24,7 +24,7 @@ WRONG = (
     ({"values": 1}, "is 1, but must be a list"),
     ({"topics": ["one", "two"]}, "is .*, but must be a struct of topics"),
     ({"count": -1, "topics": {"one": {"count": 2}, "two": {}}}, f"is -1, but must be {WHOLE}"),
-    ({"qeue_size": 1}, "is not known, only ~burst ~count ~delay "),
+    ({"qeue_size": 1}, "is not known, only ~burst ~count ~first_burst "),
 )
 
 
@@ -61,7 +61,7 @@ class TestParameters(unittest.TestCase):
         self.check(
             "lab_subscriber_py_node.py", [({"buff_size": -1}, f"buff_size is -1, .* {WHOLE}")]
         )
-        known = "jmp is not known, only ~begin ~factor ~jump ~jump_every ~period"
+        known = "jmp is not known, only ~factor ~jump ~jump_every ~period"
         self.check("lab_clock_py_node.py", [({"jmp": 1}, known)])
 
 
