@@ -3,7 +3,6 @@
 // unlimited, so nothing is lost. Arguments:
 //   publish=N     publishes as soon as N subscribers are there
 //   subscribe=1   subscribes
-//   only_small=1  has the topic of 8 bytes alone
 //   shared=1      publishes shared pointers: within the process there is no copy
 //   direct=1      calls back in the receiving thread
 //   no_delay=1    asks the publisher for TCP_NODELAY

@@ -4,7 +4,6 @@
 
 publish=N     publishes as soon as N subscribers are there
 subscribe=1   subscribes
-only_small=1  has the topic of 8 bytes alone
 timer_slack=N what rospy's time.sleep(0) after each message may take longer; nanoseconds
 unqueued=1    publishes with queue_size=None: in the thread that calls publish
 no_delay=1    asks the publisher for TCP_NODELAY
@@ -46,15 +45,11 @@ class NodeSender:
         queue = None if options.get("unqueued") else 0
         self.batch = []
         self.small = rospy.Publisher("small", UInt64, queue_size=queue)
-        self.publishers = [self.small]
-        if options.get("only_small"):
-            return
         self.large = rospy.Publisher("large", Stamped, queue_size=queue)
         self.batches = rospy.Publisher("batches", Batch, queue_size=queue)
-        self.publishers += [self.large, self.batches]
 
     def wait_for_subscribers(self, count):
-        for publisher in self.publishers:
+        for publisher in (self.small, self.large, self.batches):
             while publisher.get_num_connections() < count and not rospy.is_shutdown():
                 time.sleep(0.01)
 
@@ -90,8 +85,6 @@ class NodeReceiver:
             "buff_size": options.get("buff_size", 65536),
         }
         self.small = rospy.Subscriber("small", UInt64, self.small_callback, **settings)
-        if options.get("only_small"):
-            return
         self.others = [
             rospy.Subscriber("large", Stamped, self.large_callback, **settings),
             rospy.Subscriber("batches", Batch, self.batch_callback, **settings),

@@ -162,7 +162,7 @@ def test_ros_spin_takes_a_core_while_its_node_ends(master):
     """mrp_bench's own spin() doesn't. A master that stands still keeps both from ending."""
     core = rosgraph.Master("/test_bench")
     with Process("rosrun", "mrp", "subscriber_cpp_node") as plain:
-        with Process("rosrun", "mrp_bench", "bench_node", "subscribe=1", "only_small=1") as calm:
+        with Process("rosrun", "mrp_bench", "bench_node", "subscribe=1") as calm:
             wait_until(
                 lambda: (
                     {"/great_topic", "/small"} <= {name for name, _ in core.getSystemState()[1]}

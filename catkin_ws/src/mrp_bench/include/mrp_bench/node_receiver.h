@@ -22,10 +22,6 @@ public:
   {
     small_ = subscribe<std_msgs::UInt64>(
         "small", [this](const auto& message) { samples_.add(message->data, now()); });
-    if (options.number("only_small", 0) != 0)
-    {
-      return;
-    }
     large_ = subscribe<Stamped>(
         "large", [this](const auto& message) { samples_.add(message->stamp, now()); });
     batches_ = subscribe<Batch>("batches",

@@ -18,10 +18,6 @@ public:
       : shared_(options.number("shared", 0) != 0), batch_size_(options.number("batch", 0))
   {
     small_ = nh.advertise<std_msgs::UInt64>("small", 0);
-    if (options.number("only_small", 0) != 0)
-    {
-      return;
-    }
     large_ = nh.advertise<Stamped>("large", 0);
     batches_ = nh.advertise<Batch>("batches", 0);
   }
@@ -30,7 +26,7 @@ public:
   {
     for (const ros::Publisher* publisher : {&small_, &large_, &batches_})
     {
-      while (ros::ok() && *publisher && publisher->getNumSubscribers() < count)
+      while (ros::ok() && publisher->getNumSubscribers() < count)
       {
         ros::WallDuration(0.01).sleep();
       }
