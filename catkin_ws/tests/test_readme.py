@@ -6,8 +6,8 @@ import re
 import signal
 import subprocess
 
-import places
 import pytest
+import try_on_bare_debian as bare
 import yaml
 from front_door import environment, make
 from mrp_testing import contract
@@ -34,8 +34,8 @@ def mask(line):
 
 def test_table_of_places_is_the_recording():
     """In each of them all tests passed, and none of them changed a package of the system."""
-    assert "\n".join(places.table()) in README
-    assert {(row["failed"], row["lines_in_dpkg_log"]) for row in places.rows()} == {("0", "0")}
+    assert "\n".join(bare.table()) in README
+    assert {(row["failed"], row["lines_in_dpkg_log"]) for row in bare.rows()} == {("0", "0")}
 
 
 def test_commands_are_targets_of_make():
