@@ -55,7 +55,10 @@ NEEDING_PACKAGES = {
     "build": "skipped: needs packages",
     "shell": "skipped: needs build",
 }
-TAKE_OUT = "delete its line from ~/.bashrc (grep -n setup ~/.bashrc) and open a new terminal"
+TAKE_OUT = (
+    "open a new terminal; if it's the same there, delete the line from ~/.bashrc"
+    " (grep -n setup ~/.bashrc)"
+)
 
 LINE = re.compile(r"(\[OK\]   |\[FAIL\] |\[--\]   )([^:]+): (.*)")
 FIX = "       fix: "

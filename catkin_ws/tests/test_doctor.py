@@ -510,6 +510,18 @@ def test_not_sourced(patient):
     assert report.code == 0
 
 
+def test_reader_has_sourced_an_mrp_of_their_own(patient):
+    own = patient.folder / "own_ws"
+    patient.write(own / "src/mrp/package.xml", "")
+    patient.write(own / "devel/setup.bash", "")
+    patient.env["CMAKE_PREFIX_PATH"] = str(own / "devel")
+    patient.env["ROS_PACKAGE_PATH"] = str(own / "src")
+    report = patient.examine()
+    text = f"rosrun and roslaunch take the mrp in {own}/src; make takes the tutorial's"
+    assert report.checks["shell"] == Check("OK", text, [])
+    assert report.code == 0
+
+
 # The script as a whole
 
 

@@ -108,7 +108,6 @@ def check_installation(machine):
     """
     mine = ros_folder(machine)
     distro = os.path.basename(mine) if mine else "Debian"
-    copies = ("mrp/package.xml", "*/mrp/package.xml", "share/mrp")  # as sources, as built
     wrong = []
     if (machine.env.get("ROS_DISTRO") or distro) != distro:
         wrong.append(f"ROS_DISTRO={machine.env['ROS_DISTRO']}")
@@ -120,10 +119,13 @@ def check_installation(machine):
                 wrong.append(f"{path} in {name}, which belongs to another ROS")
             elif name != "PYTHONPATH" and not os.path.isdir(path):
                 wrong.append(f"{path} in {name}, which doesn't exist")
-            elif any(glob.glob(os.path.join(glob.escape(path), mrp)) for mrp in copies):
+            elif has_mrp(path) and any(sourced(machine)):
                 wrong.append(f"{path} in {name}, which has another mrp")
     if wrong:
-        fix = "delete its line from ~/.bashrc (grep -n setup ~/.bashrc) and open a new terminal"
+        fix = (
+            "open a new terminal; if it's the same there, delete the line from ~/.bashrc"
+            " (grep -n setup ~/.bashrc)"
+        )
         return fail(f"this shell to know one ROS, {distro}, and one mrp", "; ".join(wrong), fix)
     debian = sorted(installed(machine, ["ros-environment", "python3-rospy"])[0])
     if mine and debian:
@@ -268,14 +270,14 @@ def check_shell(machine):
     """The workspace is sourced in this shell, and its packages come first.
 
     Not sourced at all is no failure: make sources it by itself, and who is told of a failure in
-    every new terminal soon reads none. But rosrun and roslaunch need it, so the line says how.
+    every new terminal soon reads none. But rosrun and roslaunch need it, so the line says how. Who
+    follows the tutorial sources a workspace of their own, which has their mrp.
     Half sourced is a failure: a line after it in ~/.bashrc, say, has set one of the two anew.
     """
     devel, src = machine.workspace + "/devel", machine.workspace + "/src"
     fix = "source " + shlex.quote(os.path.join(devel, "setup.bash"))
-    has_devel = devel in map(os.path.realpath, folders(machine.env, "CMAKE_PREFIX_PATH"))
+    has_devel, has_src = sourced(machine)
     paths = list(map(os.path.realpath, folders(machine.env, "ROS_PACKAGE_PATH")))
-    has_src = src in paths
     if has_devel and has_src:
         later = [path for path in paths[: paths.index(src)] if packages(path) & packages(src)]
         if later:
@@ -286,6 +288,8 @@ def check_shell(machine):
             return fail(expected, "before it " + ", ".join(later), fix)
         return ok("devel/setup.bash is sourced")
     if not has_devel and not has_src:
+        for path in filter(has_mrp, paths):
+            return ok(f"rosrun and roslaunch take the mrp in {path}; make takes the tutorial's")
         return note("not sourced: make doesn't need it, but rosrun and roslaunch do", fix)
     expected = f"{devel} in CMAKE_PREFIX_PATH and {src} in ROS_PACKAGE_PATH"
     return fail(expected, "only the " + ("first" if has_devel else "second"), fix)
@@ -309,6 +313,21 @@ CHECKS = [
     ("log files", check_logs, None, "logs-large"),
     ("shell", check_shell, "build", "package-not-found"),
 ]
+
+
+def sourced(machine):
+    """Return whether this workspace is in CMAKE_PREFIX_PATH, and in ROS_PACKAGE_PATH."""
+    spaces = {"CMAKE_PREFIX_PATH": "devel", "ROS_PACKAGE_PATH": "src"}
+    return [
+        os.path.join(machine.workspace, space) in map(os.path.realpath, folders(machine.env, name))
+        for name, space in spaces.items()
+    ]
+
+
+def has_mrp(path):
+    """Return whether a folder has a package mrp, as sources or as built."""
+    copies = ("mrp/package.xml", "*/mrp/package.xml", "share/mrp")
+    return any(glob.glob(os.path.join(glob.escape(path), copy)) for copy in copies)
 
 
 def packages(path):
