@@ -106,14 +106,15 @@ log=$(mktemp)
 trap 'rm -f "$log"' EXIT
 # apt-get keeps from its children the descriptor on which it says its progress, and sudo keeps all but
 # the first three from apt-get: so it has one more, made here. Another apt-get, such as Ubuntu's own
-# update, may hold the lock for minutes.
+# update, may hold the lock for minutes. Without an input, it leaves the lines that follow in a paste.
 apt_get() {
   "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive LC_ALL=C \
-    bash -c 'exec apt-get "$@" 3>&1' apt-get -o DPkg::Lock::Timeout=600 "$@"
+    bash -c 'exec apt-get "$@" 3>&1' apt-get -o DPkg::Lock::Timeout=600 "$@" < /dev/null
 }
 
 # sudo asks for the password here, where nothing hides its question.
-SUDO_PROMPT="[sudo] password for %u, to install Debian packages${purposes:+ $purposes}: " "${as_root[@]}" true
+SUDO_PROMPT="[sudo] password for %p, to install Debian packages${purposes:+ $purposes}: " \
+  "${as_root[@]}" true < /dev/null
 [ ! -t 1 ] || echo -n "Fetching the lists of Debian's packages"
 apt_get update -qq > "$log" 2>&1 || {
   echo "warning: apt-get update failed; going on with the package lists as they are:" >&2
@@ -157,9 +158,9 @@ progress() {
 }
 install() {
   if [ -t 1 ]; then
-    apt_get -y -o APT::Status-Fd=3 -o Dpkg::Use-Pty=0 "$@" 2>&1 < /dev/null | tee "$log" | progress
+    apt_get -y -o APT::Status-Fd=3 -o Dpkg::Use-Pty=0 "$@" 2>&1 | tee "$log" | progress
   else
-    apt_get -y -o Dpkg::Use-Pty=0 "$@" > "$log" 2>&1 < /dev/null
+    apt_get -y -o Dpkg::Use-Pty=0 "$@" > "$log" 2>&1
   fi
 }
 install "${packages[@]}" || {
