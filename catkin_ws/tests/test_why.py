@@ -325,6 +325,23 @@ def test_a_clear_answer_stands_alone(index):
     assert found == CLEAR
 
 
+def test_errors_come_before_what_is_harmless(index):
+    text = """\
+CMake Deprecation Warning at CMakeLists.txt:4 (cmake_minimum_required):
+  Compatibility with CMake < 3.10 will be removed from a future version of
+  CMake.
+
+  Update the VERSION argument <min> value.  Or, use the <min>...<max> syntax
+  to tell CMake that the project requires at least <min> but has been updated
+  to work with policies introduced by <max> or earlier.
+
+-- Using CATKIN_TEST_RESULTS_DIR: /home/you/build/test_results
+-- nosetests not found, Python tests can not be run (try installing package 'python3-nose')
+/usr/bin/ld: a.cpp.o: in function `main':
+a.cpp:(.text+0x64): undefined reference to `ros::init(int&, char**, std::string const&, int)'"""
+    assert names(index, text) == ["undefined-reference", "nosetests-not-found", "cmake-too-old"]
+
+
 def test_make_why_answers_a_text():
     text = "RLException: [a.launch] requires the '$(arg x)' arg to be \"set\""
     done = make("why", f"TEXT={text}")

@@ -160,12 +160,14 @@ _EVERYWHERE = re.compile(
     r"|process\[.*\]: started with pid .*|\[\S+\] killing on exit|done"
     r"|all processes on machine have died, roslaunch will exit"
     r"|(?:\.\.\. )?shutting down processing monitor(?:\.\.\.| complete)"
-    r"|-- (?:\+\+\+|==>) .*|\S+:\d+ \(\w+\)|.*: In (?:\w+ )*(?:function|constructor) .*:"
+    r"|-- (?:\+\+\+|==>|Using \w+:) .*|\S+:\d+ \(\w+\)"
+    r"|.*: [Ii]n (?:\w+ )*(?:function|constructor) .*:"
 )
-# What begins a warning; indented lines below belong to it. That the standard of C++ is too old is a
-# cause, though g++ only warns.
+# What begins a warning; empty and indented lines below belong to it. That the standard of C++ is
+# too old is a cause, though g++ only warns.
 _WARNING = re.compile(
-    r"\b(?:warning:(?!.* only available with )|\w*Warning\b|WARN(?:ING)?\b|It's recommended)"
+    r"\b(?:warning:(?!.* only available with )|\w*Warning\b|WARN(?:ING)?\b|It's recommended"
+    r"|nosetests not found)"
 )
 
 
@@ -388,7 +390,7 @@ def _passages(lines):
     """Yield each line of a text, and lines that follow each other."""
     kept, warns, lines = [], False, list(lines)
     for line in lines:
-        warns = bool(_WARNING.search(line)) or (warns and line.startswith(" "))
+        warns = bool(_WARNING.search(line)) or (warns and line[:1].strip() == "")
         if line.strip() and not _EVERYWHERE.fullmatch(line.strip()):
             kept.append((line.strip(), warns))
     kept = kept or [(line.strip(), False) for line in lines[-1:]]
