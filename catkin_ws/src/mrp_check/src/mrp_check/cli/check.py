@@ -262,7 +262,7 @@ def _with_name(file, name):
 def run_package(options):
     """Check a package, write its reports, and return its verdict. Raises CannotCheck."""
     progress = terminal.Progress(sys.stderr, time.monotonic() if options.timing else None)
-    contract = None
+    contract, advice = None, ""
     try:
         contract = None if options.any else spec.read(spec.find(options.spec), REQUIREMENTS)
         with scratch_folder() as scratch, contextlib.ExitStack() as stack:
@@ -273,10 +273,9 @@ def run_package(options):
                 print(f"check: builds {one.name} with {package.name}.", file=sys.stderr)
             say_how_apart()
             if contract and not _names_a_node(package, contract):
-                print(
+                advice = (
                     f"check: {package.name} has none of the contract's nodes. If it's a package of"
-                    " your own, add --any (with make: ANY=1).",
-                    file=sys.stderr,
+                    " your own, add --any (with make: ANY=1)."
                 )
             kept = None
             if scratch not in package.root.parents:  # what was unpacked is not there again
@@ -307,6 +306,8 @@ def run_package(options):
         print(github.text(report))
     if report.reason:
         print(f"check: {report.reason}", file=sys.stderr)
+    if advice:  # last: above the report nobody would see it
+        print(advice, file=sys.stderr)
     return report.verdict
 
 
