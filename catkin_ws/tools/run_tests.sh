@@ -6,12 +6,15 @@
 # the pages name must have passed. The workspace is built, and sourced.
 #
 # A rostest waits more than it works, and each has a master of its own: so several run at once, beside
-# pytest. ROS's tools report success over failures: so the result files decide.
+# pytest; fewer of the slow ones, which have all the time that pytest takes. ROS's tools report success
+# over failures: so the result files decide.
 set -uo pipefail
 cd "$(dirname "$0")/.." || exit 1
 level=$1
 results=build/test_results
 processors=$(nproc)
+at_once=$((2 * processors))
+[ "$level" = quick ] || at_once=$(((processors + 1) / 2))
 
 # ctest's names of them, with "|" between. That of a file with an argument has no folder.
 rostests=$(sed -nE \
@@ -29,7 +32,7 @@ if [ -n "$rostests" ]; then
   diff <("${chosen[@]}" --show-only | sed -n 's/^ *Test .*: //p' | sort) \
     <(tr '|' '\n' <<< "$rostests" | sort) || status=1
   # What a shell starts beside itself is deaf to Ctrl-C, and nodes would inherit that.
-  (trap - INT; exec "${chosen[@]}" --parallel $((2 * processors)) --output-on-failure) \
+  (trap - INT; exec "${chosen[@]}" --parallel "$at_once" --output-on-failure) \
     > build/rostests.log 2>&1 &
 fi
 /usr/bin/python3 -m pytest -n $((processors + 1)) --dist loadgroup -m "$level" \
