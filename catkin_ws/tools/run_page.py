@@ -306,7 +306,8 @@ class Terminal:
         Returns all lines.
         """
         self._begin(command)
-        pattern = re.compile(f"[^\r\n]*(?:{pattern})[^\r\n]*\r\n")
+        # Only from the start of a line: from each place in it, looking ahead takes seconds.
+        pattern = re.compile(f"(?<![^\r\n])[^\r\n]*(?:{pattern})[^\r\n]*\r\n")
         end = time.monotonic() + PRINTS_SECONDS
         if self._expect([pattern, _PROMPT], PRINTS_SECONDS) == 1:
             raise StepError(f"it ended before it printed {pattern.pattern}:\n{self._text()}")
