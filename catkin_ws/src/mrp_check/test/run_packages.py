@@ -38,6 +38,7 @@ _LAUNCH = """\
   </node>
   <node pkg="some_pkg" type="hurries.py" name="hurries"/>
   <node pkg="some_pkg" type="fast" name="fast"/>
+  <node pkg="some_pkg" type="locks.py" name="locks"/>
 </launch>
 """
 _LAUNCH_OF_ASKS = """\
@@ -213,10 +214,10 @@ rate = rospy.Rate(rospy.get_param("rate"))
 while not rospy.is_shutdown():
     rate.sleep()
 """,
-    # No launch file starts it: so all run together once more. It holds the lock that rospy holds
-    # while it asks the master: if Ctrl-C comes then, rospy's own handler waits for it for ever.
-    "unlaunched.py": """\
-rospy.init_node("unlaunched")
+    # It holds the lock that rospy holds while it asks the master: if Ctrl-C comes then, rospy's own
+    # handler waits for it for ever.
+    "locks.py": """\
+rospy.init_node("locks")
 with rospy.get_master().target._lock:
     rospy.spin()
 """,
