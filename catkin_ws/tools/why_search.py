@@ -160,7 +160,7 @@ _EVERYWHERE = re.compile(
     r"|process\[.*\]: started with pid .*|\[\S+\] killing on exit|done"
     r"|all processes on machine have died, roslaunch will exit"
     r"|(?:\.\.\. )?shutting down processing monitor(?:\.\.\.| complete)"
-    r"|-- (?:\+\+\+|==>|Using \w+:) .*|\S+:\d+ \(\w+\)"
+    r"|[\w-]+@[\w.-]+:\S*[$#] .*|-- (?:\+\+\+|==>|Using \w+:) .*|\S+:\d+ \(\w+\)"
     r"|.*: [Ii]n (?:\w+ )*(?:function|constructor) .*:"
 )
 # What begins a warning; empty and indented lines below belong to it. That the standard of C++ is
