@@ -63,7 +63,8 @@ def test_a_package_without_the_contracts_nodes_may_need_no_contract(tmp_path):
     manifest = (WORKSPACE / "src" / "mrp" / "package.xml").read_text()
     (tmp_path / "package.xml").write_text(manifest.replace("<name>mrp<", "<name>laser_filter<"))
     other = run(tmp_path, "--only", "manifest")
-    assert "check: laser_filter has none of the contract's nodes. If it's a" in other.stderr
+    last = other.stderr.splitlines()[-1]
+    assert last.startswith("check: laser_filter has none of the contract's nodes. If it's a")
     assert "contract's nodes" not in run(WORKSPACE / "src" / "mrp", "--only", "manifest").stderr
 
 

@@ -307,6 +307,7 @@ def run_package(options):
     if report.reason:
         print(f"check: {report.reason}", file=sys.stderr)
     if advice:  # last: above the report nobody would see it
+        sys.stdout.flush()
         print(advice, file=sys.stderr)
     return report.verdict
 
