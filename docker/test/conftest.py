@@ -9,6 +9,9 @@ from containers import PREFIX, docker
 # Without an engine that is given to them, mrp_testing.guard refuses Docker.
 pytest_plugins = ("mrp_testing.guard",)
 
+# These files take longest: begun last, one would keep a worker busy after all others are done.
+FIRST = ("test_make", "test_several_hosts", "test_class")
+
 # They call make as a user does: not within make.
 for name in ("MAKEFLAGS", "MAKELEVEL", "MFLAGS"):
     os.environ.pop(name, None)
@@ -16,10 +19,11 @@ for name in ("MAKEFLAGS", "MAKELEVEL", "MFLAGS"):
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items):
-    """One worker takes a whole file, whose tests share containers; a fault has its own."""
+    """One worker takes a whole file, whose tests share containers; test_faults names its own."""
     for item in items:
         if item.path.stem != "test_faults":
             item.add_marker(pytest.mark.xdist_group(item.path.stem))
+    items.sort(key=lambda item: item.path.stem not in FIRST)
 
 
 def pytest_sessionstart():

@@ -69,17 +69,17 @@ def test_nodes_wait_for_a_healthy_master(compose, tmp_path):
         assert len(running.split()) == 1, "only the master"
 
 
-def test_stop_and_down_are_clean(compose):
-    with Composition(compose, "compose.yaml") as composition:
-        for subscriber in contract.SUBSCRIBERS:
-            composition.wait_until_received(subscriber, count=1)
-        names = {service: composition.name(service) for service in SERVICES}
-        composition.compose("stop")
-        codes = {service: inspect(name)["State"]["ExitCode"] for service, name in names.items()}
-        assert codes == dict.fromkeys(SERVICES, 0)
-        assert len(composition.existing()) == len(SERVICES) + 1
-        composition.compose("down")
-        assert composition.existing() == []
+def test_stop_and_down_are_clean(nodes):
+    """Ends the nodes of the tests above."""
+    for subscriber in contract.SUBSCRIBERS:
+        nodes.wait_until_received(subscriber, count=1)
+    names = {service: nodes.name(service) for service in SERVICES}
+    nodes.compose("stop")
+    codes = {service: inspect(name)["State"]["ExitCode"] for service, name in names.items()}
+    assert codes == dict.fromkeys(SERVICES, 0)
+    assert len(nodes.existing()) == len(SERVICES) + 1
+    nodes.compose("down")
+    assert nodes.existing() == []
 
 
 def test_two_robots_never_mix():

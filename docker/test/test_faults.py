@@ -4,6 +4,8 @@
 The page "In containers" says in words what is asserted here.
 """
 
+import contextlib
+
 import pytest
 from containers import (
     Composition,
@@ -21,12 +23,25 @@ CPP, PY = contract.SUBSCRIBERS
 SECONDS = 10  # that the network is cut
 
 
-@pytest.fixture
-def nodes():
-    """The four nodes, each of which has already received something."""
+@contextlib.contextmanager
+def started():
+    """Start the four nodes; yield them once each has received something."""
     with Composition(compose_commands()[0], "compose.yaml") as composition:
         for subscriber in contract.SUBSCRIBERS:
             composition.wait_until_received(subscriber)
+        yield composition
+
+
+@pytest.fixture
+def nodes():
+    with started() as composition:
+        yield composition
+
+
+@pytest.fixture(scope="module")
+def nodes_of_both():
+    """The nodes of both tests that cut the network."""
+    with started() as composition:
         yield composition
 
 
@@ -96,7 +111,9 @@ def flows_again(received, heard):
     )
 
 
-def test_cut_network_loses_values_only_where_and_while_it_is_cut(nodes):
+@pytest.mark.xdist_group("cut")
+def test_cut_network_loses_values_only_where_and_while_it_is_cut(nodes_of_both):
+    nodes = nodes_of_both
     for subscriber, other in ((CPP, PY), (PY, CPP)):
         before, of_other = counts(nodes, subscriber), counts(nodes, other)
         heard = cut(nodes, nodes.name(subscriber.name), other)
@@ -115,7 +132,9 @@ def test_cut_network_loses_values_only_where_and_while_it_is_cut(nodes):
             assert contract.first_fault(values) is None, f"{publisher.name}: {values}"
 
 
-def test_cut_network_loses_nothing_where_the_queue_has_no_bound(nodes, image):
+@pytest.mark.xdist_group("cut")
+def test_cut_network_loses_nothing_where_the_queue_has_no_bound(nodes_of_both, image):
+    nodes = nodes_of_both
     echo = ("rostopic", "echo", f"{contract.GROUP}/{contract.TOPIC}/data")
     options = (f"--network={nodes.project}_default", "--env=ROS_MASTER_URI=http://master:11311")
 
