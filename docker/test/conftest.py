@@ -19,9 +19,10 @@ for name in ("MAKEFLAGS", "MAKELEVEL", "MFLAGS"):
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items):
-    """One worker takes a whole file, whose tests share containers; test_faults names its own."""
+    """One worker takes a whole file, whose tests share containers. A fault has its own, and so has
+    a test of test_run that does not look at the container that is running."""
     for item in items:
-        if item.path.stem != "test_faults":
+        if item.path.stem not in ("test_faults", "test_run") or "running" in item.fixturenames:
             item.add_marker(pytest.mark.xdist_group(item.path.stem))
     items.sort(key=lambda item: item.path.stem not in FIRST)
 
