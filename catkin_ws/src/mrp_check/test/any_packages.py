@@ -87,6 +87,30 @@ from std_srvs.srv import SetBool
 def ask(wanted):
     print(rospy.ServiceProxy("switch", SetBool)(wanted == "1"))
 """
+# rostest runs it, and it ends by itself.
+_TEST = """\
+#!/usr/bin/env python3
+import unittest
+
+import rospy
+
+
+class TestTalker(unittest.TestCase):
+    def test_time(self):
+        rospy.init_node("test_talker")
+        self.assertEqual(rospy.get_param("/nowhere", 1), 2)
+
+
+if __name__ == "__main__":
+    unittest.main()
+"""
+_WAITER = """\
+#!/usr/bin/env python3
+import rospy
+
+rospy.init_node("waits")
+rospy.wait_for_service("nobodys")
+"""
 _CMAKE = """\
 cmake_minimum_required(VERSION 3.10)
 project(some_pkg)
@@ -123,6 +147,7 @@ def correct(folder):
         "msg__Num_DOT_msg": "int64 num\n",
         "scripts__talker_DOT_py": _TALKER.replace("env python3", "python"),
         "scripts__listener_DOT_py": _LISTENER.split("\n", 1)[1],
+        "scripts__test_talker_DOT_py": _TEST,
         "scripts__talker_DOT_py_DOT_save_DOT_1": "print 'an old one'\n",
         "src__talker_DOT_cpp": _CPP_TALKER,
         "src__listener_DOT_cpp": _CPP_LISTENER.replace("return 0", "return 3"),
@@ -185,6 +210,7 @@ def faulty(folder):
             "            time.sleep(1)\n        except KeyboardInterrupt:\n            pass",
         ),
         "scripts__client_DOT_py": _CLIENT,
+        "scripts__waits_DOT_py": _WAITER,
         "scripts__asker_DOT_py": _ASKER,
         "scripts__indexed_DOT_py": _INDEXED,
         "scripts__asking_DOT_py": _ASKING,

@@ -58,6 +58,12 @@ class Room(classroom.Classroom):
         return {one.name: one.report.get("reason") for one in self.check()}[name]
 
 
+def test_a_package_is_no_class(tmp_path):
+    (tmp_path / "package.xml").touch()
+    with pytest.raises(errors.PackageError, match="is a package: expected the folder above it"):
+        Room(tmp_path)
+
+
 def test_no_submission(tmp_path):
     (tmp_path / ".DS_Store").touch()
     with pytest.raises(errors.PackageError, match="one archive, for each student"):

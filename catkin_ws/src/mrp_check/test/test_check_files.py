@@ -141,6 +141,15 @@ def test_a_dependency_of_a_launch_file_or_of_python_2_is_named(files, name, tmp_
     assert len(said) == bool(name) and all(f"doesn't name {name}" in text for text in said)
 
 
+def test_what_a_launch_file_and_a_source_use_is_one_finding(tmp_path):
+    launch = '<launch><node pkg="turtlesim" name="a" type="b"/></launch>'
+    files = {"launch__a_DOT_launch": launch, "src__b_DOT_py": "import tf\n"}
+    package = check_rules.make(tmp_path, **files)
+    without = dataclasses.replace(check_rules.PUB_SUB, is_contract=False)
+    (said,) = [one.message for one in file_findings(dependencies, package, spec=without)]
+    assert "tf (used in" in said and "turtlesim (used in" in said
+
+
 def test_misspelt_dependency_is_its_own_lines_fault(tmp_path):
     text_ = MANIFEST.replace("<depend>rospy", "<depend>rosppy")
     (finding,) = dependency_findings(tmp_path, text_)

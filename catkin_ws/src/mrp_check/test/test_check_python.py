@@ -366,7 +366,9 @@ def test_only_a_client_of_a_service_needs_no_init_node(call, found, tmp_path):
     spec = executables.spec(package, model)
     (one,) = source_node.nodes(package, spec, model, None, known)
     case = types.SimpleNamespace(coded=[one])
-    assert [f.id for f in check_rules.node_start.RULE.findings(case)] == [id_ for id_, _ in found]
+    said = [*check_rules.node_start.RULE.findings(case)]
+    assert [f.id for f in said] == [id_ for id_, _ in found]
+    assert all('init_node("odd")' in f.fix for f in said)  # a node's name has no dot
 
 
 @pytest.mark.parametrize(("between", "misses"), [(6, True), (20, False)])

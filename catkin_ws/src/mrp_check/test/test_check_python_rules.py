@@ -5,7 +5,7 @@ import check_rules
 import pytest
 from check_rules import told
 from mrp_check.code import python_read
-from mrp_check.contract.finding import NOTE
+from mrp_check.contract.finding import CERTAIN, NOTE
 from mrp_check.package.cmake import parsed
 from mrp_check.rules.code import (
     arguments,
@@ -56,11 +56,17 @@ WORK = "def work(goal):\n    for i in range(9):\n        "
         (goals, "py", "s = actionlib.SimpleActionServer('a', A, work)", [4]),
         (goals, "py", "s = actionlib.SimpleActionServer('a', A, work, False)\ns.start()", []),
         (goals, "py", f"{SERVER.replace(', work', '')}", []),
+        (goals, "py", SERVER.partition("\n")[0], [4]),
     ],
-    ids=range(25),
+    ids=range(26),
 )
 def test_what_beginners_are_used_to(rule, ending, lines, found, tmp_path):
     assert lines_of(rule, case(tmp_path, ending, lines)) == found
+
+
+def test_a_server_that_nothing_starts_is_an_error(tmp_path):
+    (never,) = goals.RULE.ask(case(tmp_path, "py", SERVER.partition("\n")[0]))
+    assert never.certainty == CERTAIN
 
 
 def test_a_first_line_without_its_slash(tmp_path):

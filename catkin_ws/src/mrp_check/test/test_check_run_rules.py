@@ -10,7 +10,7 @@ from mrp_check.build import configuring
 from mrp_check.code.facts import Facts
 from mrp_check.confined.launch_dump import Started
 from mrp_check.confined.places import Kind, Place
-from mrp_check.confined.seen import LaunchResult, Message, Registration, Seen
+from mrp_check.confined.seen import LaunchResult, Log, Message, Registration, Seen
 from mrp_check.contract.finding import ERROR, HABIT, HINT, NOTE, WARNING, Finding
 from mrp_check.package.cmake import Model
 from mrp_check.rules.code import same_name
@@ -92,8 +92,9 @@ PACKAGE = types.SimpleNamespace(name="some_pkg", text={"src/b.cpp": "talk /say"}
         ("/other", ["hear", "say"], ["src/b.cpp"], []),  # it may subscribe to what is unheard
         ("/says", ["hear", "say"], [], [ERROR]),
         ("/says", ["hear"], ["one node does both"], [NOTE]),
+        ("/robot/say", ["hear", "say"], [], [ERROR]),
     ],
-    ids=range(8),
+    ids=range(9),
 )
 def test_a_topic_of_another_name(topic, names, down, found):
     seen = launched("", topic, *names)
@@ -107,7 +108,9 @@ def test_a_topic_of_another_name(topic, names, down, found):
         facts=Facts(sources={"b": down}),
         package=PACKAGE,
     )
-    assert [one.severity for one in check_rules.of(meeting.RULE, known)] == found
+    said = [*check_rules.of(meeting.RULE, known)]
+    assert [one.severity for one in said] == found
+    assert [one for one in said if "first slash" in one.fix] == said * (topic == "/robot/say")
 
 
 @pytest.mark.parametrize(
@@ -187,12 +190,41 @@ def test_a_launch_file_gives_a_node_no_arguments(arguments, certainty, file):
     package = types.SimpleNamespace(name="some_pkg", lines=lambda file: [])
     node = types.SimpleNamespace(name="a", direct=direct, not_up=[said], package=package)
     started = Started("some_pkg", "a", "a", "/", "", [], [], arguments or "", "", "a.launch", 2)
-    launches = [] if arguments is None else [types.SimpleNamespace(nodes=[started])]
+    launches = [] if arguments is None else [types.SimpleNamespace(nodes=[started], params={})]
     case = types.SimpleNamespace(
         nodes={"a": node}, package=package, launches=launches, built=True, observed=Observed()
     )
     starts.weigh_start(case, node, said)
     assert (said.certainty, said.file) == (certainty, file)
+
+
+@pytest.mark.parametrize(
+    ("port", "certainty"), [("/dev/ttyUSB0", HINT), ("/tmp/ttyUSB0", "")], ids=range(2)
+)
+def test_a_device_that_is_not_here_is_waited_for(port, certainty):
+    said = Finding("starts", "a ends.", "src/a.cpp", 1, node="a")
+    lines = [(0, "out", "open: No such file or directory")]
+    direct = types.SimpleNamespace(lines=lines, code=255)
+    package = types.SimpleNamespace(name="some_pkg")
+    places = types.SimpleNamespace(facts=Facts(), sources=lambda node: [])
+    node = types.SimpleNamespace(name="a", direct=direct, places=places)
+    launches = [types.SimpleNamespace(nodes=[], params={"/a/port": port})]
+    case = types.SimpleNamespace(
+        nodes={"a": node}, package=package, launches=launches, built=True, observed=Observed()
+    )
+    starts.weigh_start(case, node, said)
+    assert (said.certainty, "waits for a device" in said.message) == (certainty, bool(certainty))
+
+
+@pytest.mark.parametrize(
+    ("asked_for", "given", "is_it"),
+    [("~limit", "/limit", True), ("/limit", "/near/limit", True), ("~limit", "/limits", False)],
+)
+def test_a_parameter_that_is_set_under_another_name(asked_for, given, is_it):
+    known = types.SimpleNamespace(launches=[types.SimpleNamespace(params={given: 3})])
+    finding = Finding("starts", "It ends.", seen=f"KeyError: '{asked_for}'")
+    starts.add_name_that_is_set(known, finding)
+    assert (f"sets {given}," in finding.message, "inside <node>" in finding.fix) == (is_it, is_it)
 
 
 def test_a_target_that_is_waited_for_and_does_not_exist_is_found_where_cmake_stops(tmp_path):
@@ -266,7 +298,8 @@ def test_what_a_node_raises_under_roslaunch(line, kind, time, other, found, tmp_
     )
     died = "[odd-1] process has died [pid 7, exit code 1, cmd odd.py __name:=odd]."
     lines = [(time, "err", kind), (4, "out", died)]
-    seen = LaunchResult(ending="enough", asked=5, lines=lines, seen=Seen())
+    logged = Log("/odd", "ERROR", "No service.", "", 0, 3)
+    seen = LaunchResult(ending="enough", asked=5, lines=lines, seen=Seen(logs=[logged]))
     launches = [types.SimpleNamespace(nodes={"/odd": "odd"}, file="", seen=seen)]
     named = {"src/odd.py": "odd", "src/b.py": other}
     starts = [Place(file, 1, Kind.INIT, name) for file, name in named.items()]
@@ -277,7 +310,8 @@ def test_what_a_node_raises_under_roslaunch(line, kind, time, other, found, tmp_
         nodes={"odd": types.SimpleNamespace(not_up=[])},
         observed=types.SimpleNamespace(launches=launches),
     )
-    assert [
-        one.severity
-        for one in check_rules.of(exceptions.RULE, known, exceptions.under_launch_files)
-    ] == found
+    rule = exceptions.RULE, known, exceptions.under_launch_files
+    said = [*check_rules.of(*rule)]
+    assert [one.severity for one in said] == found
+    ended = [one.message for one in said if "ends together" in one.message]
+    assert all(text.endswith("Its last error: No service.") for text in ended)

@@ -46,6 +46,15 @@ def test_a_habit_never_becomes_an_error(rule, has_contract):
     assert {one.severity for one in habits} == {"warning"}
 
 
+def test_what_follows_from_a_warning_of_the_same_rule_counts():
+    """It was called its own consequence: the exit code was 1, next to "Errors: 0"."""
+    module = Finding("python-names", "There's no module.", "a.py", 1, READ)
+    name = Finding("python-names", "There's no name.", "a.py", 9, CERTAIN)
+    name.consequence_of = module.id
+    weigh([module, name], has_contract=False)
+    assert (module.severity, name.severity, name.consequence_of) == ("warning", "error", None)
+
+
 def _certainties(path):
     """Yield each certainty that a rule of the files, or of the sources, names."""
     for node in ast.walk(ast.parse(path.read_text())):

@@ -3,9 +3,10 @@
 
 from __future__ import annotations
 
+import ast
 import re
 import typing
-from typing import Callable, Sequence
+from typing import Callable, Iterator, Sequence
 
 from mrp_check.code import uses
 from mrp_check.contract.finding import Change
@@ -245,6 +246,7 @@ def _missing_header(error: Error) -> Words:
         return Words(f"there's no header {header}.{perhaps(near)}", fix)
     paths = package.of_kind(*uses.DEFINITIONS)
     own = {name: path for path in paths for name in uses.generated(path)}
+    own.update((name, path) for path in package.files for name in _of_cfg(package, path))
     name = last_part(header)[:-2]
     copy = f"include/{header}"
     if name in own and copy in package.files:  # gencpp-extras.cmake, "user-provided header"
@@ -252,6 +254,13 @@ def _missing_header(error: Error) -> Words:
             f"{copy} is in the package, so {header} isn't generated from {last_part(own[name])};"
             " and include_directories() has no include.",
             f"Remove {copy}: then the header is generated.",
+        )
+    if name in own and own[name].endswith(".cfg"):
+        return Words(
+            f"there's no {header} yet: it's generated from {last_part(own[name])}, but the target"
+            " doesn't wait for that, or nothing generates it.",
+            "Look at generate_dynamic_reconfigure_options(), and at"
+            " add_dependencies(... ${PROJECT_NAME}_gencfg).",
         )
     if name in own:
         return Words(
@@ -263,6 +272,17 @@ def _missing_header(error: Error) -> Words:
     near = nearest(name, own, 0.5)
     hint = perhaps(near and f"{package.name}/{near}.h")
     return Words(f"there's no header {header}.{hint}", "Correct the name of the header.")
+
+
+def _of_cfg(package: Package, path: str) -> Iterator[str]:
+    """Yield the name of the header that dynamic_reconfigure generates from a file: it's the last
+    argument of generate()."""
+    calls = ast.walk(package.tree(path)) if path.endswith(".cfg") else ()
+    for call in (one for one in calls if isinstance(one, ast.Call) and len(one.args) == 3):
+        name = call.args[2]
+        is_it = isinstance(call.func, ast.Attribute) and call.func.attr == "generate"
+        if is_it and isinstance(name, ast.Constant):
+            yield f"{name.value}Config"
 
 
 def _short(name: str) -> str:

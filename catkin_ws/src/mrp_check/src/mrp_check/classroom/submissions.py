@@ -25,6 +25,11 @@ def entries(path: str | os.PathLike[str]) -> list[pathlib.Path]:
     path = pathlib.Path(path)
     if not path.is_dir():
         raise PackageError(f"There's no folder {path}: expected one with a folder per student.")
+    if (path / "package.xml").is_file():
+        raise PackageError(
+            f"{path} is a package: expected the folder above it, which has one for each student."
+            " To check this one, leave out --class."
+        )
     found = [one for one in sorted(path.iterdir()) if not _is_hidden(one.name)]
     if not found:
         raise PackageError(

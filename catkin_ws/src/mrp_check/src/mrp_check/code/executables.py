@@ -18,6 +18,7 @@ _ROSPY = re.compile(
     r"^[^#\n]*\b(?:init_node|rospy\.(?:Publisher|Subscriber|Service|ServiceProxy))\s*\(", re.M
 )
 _ROSCPP = re.compile(r"\bros::(?:init\b|NodeHandle\b)")
+_TESTS = re.compile(r"^[ \t]*(?:from|import)[ \t]+(?:rostest|rosunit|unittest)\b", re.M)
 _SECONDS = 5  # in which a node has to end on Ctrl-C
 # rospy's own, and no method of that name.
 _INIT = re.compile(r"^[^#\n]*(?:\br\w*\.|(?<![\w.])(?<!def ))init_node\s*\(", re.M)
@@ -33,6 +34,8 @@ def spec(package: Package, model: Model) -> Spec:
 def is_script(package: Package, path: str) -> bool:
     """Return whether a Python file is a node that can be started, not one that others import."""
     if uses.is_test(path) or path == "setup.py" or not _ROSPY.search(package.text(path)):
+        return False
+    if _TESTS.search(package.text(path)):
         return False
     if not _INIT.search(package.text(path)) and _is_imported(package, path):
         return False

@@ -12,16 +12,16 @@ from mrp_check.contract.finding import ERROR, NOTE, WARNING
 from mrp_check.report import terminal
 from mrp_check.report.annotation import path_of, says_of
 
-_COMMANDS = {ERROR: "error", WARNING: "warning", NOTE: "notice"}
+_COMMANDS = {ERROR: "error", WARNING: "warning"}
 _OF_MESSAGE = {"%": "%25", "\r": "%0D", "\n": "%0A"}
 _OF_PROPERTY = {**_OF_MESSAGE, ":": "%3A", ",": "%2C"}
 
 
 def text(report):
-    """Return a line for each finding that follows from no other."""
+    """Return a line for each finding that follows from no other; the notes are left out."""
     lines = []
     for finding in report.findings:
-        if finding.consequence_of:
+        if finding.consequence_of or finding.severity == NOTE:
             continue
         place = {"title": f"mrp_check: {finding.id}"}
         if finding.file:

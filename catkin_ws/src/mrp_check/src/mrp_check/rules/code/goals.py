@@ -12,7 +12,7 @@ from typing import Iterator
 from mrp_check.code.python_facts import argument
 from mrp_check.code.python_source import Source
 from mrp_check.confined.places import Kind
-from mrp_check.contract.finding import HABIT, Finding
+from mrp_check.contract.finding import CERTAIN, HABIT, Finding
 from mrp_check.contract.requirements import ANY, Rule
 from mrp_check.run.case import Case
 
@@ -44,17 +44,22 @@ def _findings(case: Case) -> Iterator[Finding]:
             (p.file, p.line, _CANCELLED, "isPreemptRequested()")
             for p in case.facts.of(node, Kind.GOAL_LOOP)
         ]
-        for source in filter(None, map(case.facts.python.get, files)):
-            found += [(source.file, *one) for one in _in_python(source)]
-        for file, line, (message, fix), wanted in found:
+        sources = [*filter(None, map(case.facts.python.get, files))]
+        named = set().union(*(_attributes(source.tree) for source in sources))
+        for source in sources:
+            found += [(source.file, *one) for one in _in_python(source, named)]
+        for file, line, what, wanted in found:
+            message, fix = what
             seen = case.package.line(file, line)
-            at = file, line, HABIT
+            at = file, line, CERTAIN if what is _NEVER else HABIT
             yield Finding("callbacks", message, *at, wanted, seen, fix.format(wanted), node=node)
 
 
-def _in_python(source: Source) -> Iterator[tuple[int, tuple[str, str], str]]:
-    """Yield (line, what is wrong and what to do, what is wanted) of each server."""
-    named = _attributes(source.tree)
+def _in_python(source: Source, named: set[str]) -> Iterator[tuple[int, tuple[str, str], str]]:
+    """Yield (line, what is wrong and what to do, what is wanted) of each server.
+
+    named: the attributes in all sources of its node
+    """
     for call in source.nodes(ast.Call):
         if source.dotted(call.func) != "actionlib.SimpleActionServer":
             continue

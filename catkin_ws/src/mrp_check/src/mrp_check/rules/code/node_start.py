@@ -30,6 +30,7 @@ def _only_asks(node: SourceNode) -> bool:
 
 def _no_init(node: SourceNode) -> Finding:
     call = "rospy.init_node(...)" if node.is_python else "ros::init(...)"
+    name = node.name.removesuffix(".py")  # a node's name has no dot
     where = [p for p in node.places(Kind.FUNCTION) if p.text == "main"] or node.places(
         Kind.PUBLISHER, Kind.SUBSCRIBER, Kind.TIMER
     )
@@ -37,11 +38,11 @@ def _no_init(node: SourceNode) -> Finding:
         "node-start",
         f"{node.main} never calls {call}: without it, there's no node.",
         where[0] if where else (node.main, 1),
-        expected=f"{call}, with the name {node.name}, before all other ROS calls",
+        expected=f"{call}, with the name {name}, before all other ROS calls",
         seen="no such call",
-        fix=f'Add rospy.init_node("{node.name}").'
+        fix=f'Add rospy.init_node("{name}").'
         if node.is_python
-        else f'Add ros::init(argc, argv, "{node.name}"); as the first line of main.',
+        else f'Add ros::init(argc, argv, "{name}"); as the first line of main.',
     )
 
 

@@ -28,13 +28,14 @@ _RUNS = re.compile(r"^(?:roscpp|tf|tf2_ros|actionlib|rosbag)$|_msgs$|_srvs$")
 def _findings(case: Case) -> Iterator[Finding]:
     yield from () if case.spec.is_contract else undeclared(case)
     package, model, (manifest, _) = case.package, case.model, case.manifest
-    used = uses.of_all(package, model, case.spec.is_contract)
+    is_apart = case.spec.is_contract
+    used = uses.of_all(package, model, is_apart)
     # Which packages the exercise is about: to leave one of them out is the manifest's fault. Any
     # other is the fault of the line that uses it.
     own = {"roscpp", "rospy"} | {topic.type.split("/")[0] for topic in case.spec.topics.values()}
     if not case.spec.is_contract:
         own.update(used)
-    # Where the same line lacks them -> package -> its use.
+    # Where the same line lacks them -> package -> its use; a contract tells the sure ones apart.
     lacking: dict[tuple[str, bool], dict[str, Use]] = {}
     for name, use in sorted(used.items()):
         in_manifest = manifest is None or name in named(manifest, tests=not use.firm)
@@ -50,15 +51,16 @@ def _findings(case: Case) -> Iterator[Finding]:
             if near:
                 yield _misspelt_in_manifest(package, name, use, near)
             else:
-                lacking.setdefault((FILE, use.firm), {})[name] = use
+                lacking.setdefault((FILE, is_apart and use.firm), {})[name] = use
         # Python finds it all the same.
         if not in_cmake and model.catkin and use.language == "cpp":
             near = _misspelt(package, name, model.components, ())
             if near:
                 yield _misspelt_in_cmake(name, use, near, model.catkin)
             else:
-                lacking.setdefault((model.catkin.file, use.firm), {})[name] = use
-    for (file, firm), uses_ in lacking.items():
+                lacking.setdefault((model.catkin.file, is_apart and use.firm), {})[name] = use
+    for (file, _), uses_ in lacking.items():
+        firm = any(use.firm for use in uses_.values())
         if file == FILE:
             yield _not_in_manifest(package, uses_, manifest, firm)
         elif model.catkin:
@@ -85,6 +87,8 @@ def _kind(package: Package, name: str, use: Use, manifest: Manifest) -> Iterator
     known = declared(manifest)
     if use.language == "cpp" and name not in known["build"]:
         when = "when it is built"
+    elif name in ("rostest", "rosunit") and name in known["test"]:
+        return  # the file is a test, wherever it is
     elif name not in known["exec"] and (use.language != "cpp" or _RUNS.search(name)):
         when = "when it runs"
     else:

@@ -35,7 +35,7 @@ def under_launch_files(case: Case) -> Iterator[Finding]:
             name = launched.nodes.get(path)
             # What ends by itself, too, has been said.
             if code and name and name not in waiting and not case.nodes[name].not_up:
-                finding = _died(case, launched, name, code)
+                finding = _died(case, launched, path, code)
                 finding.certainty = HINT if is_odd else finding.certainty
                 yield finding
 
@@ -94,10 +94,14 @@ def _error(case: Case, launched: Launched, name: str, found: Traceback) -> Itera
     )
 
 
-def _died(case: Case, launched: Launched, name: str, code: int) -> Finding:
+def _died(case: Case, launched: Launched, path: str, code: int) -> Finding:
+    name, seen = launched.nodes[path], launched.seen
+    logs = (one for one in seen.seen.logs if one.node == path and one.time < seen.asked)
+    said = [one.text.strip()[:300] for one in logs if one.level in ("ERROR", "FATAL")]
     return Finding(
         "starts",
-        f"{name} ends {_where(launched)}, {code_text(code)}; by itself it keeps running.",
+        f"{name} ends {_where(launched)}, {code_text(code)}; by itself it keeps running."
+        + (f" Its last error: {said[-1]}" if said else ""),
         *case.places.of(name, Kind.INIT, Kind.HANDLE),
         expected="a node that runs until Ctrl-C",
         seen=code_text(code),

@@ -10,7 +10,7 @@ from typing import Iterator, Sequence
 
 from mrp_check.confined.places import Kind
 from mrp_check.confined.seen import Alone, LaunchResult
-from mrp_check.contract.finding import HABIT, Finding, Where
+from mrp_check.contract.finding import HABIT, HINT, Finding, Where
 from mrp_check.contract.names import last_part
 from mrp_check.contract.requirements import Requirement, Rule
 from mrp_check.contract.spec import Shutdown
@@ -33,14 +33,18 @@ def findings(case: Case) -> Iterator[Finding]:
             for finding in _of(node, node.direct, node.direct.asked, case.spec.shutdown):
                 # Whatever its exit code, it ended: without a contract, nobody asks for more.
                 if not case.spec.is_contract and _has_ended(node.direct):
-                    finding.certainty = HABIT
+                    finding.certainty = HINT if _is_interrupted(node.direct) else HABIT
                 yield finding
 
 
 def _has_ended(direct: Alone) -> bool:
     """Return whether a node ended by itself on Ctrl-C, though perhaps not cleanly."""
-    said = any(word in text for _, _, text in direct.lines for word in _ENDED)
-    return (direct.code or 0) > 0 or said
+    return (direct.code or 0) > 0 or _is_interrupted(direct)
+
+
+def _is_interrupted(direct: Alone) -> bool:
+    """Return whether it says so: rospy raises this at Ctrl-C, in sleep() or wait_for_service()."""
+    return any(word in text for _, _, text in direct.lines for word in _ENDED)
 
 
 def _of(node: Node, direct: Alone, asked: float, shutdown: Shutdown) -> Iterator[Finding]:

@@ -144,6 +144,12 @@ def _alone(case: Case, graph: Graph, end: End, published: set[str]) -> Iterator[
     made_up = tuple(f"{name}/" for name in graph.made_up)
     is_sure = is_sure and not any(f"{one.topic}/".startswith(made_up) for one in (end, other))
     digits = [re.sub(r"\d", "", one.topic) for one in (other, end)]
+    fix = "Give both topics one name; a <remap> in the launch file does so, too."
+    if other.topic == f"/{last_part(end.topic)}":
+        fix = (
+            f"If {other.node} writes the name with a first slash, remove that: with it, the name"
+            f" doesn't follow the namespace. Or {fix[0].lower()}{fix[1:]}"
+        )
     yield Finding(
         "topic",
         f"{graph.where}, {end.node} subscribes to {end.topic}, where nobody publishes, but"
@@ -153,7 +159,7 @@ def _alone(case: Case, graph: Graph, end: End, published: set[str]) -> Iterator[
         SEEN if is_sure and digits[0] != digits[1] else HABIT,
         expected=other.topic,
         seen=end.topic,
-        fix="Give both topics one name; a <remap> in the launch file does so, too.",
+        fix=fix,
         node=end.node,
     )
 

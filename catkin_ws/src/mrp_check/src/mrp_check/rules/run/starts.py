@@ -24,6 +24,7 @@ from mrp_check.run.traces import ends
 from mrp_check.run.words import code_text, last_words
 
 _ARGUMENTS, _PARAMETER = "arguments on its command line", "a parameter"
+_DEVICE = "a device"
 # What a node says that stands before an empty keyboard, screen or command line, what it waits for,
 # and what the line that raised must name, where anything else raises the same error, too.
 _WAITS = (
@@ -31,7 +32,7 @@ _WAITS = (
     (r"EOFError: EOF when reading a line", "the keyboard", ""),
     (r"termios\.error|Inappropriate ioctl for device", "the keyboard", ""),
     (r"(?i)cannot open display|could not connect to display|no display name", "a screen", ""),
-    (r"(?i)can.t open camera|VIDEOIO|/dev/(video|tty|input)\w*", "a device", ""),
+    (r"(?i)can.t open camera|VIDEOIO|/dev/(video|tty|input)\w*", _DEVICE, ""),
     (r"KeyError: ", _PARAMETER, "param"),
     (r"IndexError: list index|ValueError: ", "arguments", "sys.argv"),
 )
@@ -155,9 +156,13 @@ def _of_start(case: Case, node: Node, finding: Finding) -> bool:
     """Do so; return whether it waits for arguments on its command line."""
     lines = [text for _, _, text in node.direct.lines] if node.direct else []
     dies = _dies_under(case, node)
+    params = [str(value) for launch in case.launches for value in launch.params.values()]
+    has_device = any(value.startswith("/dev/") for value in params)
     for shape, what, reads in _WAITS:
         if dies and what in (_ARGUMENTS, "arguments", _PARAMETER):
             continue  # its launch file should give them
+        if what == _DEVICE and has_device:  # a library that opens it needn't name it
+            shape += "|No such file or directory"
         said = next((text for text in lines if re.search(shape, text)), None)
         if said:
             if reads and not any(reads in name for name in _names(node, finding)):
@@ -166,7 +171,8 @@ def _of_start(case: Case, node: Node, finding: Finding) -> bool:
             finding.message = f"{node.name} waits for {what}: {said.strip()[:200]}"
             return what == _ARGUMENTS
     if dies:
-        finding.message += f" It dies under {dies}, too."
+        finding.message = f"{finding.message.rstrip('.')}. It dies under {dies}, too."
+        add_name_that_is_set(case, finding)
         return False
     if not any("Error:" in line for line in lines) and misses_arguments(node, finding):
         finding.certainty = HINT
@@ -186,6 +192,18 @@ def _of_start(case: Case, node: Node, finding: Finding) -> bool:
         finding.certainty = HINT
         finding.message = f"{node.name} exits with code 0: {last_words(lines) or 'without a word'}"
     return False
+
+
+def add_name_that_is_set(case: Case, finding: Finding) -> None:
+    """Add the name under which a launch file sets the parameter that a node doesn't find."""
+    asked_for = re.search(r"KeyError: '[~/]?([^']+)'", finding.seen)
+    given = (name for launch in case.launches for name in launch.params)
+    other = next((one for one in given if asked_for and one.endswith(f"/{asked_for[1]}")), None)
+    if other:
+        finding.message += f" The launch file sets {other}, which is another name."
+        finding.fix = (
+            "Set it inside <node> if the node asks for it with ~, and outside if it asks without."
+        )
 
 
 def _dies_under(case: Case, node: Node) -> str | None:
