@@ -407,12 +407,16 @@ def test_a_library_is_named_in_the_manifest(header, found, tmp_path):
 
 
 @pytest.mark.parametrize(("name", "found"), [("Some_pkg", [3]), ("2_pkg", [3]), ("some-pkg2", [])])
-def test_a_package_has_a_usual_name(name, found, tmp_path):
+def test_a_package_has_a_usual_name(name, found, tmp_path, capfd):
     text = check_rules.MANIFEST.replace("some_pkg", name)
     known = case(tmp_path, "cpp", INIT, package_DOT_xml=text)
     known.manifest = manifests.parse(known.package)
     known.model.project = None
     assert lines_of(package_name, known) == found
+    assert capfd.readouterr() == (
+        "",
+        "",
+    )  # catkin_pkg prints its warnings, unless it's asked not to
 
 
 @pytest.mark.parametrize(("version", "found"), [("2.8.3", [1]), ("3.10", []), ("2.8...3.20", [])])

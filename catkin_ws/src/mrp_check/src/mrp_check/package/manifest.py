@@ -26,7 +26,9 @@ def parse(package: Package) -> tuple[Manifest | None, Finding | None]:
     except xml.parsers.expat.ExpatError as error:
         return None, xml_finding("manifest", package, FILE, error, why="package-xml-no-xml")
     try:
-        return parse_package_string(data.decode("utf-8", "replace").lstrip("\ufeff"), FILE), None
+        text = data.decode("utf-8", "replace").lstrip("\ufeff")
+        # It would print its warnings: rules/files/package_name.py reports what matters of them.
+        return parse_package_string(text, FILE, warnings=[]), None
     except (InvalidPackage, AssertionError, ValueError) as error:
         text = " ".join(str(error).replace(f"Error(s) in package '{FILE}':", "").split())
         return None, Finding(
