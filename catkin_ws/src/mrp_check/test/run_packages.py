@@ -143,7 +143,7 @@ rospy.init_node("sends_frames")
 broadcaster = tf2_ros.TransformBroadcaster()
 transform = TransformStamped()
 transform.header.frame_id, transform.child_frame_id = "map", "base_link"
-transform.transform.rotation.w = 1
+transform.transform.rotation.w = 0
 rate = rospy.Rate(20)
 while not rospy.is_shutdown():
     transform.header.stamp = rospy.Time.now()
@@ -278,6 +278,7 @@ _RIGHT = {
     "open_goal.py": ("if goal.goal > 5", "if goal.goal > 0"),
     "canceled_goal.py": ("            break\n", "            return\n"),
     "frames.py": (f"{_LOOP}    {_BUFFER}    {_LISTENER}", f"{_BUFFER}{_LISTENER}{_LOOP}"),
+    "sends_frames.py": ("rotation.w = 0", "rotation.w = 1"),
     "service.py": ("succes=", "success="),
     "number.py": ("Int32", "String"),
     "once.py": ("queue_size=10", "queue_size=10, latch=True"),

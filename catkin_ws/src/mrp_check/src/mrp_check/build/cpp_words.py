@@ -279,10 +279,10 @@ def _of_cfg(package: Package, path: str) -> Iterator[str]:
     argument of generate()."""
     calls = ast.walk(package.tree(path)) if path.endswith(".cfg") else ()
     for call in (one for one in calls if isinstance(one, ast.Call) and len(one.args) == 3):
-        name = call.args[2]
+        name = call.args[2].value if isinstance(call.args[2], ast.Constant) else None
         is_it = isinstance(call.func, ast.Attribute) and call.func.attr == "generate"
-        if is_it and isinstance(name, ast.Constant):
-            yield f"{name.value}Config"
+        if is_it and isinstance(name, str):
+            yield f"{name}Config"
 
 
 def _short(name: str) -> str:

@@ -67,6 +67,16 @@ Record = TypeVar("Record", Registration, Message, Log)
 Answer = Tuple[int, str, Any]  # of ROS's master: a code, a sentence, a value
 
 
+def _bad_rotation(transforms: List[Any]) -> str:
+    """Return the frame of a transform whose rotation tf2 refuses, if there is one: its quaternion
+    has another length than 1 (QUATERNION_NORMALIZATION_TOLERANCE of tf2's buffer_core.cpp)."""
+    for one in transforms:
+        q = one.transform.rotation
+        if abs(q.x**2 + q.y**2 + q.z**2 + q.w**2 - 1) > 0.01:
+            return str(one.child_frame_id)
+    return ""
+
+
 class Observer:
     """A master, and what is seen at it. Times are those of time.monotonic().
 
@@ -212,7 +222,8 @@ class Observer:
             found = self._types[key]().deserialize(message._buff)
             if key[0] == "tf2_msgs/TFMessage":
                 pairs = [(one.header.frame_id, one.child_frame_id) for one in found.transforms]
-                return {"frames": " ".join(name.lstrip("/") for pair in pairs for name in pair)}
+                frames = " ".join(name.lstrip("/") for pair in pairs for name in pair)
+                return {"frames": frames, "bad_rotation": _bad_rotation(found.transforms)}
             return messages.flatten(found)
         except Exception:  # whatever a package sends: it is no reason to stop
             return None

@@ -103,6 +103,10 @@ def _findings(case: Case) -> Iterator[Finding]:
                 yield finding
         frames = [log for log in lines if _FRAMES.search(log.text)]
         yield from _of_frames(case.nodes[run.node], run, frames)
+        for finding in _of_rotations(case.nodes[run.node], run):
+            if (run.node, finding.seen) not in told:
+                told.add((run.node, finding.seen))
+                yield finding
         of_node = [log for log in lines if logged.is_own(case.package, log) and log not in frames]
         own[run.node] = max(own.get(run.node, []), of_node, key=len)
     for name, lines in own.items():
@@ -179,6 +183,23 @@ def _of_frames(node: Node, run: Run, failed: list[Log]) -> Iterator[Finding]:
         fix=fix,
         why=logged.answer(text),
     )
+
+
+def _of_rotations(node: Node, run: Run) -> Iterator[Finding]:
+    """Yield a finding if a node sends a transform that tf2 ignores."""
+    sent = (one.fields or {} for one in run.seen.messages if one.node == run.path)
+    frame = next((fields["bad_rotation"] for fields in sent if fields.get("bad_rotation")), None)
+    if frame:
+        yield node.finding(
+            "warnings",
+            f"{node.name} sends a transform to {frame}, {run.where}, whose rotation isn't a"
+            " quaternion of length 1: tf2 ignores it.",
+            node.places.of(node.name, Kind.INIT, Kind.HANDLE),
+            SEEN,
+            expected="a rotation, such as w = 1 for none",
+            seen=f"a rotation of another length, to {frame}",
+            fix="Set transform.rotation, by setRPY() or quaternion_from_euler() for example.",
+        )
 
 
 def _illegal_name(node: Node) -> Iterator[Finding]:
