@@ -1,12 +1,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the viewer reads in messages, and what it counts of them."""
+"""When the viewer subscribes, what it reads in messages, and what it counts of them."""
 
 import io
 import struct
+import types
 
 import pytest
 from mrp_labs.msg import Count
-from mrp_view import fields
+from mrp_view import fields, listener
 from mrp_view.counting import SAMPLES, Gaps, Sender
 from rosgraph_msgs.msg import Log
 from std_msgs import msg as std_msgs
@@ -143,3 +144,34 @@ def test_rate_is_that_of_the_last_seconds():
     for tenth in range(200, 300):
         rate = sender.rate(tenth / 10)
     assert rate == 0
+
+
+def test_others_come_first(monkeypatch):
+    """It subscribes to a topic only when nobody has joined or left it for a while."""
+    now, topics = 100.0, []
+
+    def subscriber(topic, *_, **__):
+        topics.append(topic)
+        return types.SimpleNamespace(get_num_connections=lambda: 1)
+
+    def observation(*subscribers):
+        return types.SimpleNamespace(
+            viewer="/view", publishers={"/t": ["/p"]}, subscribers={"/t": [*subscribers]}
+        )
+
+    monkeypatch.setattr(listener.rospy, "Subscriber", subscriber)
+    monkeypatch.setattr(listener.time, "monotonic", lambda: now)
+    one = listener.Listener(settle=3.0)
+    one.follow(observation())
+    now += 2.0
+    one.follow(observation("/joins"))
+    now += 2.0
+    one.follow(observation("/joins"))
+    now += 2.0
+    one.follow(observation())  # it has left
+    now += 2.9
+    one.follow(observation())
+    assert topics == [listener.LOG_TOPIC]
+    now += 0.1
+    one.follow(observation())
+    assert topics == [listener.LOG_TOPIC, "/t"]

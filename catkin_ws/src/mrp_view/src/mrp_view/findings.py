@@ -28,36 +28,21 @@ def findings(graph, counts, rows, viewer):
     counts = [count for count in counts if count["topic"] not in _LOG and count["to"] != viewer]
     rows = [row for row in rows if row["topic"] not in _LOG]
     edges = [edge for edge in graph["edges"] if viewer not in (edge["from"], edge["to"])]
-    reported = (
-        *_of_nodes(graph["nodes"]),
-        *_of_links(graph["links"]),
-        *_of_counts(counts),
-        *_of_topics(graph["topics"]),
-        *_of_islands(edges),
-        *_of_rows(rows),
-    )
     found, number = [], collections.Counter()
-    for kind, text in reported:
+    for kind, text in _reported(graph, counts, rows, edges):
         number[kind] += 1
         if number[kind] <= MOST:
             found.append({"kind": kind, "page": PAGES[kind], "text": text})
     return found
 
 
-def _of_nodes(nodes):
-    dead = [node["name"] for node in nodes if node["state"] == "dead"]
-    if len(dead) > 1:
+def _reported(graph, counts, rows, edges):
+    """Yield (kind, text) of each finding."""
+    dead = [node["name"] for node in graph["nodes"] if node["state"] == "dead"]
+    if dead:
         yield "dead", f"{_names(dead)} died without telling the master"
-    elif dead:
-        yield "dead", f"{dead[0]} died without telling the master"
-
-
-def _of_links(links):
     for state in ("mismatch", "none"):
-        yield from ((state, link["why"]) for link in links if link["state"] == state)
-
-
-def _of_counts(counts):
+        yield from ((state, link["why"]) for link in graph["links"] if link["state"] == state)
     for count in counts:
         where = f"from {count['from']} to {count['to']} on {count['topic']}"
         if count["dropped"]:
@@ -72,20 +57,12 @@ def _of_counts(counts):
                 f"{count['missing']} of {count['sent']} messages {where} haven't reached the "
                 "callback: they were dropped, or are still on their way",
             )
-
-
-def _of_topics(topics):
-    latched = [topic["name"] for topic in topics if topic["latched"] and topic["name"] not in _LOG]
+    latched = [topic["name"] for topic in graph["topics"] if topic["latched"]]
+    latched = [name for name in latched if name not in _LOG]
     if latched:
         yield "latched", f"{_names(latched)} is latched: a late subscriber gets the last message"
-
-
-def _of_islands(edges):
     for names in _islands(edges):
         yield "islands", f"{len(names)} islands, because their topics are private: {_names(names)}"
-
-
-def _of_rows(rows):
     for row in rows:
         if row["forgotten"]:
             yield (
