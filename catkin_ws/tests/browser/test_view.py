@@ -356,6 +356,8 @@ def test_what_is_seen_leads_to_the_tutorial(page, viewer):
 def shown(viewer):
     """The page of something to look at: the tutorial's nodes of which one has died, and a lab."""
     with PubSub() as launched:
+        # Two that start at once may both name the run, and then one of them ends.
+        launched.wait_for(lambda: pid_of("/mrp/subscriber_cpp_node"), "a node")
         with Lab("type_mismatch.launch") as lab:
             for name in ("other_subscriber_cpp", "other_subscriber_py"):
                 lab.wait_for(
@@ -364,7 +366,6 @@ def shown(viewer):
                     ),
                     f"{name} is refused",
                 )
-            launched.wait_for(lambda: pid_of("/mrp/subscriber_cpp_node"), "a node")
             os.kill(pid_of("/mrp/subscriber_cpp_node"), signal.SIGKILL)
             yield viewer
 
