@@ -55,6 +55,13 @@ def test_what_follows_from_a_warning_of_the_same_rule_counts():
     assert (module.severity, name.severity, name.consequence_of) == ("warning", "error", None)
 
 
+def test_what_follows_from_a_consequence_is_one():
+    ids = {"targets": None, "starts": "targets", "exit": "starts"}
+    chain = [Finding(id_, "It fails.", certainty=SEEN, consequence_of=ids[id_]) for id_ in ids]
+    weigh(chain, has_contract=True)
+    assert [one.consequence_of for one in chain] == [*ids.values()]
+
+
 def _certainties(path):
     """Yield each certainty that a rule of the files, or of the sources, names."""
     for node in ast.walk(ast.parse(path.read_text())):

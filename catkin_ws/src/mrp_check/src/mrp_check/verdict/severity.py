@@ -28,7 +28,7 @@ def weigh(findings: Iterable[Finding], has_contract: bool) -> None:
         if finding.certainty == READ and (finding.id, finding.file) in seen:
             finding.certainty = SEEN
         finding.severity = severity(finding.certainty, has_contract)
-    errors = {one.id for one in findings if one.severity == ERROR and not one.consequence_of}
+    errors = {one.id for one in findings if one.severity == ERROR and one.consequence_of != one.id}
     for finding in findings:
         if finding.severity != ERROR or finding.consequence_of not in errors:
             finding.consequence_of = None
