@@ -1,4 +1,4 @@
-# The front door: `make` alone prints what there is.
+# The front door: `make` alone prints what there is for a learner, and `make ALL=1` the rest, too.
 
 SHELL := /bin/bash
 .SHELLFLAGS := -e -o pipefail -c
@@ -73,10 +73,12 @@ BENCH := $(CURDIR)/catkin_ws/build/bench
 # A target's prerequisites are made in their order: the packages first.
 .NOTPARALLEL:
 
+# A learner's targets fit on a small terminal.
 .PHONY: help
 help:
-	@awk -F ':.*## ' '/^##@/ { print substr($$0, 5) } /^[a-z-]+:.*## / { printf "  make %-16s %s\n", $$1, $$2 }' \
-	  $(MAKEFILE_LIST)
+	@awk -F ':.*## ' '/^##@ Work/ && "$(ALL)" == "" { exit } /^##@/ { print substr($$0, 5) } \
+	  /^[a-z-]+:.*## / { printf "  make %-16s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
+	@$(if $(ALL),,echo 'To work on mrp itself, and to use containers: make ALL=1')
 
 packages-%:
 	@catkin_ws/tools/install_packages.sh $(PACKAGES_$*:%=catkin_ws/apt/%.txt)
