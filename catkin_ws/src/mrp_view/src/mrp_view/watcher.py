@@ -12,7 +12,7 @@ from mrp_view.graph import ALIVE, DEAD, SILENT, NodeReport, Observation
 LOOK = 0.5  # seconds from one look at the master to the next
 ASK = 1.0  # seconds from one question to a node to the next
 TIMEOUT = 1.0  # seconds that a node, or the master, may take to answer
-PATIENCE = 2  # questions in a row that must fail before a node is called dead
+PATIENCE = 3  # questions in a row that must fail before a node is called dead
 _STATISTICS = 25  # questions a second for counts, of all nodes together
 _WORKERS = 16
 
