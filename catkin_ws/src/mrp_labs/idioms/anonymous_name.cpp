@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Use an anonymous name for a tool of which several run at once. A node that has parameters, or
-// that others ask for by name, needs a fixed one.
+// Use an anonymous name for a tool that you run several times at once. A node with parameters, or
+// one that others ask for by name, needs a fixed one.
 
 #include <ros/ros.h>
 #include <std_msgs/UInt32.h>

@@ -1,7 +1,7 @@
 #!/usr/bin/env python
 # SPDX-License-Identifier: BSD-3-Clause
-"""Use an anonymous name for a tool of which several run at once. A node that has parameters, or
-that others ask for by name, needs a fixed one."""
+"""Use an anonymous name for a tool that you run several times at once. A node with parameters, or
+one that others ask for by name, needs a fixed one."""
 
 import rospy
 from std_msgs.msg import UInt32

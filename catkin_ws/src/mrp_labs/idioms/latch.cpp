@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Use a latched publisher for what rarely changes and late subscribers need, such as a map. For a
-// stream of values, don't.
+// Latches a publisher. Do this for a message that rarely changes and that late subscribers need,
+// such as a map. Don't do it for a stream of values.
 
 #include <ros/ros.h>
 #include <std_msgs/UInt32.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Logs at each level. Use debug to find mistakes, info for what a user wants to know, and warn and
-// above for what somebody must act on.
+// above for what needs action.
 
 #include <ros/ros.h>
 

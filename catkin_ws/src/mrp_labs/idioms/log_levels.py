@@ -1,7 +1,7 @@
 #!/usr/bin/env python
 # SPDX-License-Identifier: BSD-3-Clause
 """Logs at each level. Use debug to find mistakes, info for what a user wants to know, and warn and
-above for what somebody must act on."""
+above for what needs action."""
 
 import rospy
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env python
 # SPDX-License-Identifier: BSD-3-Clause
-"""Use a loop with a subscriber where each turn needs the newest value. To work on every value, do
-it in the callback."""
+"""Combines a loop with a subscriber, for when each turn needs the newest value. If you need every
+value, do the work in the callback."""
 
 import rospy
 from std_msgs.msg import UInt32

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Use a global name for what all robots share, such as a map. What each robot has of its own needs
+// Use a global name for what all robots share, such as a map. What each robot has for itself needs
 // a relative one.
 
 #include <ros/ros.h>

@@ -1,6 +1,6 @@
 #!/usr/bin/env python
 # SPDX-License-Identifier: BSD-3-Clause
-"""Use a global name for what all robots share, such as a map. What each robot has of its own needs
+"""Use a global name for what all robots share, such as a map. What each robot has for itself needs
 a relative one."""
 
 import rospy

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Use a private name for what belongs to only one node. A topic on which nodes meet needs a
-// relative name.
+// Use a private name for what belongs to one node only. A topic that nodes share needs a relative
+// name.
 
 #include <ros/ros.h>
 #include <std_msgs/UInt32.h>

@@ -1,7 +1,7 @@
 #!/usr/bin/env python
 # SPDX-License-Identifier: BSD-3-Clause
-"""Use a private name for what belongs to only one node. A topic on which nodes meet needs a
-relative name."""
+"""Use a private name for what belongs to one node only. A topic that nodes share needs a relative
+name."""
 
 import rospy
 from std_msgs.msg import UInt32

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Use a relative name for every topic on which nodes meet. What belongs to only one node gets a
+// Use a relative name for every topic that nodes share. What belongs to one node only gets a
 // private name.
 
 #include <ros/ros.h>

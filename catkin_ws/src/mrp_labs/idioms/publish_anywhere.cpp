@@ -10,7 +10,7 @@ class PublishAnywhere
 public:
   PublishAnywhere()
   {
-    // In this order: the callback needs the publisher from the first message on.
+    // The publisher comes first: the callback needs it from the first message on.
     publisher_ = nh_.advertise<std_msgs::UInt32>("doubled", 10);
     subscriber_ = nh_.subscribe("number", 10, &PublishAnywhere::subscriberCallback, this);
   }

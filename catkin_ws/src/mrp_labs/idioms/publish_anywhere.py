@@ -9,14 +9,14 @@ from std_msgs.msg import UInt32
 
 class PublishAnywhere:
     def __init__(self):
-        # In this order: the callback needs the publisher from the first message on.
+        # The publisher comes first: the callback needs it from the first message on.
         self.publisher = rospy.Publisher("doubled", UInt32, queue_size=10)
         self.subscriber = rospy.Subscriber(
             "number", UInt32, self.subscriber_callback, queue_size=10
         )
 
     def subscriber_callback(self, msg):
-        # The short form: from the value, rospy makes the message itself.
+        # The short form: rospy makes the message from the value.
         self.publisher.publish(2 * msg.data)
 
 

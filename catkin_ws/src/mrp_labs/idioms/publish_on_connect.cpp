@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Publishes to each new subscriber by itself. Use it where each gets a message of its own. If all
-// get the same one, latch it.
+// Publishes to each new subscriber separately. Use it if each gets a message of its own. If all get
+// the same one, latch it.
 
 #include <cstdint>
 
@@ -17,7 +17,7 @@ public:
   }
 
 private:
-  // What is published here goes to the new subscriber, and to no other.
+  // What is published here goes to the new subscriber only.
   void connectCallback(const ros::SingleSubscriberPublisher& subscriber)
   {
     std_msgs::UInt32 msg;

@@ -1,7 +1,7 @@
 #!/usr/bin/env python
 # SPDX-License-Identifier: BSD-3-Clause
-"""Publishes to each new subscriber by itself. Use it where each gets a message of its own. If all
-get the same one, latch it."""
+"""Publishes to each new subscriber separately. Use it if each gets a message of its own. If all get
+the same one, latch it."""
 
 import rospy
 from std_msgs.msg import UInt32
@@ -12,7 +12,7 @@ class PublishOnConnect(rospy.SubscribeListener):
         self.subscribers = 0
         self.publisher = rospy.Publisher("great_topic", UInt32, self, queue_size=10)
 
-    # What peer_publish gets goes to the new subscriber, and to no other.
+    # peer_publish sends to the new subscriber only.
     def peer_subscribe(self, topic_name, topic_publish, peer_publish):
         self.subscribers += 1
         msg = UInt32()

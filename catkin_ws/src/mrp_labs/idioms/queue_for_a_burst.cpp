@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Use a publisher's queue as long as its longest burst where each message counts. Values that are
-// soon out of date need only a short one.
+// Makes a publisher's queue as long as its longest burst, so no message is lost. Values that are
+// soon out of date only need a short queue.
 
 #include <string>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Use a subscriber's queue of 1 where only the newest value counts, such as a sensor's. Where each
-// value counts, use a longer one.
+// Use a subscriber's queue of 1 if only the newest value counts, such as a sensor's. If every value
+// counts, use a longer one.
 
 #include <ros/ros.h>
 #include <std_msgs/UInt32.h>
@@ -16,7 +16,7 @@ int main(int argc, char* argv[])
   ros::init(argc, argv, "queue_of_one");
   ros::NodeHandle nh;
 
-  // While the callback works, each message that arrives takes the place of the one before it.
+  // While the callback is busy, each new message replaces the one before it.
   ros::Subscriber subscriber = nh.subscribe("great_topic", 1, subscriberCallback);
   ros::spin();
   return 0;

@@ -1,7 +1,7 @@
 #!/usr/bin/env python
 # SPDX-License-Identifier: BSD-3-Clause
-"""Use a subscriber's queue of 1 where only the newest value counts, such as a sensor's. Where each
-value counts, use a longer one."""
+"""Use a subscriber's queue of 1 if only the newest value counts, such as a sensor's. If every value
+counts, use a longer one."""
 
 import time
 
@@ -17,7 +17,7 @@ def subscriber_callback(msg):
 def main():
     rospy.init_node("queue_of_one")
 
-    # While the callback works, each message that arrives takes the place of the one before it.
+    # While the callback is busy, each new message replaces the one before it.
     subscriber = rospy.Subscriber("great_topic", UInt32, subscriber_callback, queue_size=1)
     rospy.spin()
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Reads a parameter once and at each turn. Use the first for what never changes. The second asks
-// the master: use it for what may change while the node runs.
+// Reads a parameter once, and again at each turn. Once is enough for what never changes. Each turn
+// asks the master, so only do that for what may change while the node runs.
 
 #include <string>
 
@@ -11,7 +11,7 @@ class ReadParameters
 public:
   ReadParameters()
   {
-    // Relative: all nodes of a group read the same one.
+    // Relative: all nodes in a group read the same one.
     robot_ = nh_.param<std::string>("robot_name", "nobody");
     // Private: "~" stands for the node's own name.
     first_speed_ = private_nh_.param("speed", 1.0);

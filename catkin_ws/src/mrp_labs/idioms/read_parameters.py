@@ -1,14 +1,14 @@
 #!/usr/bin/env python
 # SPDX-License-Identifier: BSD-3-Clause
-"""Reads a parameter once and at each turn. Use the first for what never changes. The second asks
-the master: use it for what may change while the node runs."""
+"""Reads a parameter once, and again at each turn. Once is enough for what never changes. Each turn
+asks the master, so only do that for what may change while the node runs."""
 
 import rospy
 
 
 class ReadParameters:
     def __init__(self):
-        # Relative: all nodes of a group read the same one.
+        # Relative: all nodes in a group read the same one.
         self.robot = rospy.get_param("robot_name", "nobody")
         # Private: ~ stands for the node's own name.
         self.first_speed = rospy.get_param("~speed", 1.0)

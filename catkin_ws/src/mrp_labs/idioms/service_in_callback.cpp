@@ -11,7 +11,7 @@ class ServiceInCallback
 public:
   ServiceInCallback()
   {
-    // The node calls a service of its own. So it needs a second thread that answers.
+    // The node calls its own service, so it needs a second thread that answers.
     service_ = nh_.advertiseService("answer", &ServiceInCallback::serviceCallback, this);
     client_ = nh_.serviceClient<roscpp::Empty>("answer");
     subscriber_ = nh_.subscribe("number", 10, &ServiceInCallback::subscriberCallback, this);

@@ -10,7 +10,7 @@ from std_msgs.msg import UInt32
 
 class ServiceInCallback:
     def __init__(self):
-        # The node calls a service of its own. rospy answers it in another thread.
+        # The node calls its own service. rospy answers it in another thread.
         self.service = rospy.Service("answer", Empty, self.service_callback)
         self.client = rospy.ServiceProxy("answer", Empty)
         self.subscriber = rospy.Subscriber(

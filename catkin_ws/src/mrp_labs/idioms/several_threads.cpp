@@ -35,6 +35,6 @@ int main(int argc, char* argv[])
 {
   ros::init(argc, argv, "several_threads");
   SeveralThreads node;
-  ros::MultiThreadedSpinner(2).spin();  // with ros::AsyncSpinner(2).start(), main would go on
+  ros::MultiThreadedSpinner(2).spin();  // with ros::AsyncSpinner(2).start(), main would continue
   return 0;
 }

@@ -16,7 +16,7 @@ class SeveralThreads:
         self.first = rospy.Subscriber("first", UInt32, self.subscriber_callback, queue_size=10)
         self.second = rospy.Subscriber("second", UInt32, self.subscriber_callback, queue_size=10)
 
-    # rospy calls it in a thread of each publisher's connection, without a line of yours.
+    # rospy calls it in the thread of each publisher's connection: you don't have to do a thing.
     def subscriber_callback(self, msg):
         with self.lock:
             self.total += msg.data

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Waits for one message at a time. Use it for what is latched, or published all the time. Where
-// each message counts, use a subscriber.
+// Waits for one message at a time. Use it for a topic that's latched, or that never falls silent.
+// If every message counts, use a subscriber.
 
 #include <ros/ros.h>
 #include <std_msgs/UInt32.h>
@@ -14,7 +14,7 @@ int main(int argc, char* argv[])
   {
     // It subscribes, waits and unsubscribes. What comes between two turns is lost.
     const auto msg = ros::topic::waitForMessage<std_msgs::UInt32>("great_topic", nh);
-    if (msg)  // not so after Ctrl-C
+    if (msg)  // null after Ctrl-C
     {
       ROS_INFO_STREAM("received " << msg->data);
       rate.sleep();

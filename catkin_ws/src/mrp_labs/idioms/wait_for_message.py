@@ -1,7 +1,7 @@
 #!/usr/bin/env python
 # SPDX-License-Identifier: BSD-3-Clause
-"""Waits for one message at a time. Use it for what is latched, or published all the time. Where
-each message counts, use a subscriber."""
+"""Waits for one message at a time. Use it for a topic that's latched, or that never falls silent.
+If every message counts, use a subscriber."""
 
 import rospy
 from std_msgs.msg import UInt32

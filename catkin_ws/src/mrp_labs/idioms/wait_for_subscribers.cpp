@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Waits for its subscribers before the first message. Use it if no message may be lost and you know
-// how many there are: it waits forever.
+// how many subscribers there are: it waits forever.
 
 #include <cstdint>
 
@@ -20,7 +20,7 @@ int main(int argc, char* argv[])
     {
       return 0;
     }
-    ros::WallDuration(0.1).sleep();  // ros::Duration would wait for a clock that is simulated
+    ros::WallDuration(0.1).sleep();  // ros::Duration would wait for a simulated clock
   }
 
   std_msgs::UInt32 msg;

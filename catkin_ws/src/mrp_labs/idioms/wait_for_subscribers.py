@@ -1,7 +1,7 @@
 #!/usr/bin/env python
 # SPDX-License-Identifier: BSD-3-Clause
 """Waits for its subscribers before the first message. Use it if no message may be lost and you know
-how many there are: it waits forever."""
+how many subscribers there are: it waits forever."""
 
 import time
 
@@ -17,7 +17,7 @@ def main():
     while publisher.get_num_connections() < expected:
         if rospy.is_shutdown():
             return
-        time.sleep(0.1)  # rospy.sleep would wait for a clock that is simulated
+        time.sleep(0.1)  # rospy.sleep would wait for a simulated clock
 
     msg = UInt32()
     for msg.data in (1, 2, 3):
