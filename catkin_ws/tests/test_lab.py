@@ -62,9 +62,9 @@ def test_entry_has_patterns_to_look_for_and_a_sum(name):
 @pytest.mark.parametrize(
     ("name", "found"),
     [
-        ("lach", "there is no lab 'lach'. The nearest: latch, latch_end."),
+        ("lach", "there's no lab 'lach'. The closest: latch, latch_end."),
         ("", "NAME is missing."),
-        ("../x", "there is no lab '../x'."),
+        ("../x", "there's no lab '../x'."),
     ],
 )
 def test_unknown_name_says_which_labs_exist(name, found):

@@ -76,8 +76,8 @@ def test_language_of_the_desktop_does_not_count(tmp_path):
     ("path", "arguments", "says"),
     [
         ("", (), "expected make new PKG=PATH, such as"),
-        ("src/Laser-Filter", (), "expected a name of small letters, digits and single"),
-        ("src/a", (), "expected a name of small letters, digits and single"),
+        ("src/Laser-Filter", (), "expected a name of lowercase letters, digits and single"),
+        ("src/a", (), "expected a name of lowercase letters, digits and single"),
         ("src/std_msgs", (), "std_msgs is a package of ROS"),
         ("src/there", (), "/src/there exists already"),
         ("laser_filter", (), "expected a folder in the src of a workspace"),

@@ -353,7 +353,7 @@ def test_make_why_answers_a_text():
 
 def test_nothing_is_near_what_is_no_error(index):
     assert [text for text in NO_ERRORS if index.nearest(text)] == []
-    assert why.answer([]).startswith("No text I know is close to this one.")
+    assert why.answer([]).startswith("I know no message like this one.")
 
 
 def test_make_why_reads_what_is_pasted_into_a_terminal():
@@ -397,7 +397,7 @@ def test_an_answer_says_when_the_error_happened_in_code_of_ros(index):
   File "/usr/lib/python3/dist-packages/rostopic/__init__.py", line 1, in _rostopic_cmd_echo
     x = args[0]
 IndexError: list index out of range"""
-    assert "ROS's own rostopic/__init__.py: look at what you gave" in why.answer(
+    assert "ROS's own rostopic/__init__.py: look at what you passed it" in why.answer(
         index.nearest(text), text
     )
 

@@ -250,8 +250,8 @@ def find(name):
         return labs[name]
     near = [lab for lab in labs if name and name in lab]
     near += [lab for lab in difflib.get_close_matches(name, labs, 5, 0.6) if lab not in near]
-    found = f"there is no lab {name!r}" if name else "NAME is missing"
-    near = f" The nearest: {', '.join(near)}." if near else ""
+    found = f"there's no lab {name!r}" if name else "NAME is missing"
+    near = f" The closest: {', '.join(near)}." if near else ""
     sys.exit(f"error: expected make lab NAME=LAB; {found}.{near} All {len(labs)}: make labs ALL=1")
 
 
@@ -272,7 +272,7 @@ def main():
     except NotSeenError as error:
         sys.exit(f"\nerror: {error}")
     except KeyboardInterrupt:
-        sys.exit("\nStopped; all that the lab started has ended.")
+        sys.exit("\nStopped: everything the lab started has ended.")
 
 
 if __name__ == "__main__":

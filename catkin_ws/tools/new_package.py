@@ -31,7 +31,7 @@ def fault_of(folder, language):
         return f"expected LANGUAGE=python, cpp or both; found LANGUAGE={language}"
     if not GOOD_NAME.fullmatch(folder.name):
         return (
-            "expected a name of small letters, digits and single underscores that begins with a"
+            "expected a name of lowercase letters, digits and single underscores that begins with a"
             f" letter, such as laser_filter; found {folder.name}. Choose another name"
         )
     if pathlib.Path("/usr/share", folder.name, "package.xml").exists():

@@ -30,8 +30,8 @@ def answer(found, text=""):
     """Return what the user reads about the answers to a text."""
     if not found:
         return (
-            "No text I know is close to this one. Look for the first line that says 'error', and "
-            "try that line on its own.\nAll the texts I know: " + _link("why")
+            "I know no message like this one. Look for the first line that says 'error', and "
+            "try that line by itself.\nAll the messages I know: " + _link("why")
         )
     parts, before = [], ()
     for number, one in enumerate(found, 1):
@@ -52,7 +52,7 @@ def _one_answer(number, one, shown, text):
     places = _PLACE.findall(text[max(at - _TRACEBACK, 0) : max(at, 0)])
     inside = _IN_ROS.fullmatch(places[-1]) if places else None
     if inside and _OF_PYTHON.search("\n".join(one.lines)):
-        lines.append(f"   note: It happened in ROS's own {inside[1]}: look at what you gave to it.")
+        lines.append(f"   note: It happened in ROS's own {inside[1]}: look at what you passed it.")
     return "\n".join([*lines, f"   page: {_link(one.entry.address)}"])
 
 

@@ -116,7 +116,7 @@ def test_first_exercise_at_a_terminal(tmp_path, env):
     )
     assert "A bracket is opened there" not in terminal.text
     terminal.press("e", "A bracket is opened there", "  page:     /")
-    terminal.press("e", "press e: then I explain.")
+    terminal.press("e", "press e and I'll explain.")
     terminal.press("h", "Hint", "Count the parentheses")
     terminal.press("s", "You'll see the solution when you've passed.")
     terminal.press("p", "The page subscriber: /")

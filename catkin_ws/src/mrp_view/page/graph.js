@@ -127,7 +127,7 @@ export class Graph {
     const group = reason && edge.state !== "dead" ? this.item(`edge ${edge.from} ${edge.to}`, detail, detail, path) : svg("g", {}, path);
     group.classList.add("edge", edge.state);
     group.append(svg("title", {}, detail));
-    const fault = { mismatch: "✗ other type", none: "? not connected" }[edge.state] ?? "";
+    const fault = { mismatch: "✗ types differ", none: "? not connected" }[edge.state] ?? "";
     this.edges.set(`${edge.publishes ? "p" : "s"} ${edge.from} ${edge.to}`, { path, badge, fault, group });
     return group;
   }

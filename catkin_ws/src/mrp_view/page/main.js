@@ -132,7 +132,7 @@ function showFindings() {
     if (latest?.tutorial) item.append(html("a", { href: `tutorial/${finding.page}` }, "Read more in the tutorial"));
     return item;
   });
-  const words = latest?.graph.nodes.length ? "Everything looks normal." : "No node is running, so there is nothing to see yet.";
+  const words = latest?.graph.nodes.length ? "Everything looks normal." : "No node is running, so there's nothing to see yet.";
   if (!items.length) items.push(html("li", {}, words));
   byId("findings").replaceChildren(...items);
 }
@@ -163,11 +163,11 @@ function choose() {
 function showStatus() {
   const words = [];
   const master = latest?.master;
-  if (state !== "live") words.push("The connection to the viewer is lost. This page tries to reconnect; what you see is from before.");
+  if (state !== "live") words.push("The connection to the viewer is lost. This page is trying to reconnect; until then, it shows what it saw last.");
   else if (paused) words.push("Paused here. The nodes keep running.");
   if (state === "live" && master) {
     if (master.state === "here") words.push(`Master ${master.uri}: ${count(latest.graph.nodes.length, "node")}, ${count(latest.graph.topics.length, "topic")}.`);
-    else if (master.state === "gone") words.push(`The master ${master.uri} doesn't answer. Below are the nodes that answered last; nodes that are connected don't need it.`);
+    else if (master.state === "gone") words.push(`The master ${master.uri} doesn't answer. Below are the nodes that answered last; connected nodes don't need a master.`);
     else if (master.state === "ended") words.push(`The nodes have ended, and so has the master. Waiting for a master at ${master.uri}: start one, for example with make run.`);
     else words.push(`No master at ${master.uri} yet. This page is waiting for one: try make run in another terminal.`);
   }

@@ -107,10 +107,10 @@ def test_types_that_cannot_be_shown():
     found, why = fields.message_class("std_msgs/UInt32", std_msgs.UInt32._md5sum)
     assert (found, why) == (std_msgs.UInt32, None)
     for name, md5sum, words in (
-        ("std_msgs/UInt32", "0", "is another one"),
+        ("std_msgs/UInt32", "0", "is a different one"),
         ("std_msgs/NoSuch", "0", "not installed"),
         ("no_such_package/A", "0", "not installed"),
-        ("../../etc/passwd", "0", "no name of a type"),
+        ("../../etc/passwd", "0", "isn't the name of a type"),
     ):
         found, why = fields.message_class(name, md5sum)
         assert found is None and words in why

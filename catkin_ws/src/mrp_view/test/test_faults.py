@@ -75,7 +75,7 @@ class TestFaults(unittest.TestCase):
                     page.wait_for(
                         lambda: page.link_states().get(link, [""])[0] == "none", "no connection"
                     )
-                    self.assertIn("not visible from outside", page.link_states()[link][1])
+                    self.assertIn("can't reach the publisher", page.link_states()[link][1])
                 self.assertEqual(page.edges()[topic, other], "none")
                 page.wait_for(
                     lambda: set(publishers) <= set(log_senders(page)), "both logs are heard"

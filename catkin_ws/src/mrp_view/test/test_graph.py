@@ -106,7 +106,7 @@ def test_link_of_two_that_are_not_connected():
         assert graph.link(observation, "/t", "/pub", "/sub") == ("waiting", "not connected yet")
         observation.grow_older()
     state, why = graph.link(observation, "/t", "/pub", "/sub")
-    assert state == "none" and "not visible from outside" in why
+    assert state == "none" and "can't reach the publisher's address" in why
     observation.reports["/sub"].state = DEAD
     assert graph.link(observation, "/t", "/pub", "/sub") == ("dead", "")
 

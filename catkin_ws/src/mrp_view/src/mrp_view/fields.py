@@ -56,15 +56,15 @@ def stamp_of(raw):
 def message_class(type_name, md5sum):
     """Return (class, None), or (None, why messages of that type cannot be shown here)."""
     if not _TYPE.fullmatch(type_name):
-        return None, f"{type_name} is no name of a type"
+        return None, f"{type_name} isn't the name of a type"
     try:
         found = roslib.message.get_message_class(type_name)
     except Exception as error:  # whatever the module of another package does when it is loaded
-        return None, f"{type_name} cannot be loaded here: {error}"
+        return None, f"{type_name} can't be loaded here: {error}"
     if found is None:
-        return None, f"{type_name} is not installed where this page comes from"
+        return None, f"{type_name} isn't installed where the viewer runs"
     if found._md5sum != md5sum:
-        return None, f"the {type_name} that is installed here is another one"
+        return None, f"the {type_name} that's installed here is a different one"
     return found, None
 
 

@@ -175,8 +175,8 @@ def link(observation, topic, publisher, subscriber):
         return "waiting", "not connected yet"
     of_type = f" ({has})" if has else ""
     return "none", (
-        f"{subscriber} is not connected to {publisher}{of_type}, though both answer. Why is not "
-        "visible from outside: another type, or an address that it cannot reach. Its log says more"
+        f"{subscriber} isn't connected to {publisher}{of_type}, though both answer. Perhaps the "
+        "types differ, or it can't reach the publisher's address. Its log says more"
     )
 
 

@@ -39,7 +39,7 @@ class Proxy:
         Raises one of ERRORS.
         """
         if self._server is None:
-            raise OSError(f"{self.uri} is no address")
+            raise OSError(f"{self.uri} isn't an address")
         answer = getattr(self._server, method)("/mrp_view", *arguments)
         if not isinstance(answer, list) or len(answer) not in (2, 3):
             raise xmlrpc.client.Error(f"{method} returned {answer!r}")

@@ -39,7 +39,7 @@ class _Guarded:
         if not access.allowed_host(self.request.host, view.address, view.names):
             self.set_status(403)
             self.finish(
-                "The viewer doesn't serve its page under this address. Open the address that it "
+                "The viewer doesn't serve its page at this address. Open the address that it "
                 "printed, or start it with --name and the name in your address bar.\n"
             )
 
@@ -58,7 +58,7 @@ class Tutorial(_Guarded, tornado.web.StaticFileHandler):
             return await super().get(path, include_body)
         self.set_header("Content-Type", "text/plain; charset=utf-8")
         self.set_status(404)
-        self.finish("The tutorial's pages are not built here. To build them: make docs\n")
+        self.finish("The tutorial's pages aren't built here. To build them: make docs\n")
 
     def set_extra_headers(self, path):
         if path.endswith(".html"):
@@ -223,12 +223,12 @@ class View:
                 layout = await loop.run_in_executor(None, structure.layout)
             except FileNotFoundError:
                 layout = {
-                    "error": "dot is not installed, which draws the graph: apt install graphviz"
+                    "error": "dot, which draws the graph, isn't installed: apt install graphviz"
                 }
             except subprocess.CalledProcessError as error:
-                layout = {"error": f"dot could not lay out the graph, and says: {error.stderr}"}
+                layout = {"error": f"dot couldn't lay out the graph, and says: {error.stderr}"}
             except (OSError, subprocess.SubprocessError) as error:
-                layout = {"error": f"dot could not lay out the graph: {error}"}
+                layout = {"error": f"dot couldn't lay out the graph: {error}"}
         self._being_laid_out.discard(structure.key)
         self._layouts[structure.key] = layout
         while len(self._layouts) > _LAYOUTS:

@@ -92,7 +92,7 @@ class Followed:
         course = self.watched.course
         while course.open:
             exercise = self.watched.exercise
-            show_task(exercise, "I check it again")
+            show_task(exercise, "I'll check it again")
             while not course.is_passed(exercise):
                 self.show()
                 time.sleep(INTERVAL)

@@ -73,7 +73,7 @@ def task(watched: Watched, hint: bool, explains: bool, width: int) -> Iterator[L
         if not watched.course.open:
             yield from _congratulation(watched.course, width)
         return
-    how = "Open this file in another window (o opens it) and save your change. I check each save."
+    how = "Open this file in another window (o opens it) and save your change. I'll check it."
     yield from _wrapped(how, width)
     yield from _link(str(exercise.file), width)
     if hint:
@@ -116,7 +116,7 @@ def _findings(check: Check | None, explains: bool, width: int) -> Iterator[Line]
     elif check.done:
         yield from _wrapped("No tool complains, and still it doesn't do its job.", width)
     yield "", ""
-    yield from _wrapped("Find it yourself, or press e: then I explain.", width)
+    yield from _wrapped("Find it yourself, or press e and I'll explain.", width)
 
 
 def list_of(watched: Watched, chosen: int) -> Iterator[Line]:
