@@ -133,7 +133,7 @@ def warnings(output: str, copy: pathlib.Path) -> Iterator[tuple[str, int, str, s
 def _no_return(package: Package, file: str, line: int) -> Finding:
     return Finding(
         "compile",
-        f"The function that ends in line {line} of {file} says that it returns a value, but has no"
+        f"The function that ends on line {line} of {file} says that it returns a value, but has no"
         " return: its caller gets an arbitrary value, and the node may crash.",
         file,
         line,

@@ -157,7 +157,7 @@ def _no_package(package: Package, model: Model, match: re.Match[str], text: str)
 def _no_source(package: Package, model: Model, match: re.Match[str], text: str) -> _Said:
     near = nearest(match.group(1), package.of_kind("cpp"))
     said = f"there's no source {match.group(1)}.{perhaps(near)}"
-    return said, "Name a file that is there."
+    return said, "Name a file that exists."
 
 
 def _no_target(package: Package, model: Model, match: re.Match[str], text: str) -> _Said:
@@ -182,7 +182,7 @@ def _no_dependency(package: Package, model: Model, match: re.Match[str], text: s
 def _no_script(package: Package, model: Model, match: re.Match[str], text: str) -> _Said:
     shown = "/".join(match.group(1).rsplit("/", 2)[1:])
     near = nearest(shown, package.of_kind("python"))
-    return f"there's no script {shown}.{perhaps(near)}", "Name a file that is there."
+    return f"there's no script {shown}.{perhaps(near)}", "Name a file that exists."
 
 
 # (command or None for any, what CMake says) -> what it means and what to do: these words, or a

@@ -61,7 +61,7 @@ class Typed(PythonRule):
                 yield more, more.value, "computes with it"
         for given in self.source.nodes(ast.Assign):
             if self._of_message(given.targets[0]):
-                yield given, given.value, "gives it to a field of a message, which is a number"
+                yield given, given.value, "assigns it to a message's field, which is a number"
         for node in self.source.nodes(ast.expr):
             if isinstance(node, ast.Compare) and isinstance(node.ops[0], _ORDERS + _EQUALITIES):
                 for one, other in (pair := (node.left, node.comparators[0])), pair[::-1]:

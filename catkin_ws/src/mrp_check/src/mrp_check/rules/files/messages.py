@@ -305,7 +305,7 @@ def _of_line(
         if unknown is None:
             return
         said, near = unknown
-        expected = near or "the type of a message that is there"
+        expected = near or "a message type that exists"
     yield Finding(
         "messages",
         f"{path} has a line that ROS can't read: {said}",

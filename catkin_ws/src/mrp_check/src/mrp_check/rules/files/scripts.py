@@ -79,7 +79,7 @@ def _shadowing(package: Package, path: str) -> Iterator[Finding]:
         yield Finding(
             "scripts",
             f"The script is called {name}, and {who} imports a module {stem}: Python looks first"
-            " in the script's own folder, so it takes the script for the module.",
+            " in the script's own folder, so it mistakes the script for the module.",
             path,
             line,
             expected="a name that no module has",
@@ -106,7 +106,7 @@ def _listed(package: Package, model: Model) -> Iterator[Finding]:
             script.line,
             expected="the name of a file, relative to CMakeLists.txt",
             seen=script.path,
-            fix=f"Write {near} for {script.path}." if near else "Name a file that is there.",
+            fix=f"Write {near} for {script.path}." if near else "Name a file that exists.",
         )
 
 

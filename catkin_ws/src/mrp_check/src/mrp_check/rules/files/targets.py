@@ -37,7 +37,7 @@ def _no_sources(case: Case) -> Iterator[Finding]:
                 line,
                 expected="the name of a file, relative to CMakeLists.txt",
                 seen=source,
-                fix=f"Write {near} for {source}." if near else "Name a file that is there.",
+                fix=f"Write {near} for {source}." if near else "Name a file that exists.",
             )
 
 

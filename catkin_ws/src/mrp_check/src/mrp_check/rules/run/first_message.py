@@ -48,7 +48,7 @@ def _findings(case: Case) -> Iterator[Finding]:
                 certainty=SEEN if heard else HABIT,
                 expected="a wait until somebody is connected; or latch",
                 seen=f"{len(times)} message(s), {times[-1] - one.answered:.3f} s after that",
-                fix=f"Wait first until {call or 'getNumSubscribers()'} is more than 0, or latch.",
+                fix=f"First wait until {call or 'getNumSubscribers()'} is more than 0, or latch.",
                 node=run.node,
             )
 

@@ -106,7 +106,7 @@ def _of_types(case: Case, graph: Graph, end: End, publishers: list[End]) -> Iter
             HABIT if by_chance and end.type in types else SEEN,
             expected=other.type,
             seen=end.type,
-            fix="Let both use the same type.",
+            fix="Use the same type in both.",
             node=end.node,
         )
 

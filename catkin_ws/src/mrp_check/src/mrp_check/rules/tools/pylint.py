@@ -91,7 +91,7 @@ _TABLE = {
     ),
     "no-value-for-parameter": Row(
         "This call lacks an argument: Python raises a TypeError here.",
-        "Give it what the function takes.",
+        "Pass what the function takes.",
         READ,
     ),
     "pointless-statement": Row(
@@ -111,7 +111,7 @@ _TABLE = {
     ),
     "too-many-function-args": Row(
         "This call has more arguments than the function takes: Python raises a TypeError here.",
-        "Give it what the function takes.",
+        "Pass what the function takes.",
         READ,
     ),
     "unbalanced-tuple-unpacking": Row(
@@ -130,7 +130,7 @@ _TABLE = {
         READ,
     ),
     "unused-wildcard-import": Row(
-        "This takes all names of a module, and hides other things of the same name.",
+        "This imports all names of a module, and hides others of the same name.",
         "Import the names that you use.",
         HINT,
     ),
