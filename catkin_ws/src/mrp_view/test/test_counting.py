@@ -108,8 +108,8 @@ def test_types_that_cannot_be_shown():
     assert (found, why) == (std_msgs.UInt32, None)
     for name, md5sum, words in (
         ("std_msgs/UInt32", "0", "is a different one"),
-        ("std_msgs/NoSuch", "0", "not installed"),
-        ("no_such_package/A", "0", "not installed"),
+        ("std_msgs/NoSuch", "0", "isn't installed"),
+        ("no_such_package/A", "0", "isn't installed"),
         ("../../etc/passwd", "0", "isn't the name of a type"),
     ):
         found, why = fields.message_class(name, md5sum)
