@@ -9,6 +9,7 @@ import pytest
 from check_rules import told
 from mrp_check.code import executables, facts, python_facts, python_read, source_node, uses
 from mrp_check.confined.places import Kind, Place
+from mrp_check.package.package import Package
 from mrp_check.rules.run import starts
 
 pytestmark = pytest.mark.quick
@@ -369,6 +370,15 @@ def test_only_a_client_of_a_service_needs_no_init_node(call, found, tmp_path):
     said = [*check_rules.node_start.RULE.findings(case)]
     assert [f.id for f in said] == [id_ for id_, _ in found]
     assert all('init_node("odd")' in f.fix for f in said)  # a node's name has no dot
+
+
+@pytest.mark.parametrize("is_script", [True, False])
+def test_a_module_of_a_python_package_is_no_script(is_script, tmp_path):
+    head = "#!/usr/bin/env python3\n" * is_script
+    package = check_rules.make(tmp_path, src__lib__odd_DOT_py=f"{head}rospy.init_node('odd')\n")
+    (tmp_path / "src" / "lib" / "odd.py").chmod(0o755 if is_script else 0o644)
+    (tmp_path / "src" / "lib" / "__init__.py").touch()
+    assert executables.is_script(Package(package.root), "src/lib/odd.py") == is_script
 
 
 @pytest.mark.parametrize(("between", "misses"), [(6, True), (20, False)])

@@ -39,17 +39,23 @@ def is_script(package: Package, path: str) -> bool:
         return False
     if not _INIT.search(package.text(path)) and _is_imported(package, path):
         return False
-    is_started = package.shebang(path) or package.is_executable(path)
-    return bool(is_started or _INIT.search(package.text(path)))
+    if package.shebang(path) or package.is_executable(path):
+        return True
+    # In a Python package, it's a module that a script elsewhere imports and starts.
+    return not _is_module(package, path) and bool(_INIT.search(package.text(path)))
 
 
 def is_tool(package: Package, path: str) -> bool:
     """Return whether a Python file is no node, and rosrun finds it all the same."""
-    is_module = f"{path.rpartition('/')[0]}/__init__.py" in package.files
     starts = package.shebang(path) and package.is_executable(path)
     if path.endswith(".cfg"):  # dynamic_reconfigure runs it, by the right Python
         return False
-    return bool(starts) and not is_module and not _is_imported(package, path)
+    return bool(starts) and not _is_module(package, path) and not _is_imported(package, path)
+
+
+def _is_module(package: Package, path: str) -> bool:
+    """Return whether a file is in a folder that Python imports as a package."""
+    return f"{path.rpartition('/')[0]}/__init__.py" in package.files
 
 
 def _is_imported(package: Package, path: str) -> bool:
