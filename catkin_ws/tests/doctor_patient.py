@@ -117,7 +117,7 @@ class Patient:
             shutil.copy(DOCTOR.with_name(part), self.script.parent)
         parts = ("__init__.py", "releases.py", "contract/__init__.py", "contract/resources.py")
         files = [f"src/mrp_check/{part}" for part in parts]
-        for file in (*files, "package.xml", "specs/pub_sub.yaml"):
+        for file in (*files, "package.xml", "contracts/pub_sub.yaml"):
             name = f"src/mrp_check/{file}"
             self.write(name, (WORKSPACE / name).read_text())
         # The tests about python3 take the real one; it imports rospy slowly.

@@ -27,7 +27,7 @@ def entries(spec):
     for name in LISTS:
         yield f"apt/{name}.txt", WORKSPACE / "apt" / f"{name}.txt"
     yield "mrp_check/package.xml", CHECKER / "package.xml"  # with the address of the pages
-    for folder in ("schema", "scripts", "specs", "src", "templates"):
+    for folder in ("contracts", "schema", "scripts", "src", "templates"):
         for path in sorted((CHECKER / folder).rglob("*")):
             if path.is_file() and "__pycache__" not in path.parts:
                 yield f"mrp_check/{path.relative_to(CHECKER)}", path
@@ -36,7 +36,7 @@ def entries(spec):
 def main():
     if len(sys.argv) not in (2, 3):
         sys.exit(f"error: expected {__doc__.splitlines()[2]}")
-    target, spec = map(pathlib.Path, [*sys.argv[1:], CHECKER / "specs" / "pub_sub.yaml"][:2])
+    target, spec = map(pathlib.Path, [*sys.argv[1:], CHECKER / "contracts" / "pub_sub.yaml"][:2])
     if not spec.is_file():
         sys.exit(f"error: expected the file of a contract; there is no file {spec}")
     with zipfile.ZipFile(target, "w", zipfile.ZIP_DEFLATED) as archive:

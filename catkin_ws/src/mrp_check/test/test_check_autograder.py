@@ -83,7 +83,7 @@ def test_it_has_lf_whatever_the_checkout_did(tmp_path):
     shutil.copytree(WORKSPACE / "tools", tmp_path / "tools")
     shutil.copytree(WORKSPACE / "apt", tmp_path / "apt")
     checker = WORKSPACE / "src" / "mrp_check"
-    for name in ("schema", "scripts", "specs", "src", "templates"):
+    for name in ("contracts", "schema", "scripts", "src", "templates"):
         ignore = shutil.ignore_patterns("__pycache__")
         shutil.copytree(checker / name, tmp_path / "src" / "mrp_check" / name, ignore=ignore)
     shutil.copy(checker / "package.xml", tmp_path / "src" / "mrp_check")

@@ -227,7 +227,7 @@ def test_a_worker_with_another_checker_refuses(tmp_path, what):
     hand_in(tmp_path / "class", "anna")
     own = tmp_path / "mrp_check"
     if what == "another":
-        for name in ("src", "templates", "schema", "specs"):
+        for name in ("src", "templates", "schema", "contracts"):
             shutil.copytree(resources.folder(name), own / name)
         with open(own / "src" / "mrp_check" / "check.py", "a") as file:
             file.write("# another\n")

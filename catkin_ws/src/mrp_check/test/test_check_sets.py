@@ -59,7 +59,7 @@ def run_check(tmp_path):
 
     def run(folder, spec, *options):
         report = tmp_path / "report.json"
-        done = called(folder, "--spec", CHECK / "specs" / spec, "--json", report, *options)
+        done = called(folder, "--spec", CHECK / "contracts" / spec, "--json", report, *options)
         assert report.exists(), done.stdout
         data = json.loads(report.read_text())
         assert done.returncode == {"met": 0, "findings": 1}[data["verdict"]], done.stdout

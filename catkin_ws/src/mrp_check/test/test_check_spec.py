@@ -78,18 +78,10 @@ def test_each_key_says_what_it_is():
         ("title: An exercise\n", "", r":1: .*expected the key 'title'; it is missing\."),
         ("topic: a_topic", "topic: a_topik", r":8: .*no topic 'a_topik'.*mean 'a_topic'\?"),
         ("publishes:", "publish:", r":6: .*no key 'publish'.*mean 'publishes'\?"),
-        (
-            "type: std_msgs/UInt32",
-            "type: UInt32",
-            r":4: topics\.a_topic\.type: expected a type such as",
-        ),
-        ("type: std_msgs/UInt32", "type: 3", r":4: .*expected a text; found 3\."),
+        ("std_msgs/UInt32", "UInt32", r":4: topics\.a_topic\.type: expected a type such as"),
+        ("std_msgs/UInt32", "3", r":4: .*expected a text; found 3\."),
         ("topic: a_topic", "topic: a_topic\n      queue: 0", r":9: .*at least 1; found 0\."),
-        (
-            "topic: a_topic",
-            "topic: a_topic\n    prints: ['[A']",
-            r":9: .*isn't a regular expression",
-        ),
+        ("topic: a_topic", "topic: a_topic\n    prints: ['[A']", r":9: .*isn't a regular expr"),
         ("topic: a_topic", "topic: a_topic\n    prints: ['{valeu}']", r":9: .*mean 'value'\?"),
         ("topic: a_topic", "topic: a_topic\n    prints: ['[AB] 1']", r":9: .*one letter of 'AB'"),
         ("std_msgs/UInt32", "PACKAGE/Count", r":4: .*'messages' has no message 'Count'"),
@@ -104,24 +96,16 @@ def test_each_key_says_what_it_is():
         ("std_msgs/UInt32", "std_msgs/UInt23", r":4: .*no message 'std_msgs/UInt23'.*mean"),
         ("std_msgs/UInt32", "no_msgs/UInt32", r":4: .*no message 'no_msgs/UInt32'"),
         (
-            "type: std_msgs/UInt32",
-            "type: std_msgs/UInt32\n    field: dta",
-            r":5: .*found 'dta'; std_msgs/UInt32 has: data\. Did you mean 'data'\?",
+            "UInt32",
+            "UInt32\n    field: dta",
+            r":5: .*'dta'; std_msgs/UInt32 has: data\. Did you mean",
         ),
-        (
-            "type: std_msgs/UInt32",
-            "type: std_msgs/Header\n    field: stamp.secs.x",
-            r":5: .*time has no fields",
-        ),
-        (
-            "type: std_msgs/UInt32",
-            "type: std_msgs/Header\n    field: data",
-            r":5: .*seq, stamp, frame_id",
-        ),
+        ("UInt32", "Header\n    field: stamp.secs.x", r":5: .*time has no fields"),
+        ("UInt32", "Header\n    field: data", r":5: .*seq, stamp, frame_id"),
         (
             "launch:",
-            "messages: {Count: {count: uint23}}\nlaunch:",
-            r":9: messages\.Count\.count: there's no message 'uint23'",
+            "messages: {A: {b: uint23}}\nlaunch:",
+            r":9: messages\.A\.b: .*message 'uint23'",
         ),
         ("std_msgs/UInt32", "std_msgs/UInt32\n    text: a {value}", r":5: .*is a uint32\."),
         ("std_msgs/UInt32", "std_msgs/String\n    text: hello", r":5: .*text with \{value\} in it"),
@@ -177,11 +161,7 @@ nodes:
             r":13: nodes\.a_node\.offers: .*mean 'a_service'",
         ),
         ("receives: {a_topic", "receives: {b_topic", r":17: .*no topic 'b_topic'"),
-        (
-            "publishes: {a_topic: {data: 2}}",
-            "publishes: {a_topic: {dat: 2}}",
-            r":18: .*mean 'data'",
-        ),
+        ("publishes: {a_topic: {data", "publishes: {a_topic: {dat", r":18: .*mean 'data'"),
         ("step: 2", "step: [2]", r":16: .*parameters\.step: expected a number, a text, true or"),
         (
             "      publishes: {a_topic: {data: 2}}\n",
@@ -213,24 +193,8 @@ def test_only_numbers_count(key, tmp_path):
         spec.read(path)
 
 
-def test_minimal_spec_can_be_read(tmp_path):
-    path = tmp_path / "minimal.yaml"
-    path.write_text(MINIMAL)
-    assert spec.read(path).node_path("a_node") == "/a_node"
-
-
-def test_missing_spec_is_told(tmp_path):
-    with pytest.raises(SpecError, match="can't be read"):
-        spec.read(tmp_path / "none.yaml")
-
-
-def test_schemas_are_json():
-    for name in ("spec.json", "report.json"):
-        assert json.loads((resources.folder("schema") / name).read_text())["title"]
-
-
 def test_requirements_point_to_pages_that_exist():
-    pages = resources.folder("specs").parents[1] / "mrp" / "doc" / "pages"
+    pages = resources.folder("contracts").parents[1] / "mrp" / "doc" / "pages"
     assert {requirement.stage for requirement in REQUIREMENTS.values()} == set(STAGES)
     for requirement in REQUIREMENTS.values():
         page, _, anchor = requirement.section.partition("#")

@@ -32,7 +32,7 @@ new file mode 100755
 @pytest.mark.parametrize("style", OTHERS)
 def test_style_makes_a_package(style, tmp_path):
     check_sets.lay_out(style, tmp_path)
-    contract = spec.read(resources.folder("specs") / check_sets.spec_of(style))
+    contract = spec.read(resources.folder("contracts") / check_sets.spec_of(style))
     expected = {"package", "launch"} if contract.launch.file else {"package"}
     xml = [path for path in tmp_path.rglob("*") if path.suffix in (".launch", ".xml")]
     assert {ElementTree.parse(path).getroot().tag for path in xml} == expected
@@ -43,7 +43,7 @@ def test_head_names_what_is_there(style):
     fields = check_sets.fields_of(style)
     assert {*fields} <= {"SPDX-License-Identifier", "Style", *FIELDS}
     assert fields["Base"][0] in (*check_sets.STYLES, "nothing")
-    assert (resources.folder("specs") / check_sets.spec_of(style)).exists()
+    assert (resources.folder("contracts") / check_sets.spec_of(style)).exists()
     assert [id_ for id_ in fields.get("Warns", []) if id_ not in REQUIREMENTS] == []
 
 

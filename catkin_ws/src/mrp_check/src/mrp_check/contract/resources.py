@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The files beside the Python code: specs, schemas, templates, and defects."""
+"""The files beside the Python code: contracts, schemas, templates, and defects."""
 
 import functools
 import os
@@ -43,6 +43,6 @@ def link_to(page: str) -> str:
 
 @functools.lru_cache
 def _website() -> str:
-    manifest = folder("specs").parent / "package.xml"
+    manifest = folder("contracts").parent / "package.xml"
     found = re.search(r'<url type="website">(.*)</url>', manifest.read_text())
     return found[1] if found else ""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The contract of an exercise, read from a YAML file such as specs/pub_sub.yaml."""
+"""The contract of an exercise, read from a YAML file such as contracts/pub_sub.yaml."""
 
 from __future__ import annotations
 
@@ -52,10 +52,9 @@ class Spec:
     services: dict[str, Service] = dataclasses.field(default_factory=dict)
     is_contract: bool = True  # if not, it only lists the nodes of a package
 
-    def node_path(self, node_name: str, group: str | None = None) -> str:
+    def node_path(self, name: str) -> str:
         """Return a node's full name, such as /mrp/publisher_cpp_node."""
-        group = self.launch.group if group is None else group
-        return f"/{group}/{node_name}" if group else f"/{node_name}"
+        return f"/{self.launch.group}/{name}" if self.launch.group else f"/{name}"
 
     def asks(self, id_: str) -> bool:
         """Return whether a requirement counts."""
@@ -77,7 +76,7 @@ class Spec:
 def find(name: str) -> pathlib.Path:
     """Return the path of a spec: a file, or the name of one of ours, such as pub_sub."""
     path = pathlib.Path(name)
-    ours = resources.folder("specs") / (name if name.endswith(".yaml") else f"{name}.yaml")
+    ours = resources.folder("contracts") / (name if name.endswith(".yaml") else f"{name}.yaml")
     return ours if not path.is_file() and ours.is_file() else path
 
 
