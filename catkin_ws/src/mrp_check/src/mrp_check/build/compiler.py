@@ -119,7 +119,19 @@ def without_return(package: Package, output: str, copy: pathlib.Path) -> list[Fi
     it, and takes it. Such a function may return anything, or nowhere (C++17, 9.6.3)."""
     matches = map(_NO_RETURN.match, output.splitlines())
     places = dict.fromkeys(_place(match, copy) for match in matches if match)
-    return [_no_return(package, *place) for place in places if place]
+    return [
+        Finding(
+            "compile",
+            f"The function that ends on line {line} of {file} says that it returns a value, but has"
+            " no return: its caller gets an arbitrary value, and the node may crash.",
+            file,
+            line,
+            expected="return, with a value",
+            seen=package.line(file, line),
+            fix="Return a value there: true, in the callback of a service that did its work.",
+        )
+        for file, line in filter(None, places)
+    ]
 
 
 def warnings(output: str, copy: pathlib.Path) -> Iterator[tuple[str, int, str, str]]:
@@ -128,19 +140,6 @@ def warnings(output: str, copy: pathlib.Path) -> Iterator[tuple[str, int, str, s
         place = _place(match, copy)
         if place:
             yield (*place, match["name"], match["text"])
-
-
-def _no_return(package: Package, file: str, line: int) -> Finding:
-    return Finding(
-        "compile",
-        f"The function that ends on line {line} of {file} says that it returns a value, but has no"
-        " return: its caller gets an arbitrary value, and the node may crash.",
-        file,
-        line,
-        expected="return, with a value",
-        seen=package.line(file, line),
-        fix="Return a value there: true, in the callback of a service that did its work.",
-    )
 
 
 def _place(match: re.Match[str], copy: pathlib.Path) -> Line | None:

@@ -7,10 +7,15 @@ The later stages use it to name the file and the line of what they see happen.
 from __future__ import annotations
 
 import dataclasses
+from typing import Container
 
 from mrp_check.code.python_source import Source
 from mrp_check.confined.places import Kind, Place
 from mrp_check.contract.finding import Finding
+
+_ASKED = {
+    *(Kind.ASKS, Kind.OFFERS, Kind.READS, Kind.KNOWS, Kind.SETS, Kind.COMMANDS, Kind.SERVES),
+}
 
 
 @dataclasses.dataclass
@@ -39,6 +44,18 @@ class Facts:
         files = self.sources.get(node, [])
         found = [p for p in self.places if p.file in files and (not kinds or p.kind in kinds)]
         return sorted(found, key=lambda place: (files.index(place.file), place.line))
+
+    def asked(self, files: Container[str]) -> list[Place]:
+        """Return where these sources name a service, an action or a parameter, to ask for it or to
+        give it."""
+        places = (place for place in self.places if place.kind in _ASKED)
+        return [place for place in places if place.file in files and place.base]
+
+    def unwaited(self, files: Container[str]) -> Place | None:
+        """Return where these sources call a service, if they never wait for any."""
+        kinds = (Kind.WAITS, Kind.CALLS, Kind.ASKS)
+        places = [p for kind in kinds for p in self.places if p.kind is kind and p.file in files]
+        return places[0] if places and places[0].kind is not Kind.WAITS else None
 
     def first(self, *kinds: Kind) -> tuple[str | None, int | None]:
         """Return the (file, line) of the first of these kinds that any source has."""

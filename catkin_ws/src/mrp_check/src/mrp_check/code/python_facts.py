@@ -14,8 +14,26 @@ from mrp_check.confined.places import Kind, Place
 Definition = Union[ast.FunctionDef, ast.ClassDef]
 
 LEVELS = {"logdebug", "loginfo", "logwarn", "logerr", "logerror", "logfatal"}
-_WAITS = ("join", "wait", "pause")  # methods that do
-_GOAL_ENDS = ("set_succeeded", "set_aborted", "set_preempted", "set_canceled")
+# A method, or a function -> what a call of it is, whatever it is given.
+_METHODS = {
+    **dict.fromkeys(("set_succeeded", "set_aborted", "set_preempted", "set_canceled"), Kind.ENDS),
+    **{"publish": Kind.PUBLISH, "wait_for_server": Kind.WAITS},
+    **dict.fromkeys(("join", "wait", "pause"), Kind.SLEEP),
+}
+_FUNCTIONS = {
+    "rospy.spin": Kind.SPIN,
+    **dict.fromkeys(("print", "sys.stdout.write"), Kind.PRINT),
+    **dict.fromkeys(("os.fork", "os.popen", "os.system", "multiprocessing.Process"), Kind.STARTS),
+    **dict.fromkeys(("os.kill", "os.killpg"), Kind.KILLS),
+}
+# What is asked for or given by its name -> the kind; where its type stands, and as what.
+_NAMED = {
+    "rospy.ServiceProxy": (Kind.ASKS, 1, "service_class"),
+    "rospy.wait_for_service": (Kind.ASKS, 9, ""),
+    "rospy.Service": (Kind.OFFERS, 1, "service_class"),
+    "actionlib.SimpleActionClient": (Kind.COMMANDS, 1, "ActionSpec"),
+    "actionlib.SimpleActionServer": (Kind.SERVES, 1, "ActionSpec"),
+}
 _FAIL = ("wait_for_server", "wait_for_result")
 # What asks whether the node is to end, what ends the program, and what raises an error of rospy's
 # once it is to end. publish() gives up in silence then.
@@ -109,22 +127,20 @@ class _Node:
         look = next((look for names, look in _CALLS if name in names), None)
         if look:
             yield from look(self, node)
+        elif name in _FUNCTIONS:
+            yield self.place(_FUNCTIONS[name])
+        elif name in _NAMED:
+            yield from self.named(*_NAMED[name])
         elif name.startswith("rospy.log"):
             yield from self.log(node, name.split(".")[1])
         elif name.startswith("subprocess."):
             yield self.place(Kind.STARTS)
-        elif method in _GOAL_ENDS:
-            yield self.place(Kind.ENDS)
-        elif method == "publish":
-            yield self.place(Kind.PUBLISH)
-        elif method == "wait_for_server":
-            yield self.place(Kind.WAITS)
         elif name in ("input", "raw_input"):
             yield self.place(Kind.SLEEP)
             is_own = self.source.definition(node.func) or name in self.source.imports
             yield from () if is_own else self.keyboard()
-        elif method in _WAITS:
-            yield self.place(Kind.SLEEP)
+        elif method in _METHODS:
+            yield self.place(_METHODS[method])
 
     def called(self, node: ast.Call) -> str:
         """Return the name of what is called; empty if it has none."""
@@ -228,6 +244,8 @@ class _Node:
         name = self.value(0, "ns") if name is UNKNOWN else name
         if isinstance(name, str):
             yield self.place(kind, name, type=type_.rpartition(".")[2])
+        if self.called(self.node) == "rospy.wait_for_service":
+            yield self.place(Kind.WAITS)
 
     def parameter(self, node: ast.Call) -> Iterator[Place]:
         name, key = self.called(node), argument(node, 0, "param_name") or argument(node, 0, "key")
@@ -237,22 +255,6 @@ class _Node:
             kind = Kind.READS
         if isinstance(self.source.value(key), str):
             yield self.place(kind, self.source.value(key))
-
-    def asks_service(self, node: ast.Call) -> Iterator[Place]:
-        return self.named(Kind.ASKS, 1, "service_class")
-
-    def waits_for_service(self, node: ast.Call) -> Iterator[Place]:
-        yield from self.named(Kind.ASKS, 9, "")
-        yield self.place(Kind.WAITS)
-
-    def offers_service(self, node: ast.Call) -> Iterator[Place]:
-        return self.named(Kind.OFFERS, 1, "service_class")
-
-    def commands(self, node: ast.Call) -> Iterator[Place]:
-        return self.named(Kind.COMMANDS, 1, "ActionSpec")
-
-    def serves(self, node: ast.Call) -> Iterator[Place]:
-        return self.named(Kind.SERVES, 1, "ActionSpec")
 
     def definition(self, node: Definition) -> Iterator[Place]:
         unused = True if is_unused(self.source, node) else None
@@ -294,22 +296,10 @@ class _Node:
         yield self.place(Kind.TIMER, period=self.value(0, "duration"))
         yield self.place(Kind.SLEEP)
 
-    def spin(self, node: ast.Call) -> Iterator[Place]:
-        yield self.place(Kind.SPIN)
-
-    def print(self, node: ast.Call) -> Iterator[Place]:
-        yield self.place(Kind.PRINT)
-
     def exit(self, node: ast.Call) -> Iterator[Place]:
         code = self.value(0, "status")
         value = code if isinstance(code, int) else int(isinstance(code, str))
         yield self.place(Kind.EXIT, self.called(node), value=value)
-
-    def starts(self, node: ast.Call) -> Iterator[Place]:
-        yield self.place(Kind.STARTS)
-
-    def kills(self, node: ast.Call) -> Iterator[Place]:
-        yield self.place(Kind.KILLS)
 
     def length(self, node: ast.Call) -> Iterator[Place]:
         if node.args and self.source.dotted(node.args[0]) == "sys.argv":
@@ -345,22 +335,13 @@ _CALLS = (
     (("rospy.Timer", "rospy.timer.Timer"), _Node.timer),
     (("rospy.Rate", "rospy.timer.Rate"), _Node.rate),
     (("rospy.sleep", "time.sleep"), _Node.sleep),
-    (("rospy.spin",), _Node.spin),
-    (("print", "sys.stdout.write"), _Node.print),
     (
         ("sys.exit", "os._exit", "exit", "quit", "SystemExit", "rospy.signal_shutdown"),
         _Node.exit,
     ),
-    (("os.fork", "os.popen", "os.system", "multiprocessing.Process"), _Node.starts),
-    (("os.kill", "os.killpg"), _Node.kills),
     (("len",), _Node.length),
     (("signal.signal",), _Node.signal),
     (("itertools.count",), _Node.count),
-    (("rospy.ServiceProxy",), _Node.asks_service),
-    (("rospy.wait_for_service",), _Node.waits_for_service),
-    (("rospy.Service",), _Node.offers_service),
-    (("actionlib.SimpleActionClient",), _Node.commands),
-    (("actionlib.SimpleActionServer",), _Node.serves),
     (
         tuple(f"rospy.{one}_param" for one in ("get", "has", "search", "set"))
         + ("rospy.get_param_cached",),

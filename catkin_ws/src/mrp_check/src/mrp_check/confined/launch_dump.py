@@ -50,12 +50,6 @@ class Started:
         """The node's full name."""
         return self.namespace.rstrip("/") + "/" + self.name
 
-    def resolved(self, name: str) -> str:
-        """Return the full name of what the node calls so. https://wiki.ros.org/Names"""
-        if name.startswith("~"):
-            return f"{self.path}/{name[1:].lstrip('/')}"
-        return name if name.startswith("/") else f"{self.namespace.rstrip('/')}/{name}"
-
 
 @dataclasses.dataclass
 class Dump:

@@ -21,7 +21,7 @@ import socket
 import threading
 import time
 import xmlrpc.client
-from typing import Any, DefaultDict, Dict, Iterable, List, Optional, Set, Tuple, TypeVar
+from typing import Any, DefaultDict, Dict, Iterable, List, Optional, Tuple, TypeVar
 
 import genpy
 import rosgraph
@@ -159,10 +159,6 @@ class Observer:
         handler = self._handler
         kinds = (handler.publishers, handler.subscribers, handler.services)
         return any(node in nodes for kind in kinds for nodes in handler.registered(kind).values())
-
-    def nodes(self) -> Set[str]:
-        """Return the names of all nodes that have registered anything so far."""
-        return {r.node for r in self.seen.publications + self.seen.subscriptions}
 
     def offers(self, node: str, service: str) -> bool:
         """Return whether a node has announced a service."""
@@ -343,6 +339,12 @@ class _Master(rosmaster.master_api.ROSMasterHandler):  # type: ignore[misc]  # i
         with self.ps_lock:
             return {name: dict(nodes) for name, nodes in kind.map.items()}
 
+    @staticmethod
+    def _note(records: List[Registration], node: str, name: str, type_: str = "") -> None:
+        """Note what another one than this observer has registered, or looked for."""
+        if node != NAME:
+            records.append(Registration(node, name, type_, time.monotonic()))
+
     def registerPublisher(  # noqa: N802
         self, caller_id: str, topic: str, topic_type: str, caller_api: str
     ) -> Answer:
@@ -362,24 +364,22 @@ class _Master(rosmaster.master_api.ROSMasterHandler):  # type: ignore[misc]  # i
         self, caller_id: str, topic: str, topic_type: str, caller_api: str
     ) -> Answer:
         answer: Answer = super().registerSubscriber(caller_id, topic, topic_type, caller_api)
-        if answer[0] == 1 and caller_id != NAME:
-            registration = Registration(caller_id, topic, topic_type, time.monotonic())
-            self._observer.seen.subscriptions.append(registration)
+        if answer[0] == 1:
+            self._note(self._observer.seen.subscriptions, caller_id, topic, topic_type)
         return answer
 
     def registerService(  # noqa: N802
         self, caller_id: str, service: str, service_api: str, caller_api: str
     ) -> Answer:
         answer: Answer = super().registerService(caller_id, service, service_api, caller_api)
-        if answer[0] == 1 and caller_id != NAME:
-            registration = Registration(caller_id, service, "", time.monotonic())
-            self._observer.seen.services.append(registration)
+        if answer[0] == 1:
+            self._note(self._observer.seen.services, caller_id, service)
         return answer
 
     def lookupService(self, caller_id: str, service: str) -> Answer:  # noqa: N802
         lookups = self._observer.seen.lookups
         known = any((one.node, one.topic) == (caller_id, service) for one in list(lookups))
-        if caller_id != NAME and not known and len(lookups) < _KEEP:
-            lookups.append(Registration(caller_id, service, "", time.monotonic()))
+        if not known and len(lookups) < _KEEP:
+            self._note(lookups, caller_id, service)
         answer: Answer = super().lookupService(caller_id, service)
         return answer

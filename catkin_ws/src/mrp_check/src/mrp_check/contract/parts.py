@@ -29,23 +29,23 @@ def default(key: str, *kind: str) -> Any:
     )
 
 
-def _type_in(kind: str, package_name: str) -> str:
-    package, name = kind.split("/")
-    return f"{package_name if package == PACKAGE else package}/{name}"
+class _Typed:
+    type: str
+
+    def type_in(self, package_name: str) -> str:
+        """Return the type with the package's name in it."""
+        package, name = self.type.split("/")
+        return f"{package_name if package == PACKAGE else package}/{name}"
 
 
 @dataclasses.dataclass(frozen=True)
-class Topic:
+class Topic(_Typed):
     name: str
     type: str
     field: str = default("field", "topic")
     namespace: str = default("namespace", "topic")
     text: str | None = None  # all that the field says, with {value} in the value's place
     kind: str = ""  # the field's type; empty if the messages have no such field
-
-    def type_in(self, package_name: str) -> str:
-        """Return the type with the package's name in it."""
-        return _type_in(self.type, package_name)
 
     @property
     def has_decimals(self) -> bool:
@@ -118,7 +118,7 @@ class Call:
 
 
 @dataclasses.dataclass(frozen=True)
-class Service:
+class Service(_Typed):
     """A service; request, response: field -> type, of a type of the package's own."""
 
     name: str
@@ -127,10 +127,6 @@ class Service:
     response: Mapping[str, str] = dataclasses.field(default_factory=dict)
     namespace: str = default("namespace", "service")
     examples: tuple[Call, ...] = ()
-
-    def type_in(self, package_name: str) -> str:
-        """Return the type with the package's name in it."""
-        return _type_in(self.type, package_name)
 
 
 @dataclasses.dataclass(frozen=True)

@@ -52,7 +52,7 @@ class Run(NamedTuple):
 
 def runs(observed: Observed) -> Iterator[Run]:
     """Yield each node's runs: under the launch files, and by itself."""
-    launches = [("under " + (one.file or ""), one.nodes, one.seen) for one in observed.launches]
+    launches = [(one.where, one.nodes, one.seen) for one in observed.launches]
     if observed.launch:
         paths = {started.path: name for name, started in observed.started.items()}
         launches.append(("under the launch file", paths, observed.launch))
@@ -61,9 +61,8 @@ def runs(observed: Observed) -> Iterator[Run]:
         codes = ends(text for _, _, text in before)
         for path, node in paths.items():
             logs = [log for log in launch.seen.logs if log.node == path and log.time < launch.asked]
-            said = where if where != "under " else "together with the other nodes"
             rest = launch.seen, launch.asked, codes.get(path), launch.latched
-            yield Run(node, said, path, logs, before, *rest)
+            yield Run(node, where, path, logs, before, *rest)
     direct = observed.direct or DirectResult()
     for node, alone in direct.nodes.items():
         if alone.name:

@@ -39,6 +39,11 @@ class Launched:
     seen: LaunchResult
     made_up: tuple[str, ...] = ()
 
+    @property
+    def where(self) -> str:
+        """In the words of a message."""
+        return f"under {self.file}" if self.file else "together with the other nodes"
+
 
 @dataclasses.dataclass
 class Observed:

@@ -5,9 +5,8 @@ from __future__ import annotations
 
 import ast
 import re
-from typing import Collection, Iterable, Tuple
+from typing import Collection, Iterable, Iterator, Tuple
 
-from mrp_check.code import asked
 from mrp_check.code.facts import Facts
 from mrp_check.confined.places import Kind
 from mrp_check.confined.seen import Event, Log, Number
@@ -88,9 +87,9 @@ class Places:
         return self.of(node, kind)
 
     def asked(self, node: str, what: Kind, name: str) -> Where:
-        """Return the place at which a node names a service or a parameter, as asked.py says it;
-        without that name the first one of its kind, and without any where the node begins."""
-        said = [one for one in asked.of(self.facts, self.sources(node)) if one.kind is what]
+        """Return the place at which a node names a service or a parameter; without that name the
+        first one of its kind, and without any where the node begins."""
+        said = [one for one in self.facts.asked(self.sources(node)) if one.kind is what]
         said.sort(key=lambda one: one.base != name)
         return (said[0].file, said[0].line) if said else self.of(node, Kind.INIT)
 
@@ -144,12 +143,12 @@ class Places:
 
     def of_log(self, node: str, log: Log) -> Where:
         """Return the place of a line that a node has logged: /rosout says it."""
-        path = log.file
-        if path.startswith(self.copy):
-            return path[len(self.copy) :], log.line
-        files = [f for f in self.package.files if last_part(f) == last_part(path)]
-        own = self.sources(node)
-        files.sort(key=lambda file: (file not in own, file))
+        file = self.own(log.file)
+        if file:
+            return file, log.line
+        files = [f for f in self.package.files if last_part(f) == last_part(log.file)]
+        sources = self.sources(node)
+        files.sort(key=lambda file: (file not in sources, file))
         return (files[0], log.line) if files else self.of(node, Kind.LOG)
 
     def of_counter(
@@ -198,12 +197,7 @@ class Places:
 
     def stack(self, lines: Iterable[str]) -> Line | None:
         """Return the first own place in what faulthandler printed, or None."""
-        for text in lines:
-            frame = _FRAME.match(text)
-            own = self.own(frame["path"]) if frame else None
-            if frame and own:
-                return own, int(frame["line"])
-        return None
+        return next((place for place, _ in self._frames(lines) if place), None)
 
     def waits_in_rospys_end(self, lines: Iterable[str]) -> bool:
         """Return whether faulthandler printed that rospy's own handler of Ctrl-C waits, in no line
@@ -212,13 +206,16 @@ class Places:
         If Ctrl-C comes while rospy asks the master for something, such as in each line of log, its
         handler waits for ever for the lock of the call that it has interrupted.
         """
-        for text in lines:
-            frame = _FRAME.match(text)
-            if frame and self.own(frame["path"]):
-                return False
-            if frame and text.endswith("in signal_shutdown"):
-                return True
+        for place, text in self._frames(lines):
+            if place or text.endswith("in signal_shutdown"):
+                return not place
         return False
+
+    def _frames(self, lines: Iterable[str]) -> Iterator[tuple[Line | None, str]]:
+        """Yield (its place, if that is the package's own; its text) of each frame."""
+        for frame in filter(None, map(_FRAME.match, lines)):
+            own = self.own(frame["path"])
+            yield ((own, int(frame["line"])) if own else None), frame.string
 
     def own(self, path: str) -> str | None:
         """Return a path relative to the package, if it is the package's own, or None."""

@@ -37,11 +37,15 @@ def observe(
     enough: messages of each publisher
     """
     result, workspace = Observed(), sessions.workspace
-    own = {launch.file: _own(workspace, spec, launch) for launch in _outermost(launches)}
-    for launch in launches:
-        for started in [] if launch.error else launch.nodes:
-            if started.package == workspace.package.name and started.type in spec.nodes:
-                result.started.setdefault(started.type, started)
+    loaded = {launch.file: launch for launch in launches if not launch.error}
+    own: dict[str, dict[str, str]] = {}  # launch file -> full name -> node of the spec
+    for file, launch in loaded.items():
+        found = [n for n in launch.nodes if n.package == workspace.package.name]
+        found = [started for started in found if started.type in spec.nodes]
+        for started in found:
+            result.started.setdefault(started.type, started)
+        if not any(file in other.files for other in loaded.values() if other is not launch):
+            own[file] = {started.path: started.type for started in found}
     params = {name: value for launch in launches for name, value in launch.params.items()}
     planner = observing.planner_of(workspace, spec, params, facts, result)
     if not planner:
@@ -82,26 +86,6 @@ def _preloaded(workspace: Workspace) -> pathlib.Path | None:
     source = str(sandbox.code() / "hook" / "callbacks.cpp")
     done = workspace.run("g++", "-shared", "-fPIC", "-o", str(library), source, seconds=_BUILDING)
     return library if done.code == 0 else None
-
-
-def _outermost(launches: list[Launch]) -> list[Launch]:
-    """Return those that can be loaded, and that no other one includes."""
-    loaded = [launch for launch in launches if not launch.error]
-    return [
-        launch
-        for launch in loaded
-        if not any(launch.file in other.files for other in loaded if other is not launch)
-    ]
-
-
-def _own(workspace: Workspace, spec: Spec, launch: Launch) -> dict[str, str]:
-    """Return full name -> node of the spec, of what a launch file starts."""
-    name = workspace.package.name
-    return {
-        node.path: node.type
-        for node in launch.nodes
-        if node.package == name and node.type in spec.nodes
-    }
 
 
 def _made(facts: Facts, result: Observed) -> tuple[dict[str, str], tuple[str, ...]]:

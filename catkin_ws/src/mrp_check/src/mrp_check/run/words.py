@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import re
-from typing import Iterable, Sequence
+from typing import Iterable, Mapping, Sequence
 
 # What a node logs is shown on the console behind this.
 PREFIX = re.compile(r"\[ ?(?P<level>DEBUG|INFO|WARN|ERROR|FATAL)\] \[[\d., ]+\]: ?")
@@ -22,6 +22,11 @@ _SIGNALS = {
 def few(values: Sequence[object]) -> str:
     """Return the first values as a text."""
     return ", ".join(map(str, values[:4])) + (", ..." if len(values) > 4 else "")
+
+
+def fields_text(message: Mapping[str, object], without: str = "nothing") -> str:
+    """Return the fields of a message as a text; without: what to say if it has none."""
+    return ", ".join(f"{path} = {value}" for path, value in message.items()) or without
 
 
 def last_words(lines: Iterable[str]) -> str:

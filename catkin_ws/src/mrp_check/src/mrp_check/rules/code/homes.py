@@ -12,6 +12,7 @@ from mrp_check.code.python_source import Source
 from mrp_check.confined.cpp_habits import HOME
 from mrp_check.confined.places import Kind
 from mrp_check.contract.finding import HABIT, Finding
+from mrp_check.contract.names import line_of
 from mrp_check.contract.requirements import ANY, Rule
 from mrp_check.run.case import Case
 
@@ -27,11 +28,9 @@ def _findings(case: Case) -> Iterator[Finding]:
     for place in (one for one in case.facts.places if one.kind is Kind.PATH):
         yield from _first_of_each(place.file, [(place.text or "", place.line)])
     for file in package.of_kind("launch"):
-        text = uses.code(package, file)
-        yield from _first_of_each(file, _in_text(text, 0, text))
+        yield from _first_of_each(file, _in_text(uses.code(package, file)))
     for file in (one for one in package.files if one.endswith(_PARAMETERS)):
-        text = _COMMENT.sub("", package.text(file))
-        yield from _first_of_each(file, _in_text(text, 0, text))
+        yield from _first_of_each(file, _in_text(_COMMENT.sub("", package.text(file))))
 
 
 def _first_of_each(file: str, found: Iterable[tuple[str, int]]) -> Iterator[Finding]:
@@ -60,9 +59,9 @@ def _in_python(source: Source) -> Iterator[tuple[str, int]]:
             yield from ((path, node.lineno) for path in HOME.findall(node.value))
 
 
-def _in_text(part: str, start: int, text: str) -> Iterator[tuple[str, int]]:
-    for match in HOME.finditer(part):
-        yield match.group(), text.count("\n", 0, start + match.start()) + 1
+def _in_text(text: str) -> Iterator[tuple[str, int]]:
+    for match in HOME.finditer(text):
+        yield match.group(), line_of(match)
 
 
 RULE = Rule("static", ("facts",), _findings, also=("starts",), only=ANY)

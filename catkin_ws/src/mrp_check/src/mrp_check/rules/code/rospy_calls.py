@@ -66,8 +66,8 @@ class Calls(PythonRule):
         if wanted != len(given) - 1:
             yield self.finding(
                 "python-names",
-                f"The text logged here has {_places(wanted)}, but gets {len(given) - 1}: Python"
-                " raises a TypeError when it gets here.",
+                f"The text logged here has {_count(wanted, 'placeholder')}, but gets"
+                f" {len(given) - 1}: Python raises a TypeError when it gets here.",
                 node,
                 expected=f"{name}(... %s, ...), with a placeholder for each value",
                 fix="Write a placeholder such as %s for each value.",
@@ -111,7 +111,7 @@ class Calls(PythonRule):
             self.source.definition(node), (ast.FunctionDef, ast.ClassDef)
         )
 
-    def _topic_and_type(self, node: ast.Call, what: str) -> Iterator[Finding]:
+    def _topic_and_type(self, node: ast.Call, what: str = "Publisher") -> Iterator[Finding]:
         topic, class_ = argument(node, 0, "name"), argument(node, 1, "data_class")
         value = self.source.value(class_)
         is_text = isinstance(value, str)
@@ -136,9 +136,6 @@ class Calls(PythonRule):
                 expected=f'rospy.{what}("TOPIC", UInt32, ...)',
                 fix="Compare the call with the one on the page.",
             )
-
-    def _publisher(self, node: ast.Call) -> Iterator[Finding]:
-        yield from self._topic_and_type(node, "Publisher")
 
     def _subscriber(self, node: ast.Call) -> Iterator[Finding]:
         yield from self._topic_and_type(node, "Subscriber")
@@ -245,7 +242,7 @@ class Calls(PythonRule):
             yield self.finding(
                 "callbacks",
                 f"{taker}() calls {name}() with {given}, but {name}() takes"
-                f" {_count(max(0, least - bound))}. Each call raises a TypeError.",
+                f" {_count(max(0, least - bound), 'argument')}. Each call raises a TypeError.",
                 function,
                 certainty=CERTAIN,
                 expected=f"{count} parameter{s}" + (" besides self" if bound else ""),
@@ -263,18 +260,14 @@ _PLACES = re.compile(
 )
 _CHECKED = {
     "rospy.init_node": Calls._init_node,
-    "rospy.Publisher": Calls._publisher,
+    "rospy.Publisher": Calls._topic_and_type,
     "rospy.Subscriber": Calls._subscriber,
     "rospy.Timer": Calls._timer,
 }
 
 
-def _places(number: int) -> str:
-    return {0: "no placeholder", 1: "one placeholder"}.get(number, f"{number} placeholders")
-
-
-def _count(number: int) -> str:
-    return {0: "no argument", 1: "one argument"}.get(number, f"{number} arguments")
+def _count(number: int, what: str) -> str:
+    return {0: f"no {what}", 1: f"one {what}"}.get(number, f"{number} {what}s")
 
 
 def returns(function: ast.FunctionDef) -> bool:
@@ -296,20 +289,7 @@ class Messages(PythonRule):
         for key, class_ in self._messages().items():
             for node in self.source.nodes(ast.Attribute):
                 if self.source.key(node.value) == key and not hasattr(class_, node.attr):
-                    near = nearest(node.attr, class_.__slots__)
-                    hint = perhaps(near)
-                    if not near and len(class_.__slots__) == 1:
-                        near = class_.__slots__[0]
-                        hint = f" Its only field is {near}."
-                    yield self.finding(
-                        "python-names",
-                        f"A message {class_._type} has no field {node.attr}: Python raises an"
-                        f" AttributeError when it gets here.{hint}",
-                        node,
-                        expected=", ".join(class_.__slots__) or "no field at all",
-                        fix=f"Write {near} for {node.attr}." if near else "Correct the name.",
-                        why="no-such-field",
-                    )
+                    yield self._no_field(node, class_, node.attr)
 
     def _messages(self) -> dict[Variable, MessageClass]:
         """Return variable -> class, for the variables that hold a message of a known class."""
@@ -345,20 +325,25 @@ class Messages(PythonRule):
     def unknown_arguments(self) -> Iterator[Finding]:
         for node in self.source.nodes(ast.Call):
             class_ = self.message_class(node.func)
-            yield from self._arguments(node, class_) if class_ is not None else ()
+            for keyword in node.keywords:
+                if class_ and keyword.arg and keyword.arg not in class_.__slots__:
+                    yield self._no_field(node, class_, keyword.arg)
 
-    def _arguments(self, node: ast.Call, class_: MessageClass) -> Iterator[Finding]:
-        for keyword in node.keywords:
-            if keyword.arg and keyword.arg not in class_.__slots__:
-                near = nearest(keyword.arg, class_.__slots__)
-                yield self.finding(
-                    "python-names",
-                    f"A message {class_._type} has no field {keyword.arg}: Python raises an"
-                    " AttributeError when it gets here." + perhaps(near),
-                    node,
-                    expected=", ".join(class_.__slots__),
-                    fix=f"Write {near} for {keyword.arg}." if near else "Correct the name.",
-                )
+    def _no_field(self, node: ast.expr, class_: MessageClass, name: str) -> Finding:
+        near = nearest(name, class_.__slots__)
+        hint = perhaps(near)
+        if not near and len(class_.__slots__) == 1:
+            near = class_.__slots__[0]
+            hint = f" Its only field is {near}."
+        return self.finding(
+            "python-names",
+            f"A message {class_._type} has no field {name}: Python raises an AttributeError when"
+            f" it gets here.{hint}",
+            node,
+            expected=", ".join(class_.__slots__) or "no field at all",
+            fix=f"Write {near} for {name}." if near else "Correct the name.",
+            why="no-such-field",
+        )
 
 
 def _findings(case: HasFacts) -> Iterator[Finding]:

@@ -24,8 +24,9 @@ def _of(node: SourceNode) -> Iterator[Finding]:
         return
     called_back = node.places(Kind.SUBSCRIBER)
     if not node.is_python:
+        lines = node.package.line
         timers = [place for place in node.places(Kind.TIMER) if place.oneshot is not True]
-        called_back += [place for place in timers if not _is_rate(node, place)]
+        called_back += [one for one in timers if "Rate" not in lines(one.file, one.line)]
     # rospy calls back in threads of its own: there a loop is enough.
     if waits and (node.is_python or not called_back):
         return
@@ -101,10 +102,6 @@ def _made_too_late(node: SourceNode, spins: Sequence[Place]) -> Iterator[Finding
                 fix=f"Move it below line {min(late)}.",
             )
             return
-
-
-def _is_rate(node: SourceNode, place: Place) -> bool:
-    return "Rate" in node.package.line(place.file, place.line)
 
 
 RULE = Rule(

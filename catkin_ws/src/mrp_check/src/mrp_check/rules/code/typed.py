@@ -11,7 +11,7 @@ import re
 from typing import Iterator
 
 from mrp_check.code.python_rule import PythonRule, of_sources
-from mrp_check.contract.finding import HABIT, HINT, READ, Finding
+from mrp_check.contract.finding import HABIT, READ, Finding
 from mrp_check.contract.requirements import Rule
 
 _ORDERS = (ast.Lt, ast.LtE, ast.Gt, ast.GtE)
@@ -31,7 +31,6 @@ class Typed(PythonRule):
             if call is None or call in said or self.source.is_guarded(node, "TypeError"):
                 continue
             said.add(call)
-            yield from self._at_the_use(call, node)
             is_equality = isinstance(node, ast.Compare) and isinstance(node.ops[0], _EQUALITIES)
             follows = (
                 "they're never equal"
@@ -46,12 +45,6 @@ class Typed(PythonRule):
                 expected=f"float({self.written(call)}), or int(...)",
                 fix=f"Write float(...) around {self.written(call)}; or int(...) for whole numbers.",
             )
-
-    def _at_the_use(self, call: ast.expr, node: ast.expr | ast.stmt) -> Iterator[Finding]:
-        """Yield a note at the line that Python names in its error, if it is another one."""
-        if node.lineno != call.lineno:
-            said = f"{self.written(call)} on line {call.lineno} is a string; this needs a number."
-            yield self.finding("python-names", said, node, certainty=HINT)
 
     def _uses(self) -> Iterator[tuple[ast.expr | ast.stmt, ast.expr, str]]:
         """Yield what needs a number: all of it, the part that is one, and what it does with it."""

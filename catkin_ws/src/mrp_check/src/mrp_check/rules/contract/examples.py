@@ -5,7 +5,6 @@ from __future__ import annotations
 
 from typing import Iterator, Mapping, Sequence
 
-from mrp_check.code import asked
 from mrp_check.confined import fitting
 from mrp_check.confined.places import Kind
 from mrp_check.confined.seen import Alone
@@ -17,6 +16,7 @@ from mrp_check.run import evidence
 from mrp_check.run.case import Case
 from mrp_check.run.node import Node, each_node
 from mrp_check.run.planning import resolved
+from mrp_check.run.words import fields_text
 
 
 def _findings(case: Case) -> Iterator[Finding]:
@@ -89,7 +89,10 @@ def _of_example(node: Node, example: Example, ran: Alone) -> Finding | None:
 
 def _given(example: Example) -> str:
     said = [f"{name} = {value}" for name, value in example.parameters.items()]
-    sent = [f"{_message(message)} on {topic.name}" for topic, message in example.receives]
+    sent = [
+        f"{fields_text(message, 'a message')} on {topic.name}"
+        for topic, message in example.receives
+    ]
     started = f", started with {', '.join(said)}," if said else ""
     return started + (f" is sent {', '.join(sent)}, and" if sent else "")
 
@@ -104,7 +107,7 @@ def _cause(node: Node, example: Example, ran: Alone, wrong: Message) -> tuple[Wh
         return raised[0], f" {raised[1]}: {raised[2]}"
     reads = [
         one
-        for one in asked.of(node.places.facts, node.places.sources(node.name))
+        for one in node.places.facts.asked(node.places.sources(node.name))
         if one.kind in (Kind.READS, Kind.KNOWS)
     ]
     for name in example.parameters:
@@ -122,12 +125,8 @@ def _cause(node: Node, example: Example, ran: Alone, wrong: Message) -> tuple[Wh
 
 
 def _shown(messages: Sequence[Mapping[str, object]]) -> str:
-    shown = "; ".join(_message(message) for message in messages[:4])
+    shown = "; ".join(fields_text(message, "a message") for message in messages[:4])
     return shown + ("; ..." if len(messages) > 4 else "") or "nothing"
-
-
-def _message(message: Mapping[str, object]) -> str:
-    return ", ".join(f"{path} = {value}" for path, value in message.items()) or "a message"
 
 
 def _replied(node: Node) -> bool:

@@ -11,11 +11,6 @@ from mrp_check.contract.finding import HABIT, READ, Finding
 from mrp_check.contract.requirements import CONTRACT, Requirement, Rule
 from mrp_check.run import evidence
 
-NO_QUEUE = (
-    "rospy.Publisher() gets no queue_size, so publish() waits until each message is sent, and"
-    " rospy warns about it."
-)
-
 
 def _of(node: SourceNode) -> Iterator[Finding]:
     wanted = node.wanted
@@ -32,8 +27,17 @@ def _of(node: SourceNode) -> Iterator[Finding]:
             queue = place.queue
             if isinstance(queue, int) and queue is not True and queue != asked:
                 yield _other_queue(node, place, kind, queue, asked)
-            elif node.is_python and kind is Kind.PUBLISHER and says_none(node, place):
-                yield no_queue(node, place, "queue", f"queue_size={asked}", asked)
+            elif node.is_python and kind is Kind.PUBLISHER and _says_none(node, place):
+                yield node.finding(
+                    "queue",
+                    "rospy.Publisher() gets no queue_size, so publish() waits until each message is"
+                    " sent, and rospy warns about it.",
+                    place,
+                    certainty=HABIT,
+                    expected=f"queue_size={asked}",
+                    fix=f"Add queue_size={asked}.",
+                    why="queue-size-missing",
+                )
 
 
 _REFUSED = (True, Kind.SUBSCRIBER, 0)
@@ -65,20 +69,7 @@ def _other_queue(node: SourceNode, place: Place, kind: Kind, queue: int, asked: 
     )
 
 
-def no_queue(node: SourceNode, place: Place, id_: str, expected: str, size: int) -> Finding:
-    """Return the Finding about a rospy.Publisher() without queue_size; size: what to give it"""
-    return node.finding(
-        id_,
-        NO_QUEUE,
-        place,
-        certainty=HABIT,
-        expected=expected,
-        fix=f"Add queue_size={size}.",
-        why="queue-size-missing",
-    )
-
-
-def says_none(node: SourceNode, place: Place) -> bool:
+def _says_none(node: SourceNode, place: Place) -> bool:
     """Return whether a call that begins in a line has no queue_size in its lines."""
     lines = node.package.lines(place.file)[place.line - 1 : place.line + 6]
     text, depth = "", 0

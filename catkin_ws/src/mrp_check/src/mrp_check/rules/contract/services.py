@@ -17,7 +17,7 @@ from mrp_check.run import evidence
 from mrp_check.run.node import Node, each_node
 from mrp_check.run.planning import resolved
 from mrp_check.run.traces import ROS_SERVICES
-from mrp_check.run.words import few
+from mrp_check.run.words import few, fields_text
 
 
 def _of(node: Node) -> Iterator[Finding]:
@@ -53,7 +53,7 @@ def _answers(node: Node, service: Service, answers: list[Answer]) -> Iterator[Fi
     """Yield the Finding about the first call that is not answered as the contract says."""
     place = node.places.asked(node.name, Kind.OFFERS, service.name)
     for number, call in enumerate(service.examples):
-        asked = f"{node.name}, asked {_shown(call.request)} on {service.name},"
+        asked = f"{node.name}, asked {fields_text(call.request)} on {service.name},"
         answer = answers[number] if number < len(answers) else Answer(None, "it never answered")
         if answer.fields is None:
             is_type = "md5sum" in answer.error or "Incompatible" in answer.error
@@ -64,17 +64,17 @@ def _answers(node: Node, service: Service, answers: list[Answer]) -> Iterator[Fi
                 "services",
                 f"{asked} gives no answer: {answer.error}.",
                 found[0] if found and not is_type else place,
-                expected=kind if is_type else _shown(call.response),
+                expected=kind if is_type else fields_text(call.response),
                 seen=f"{found[1]}: {found[2]}" if found and not is_type else answer.error,
             )
         elif not fitting.fits({**call.response}, answer.fields, call.tolerance):
             seen = {path: answer.fields.get(path, "nothing") for path in call.response}
             yield node.finding(
                 "services",
-                f"{asked} answers {_shown(seen)}, not {_shown(call.response)}.",
+                f"{asked} answers {fields_text(seen)}, not {fields_text(call.response)}.",
                 _answering(node, call.response) or place,
-                expected=_shown(call.response),
-                seen=_shown(seen),
+                expected=fields_text(call.response),
+                seen=fields_text(seen),
             )
         else:
             continue
@@ -99,7 +99,7 @@ def _requests(
 ) -> Iterator[Finding]:
     asked = requests.get(_key(node, service), [])
     place = node.places.asked(node.name, Kind.ASKS, service.name)
-    expected = " or ".join(_shown(call.request) for call in service.examples[:4])
+    expected = " or ".join(fields_text(call.request) for call in service.examples[:4])
     if not asked:
         others = {last_part(registration.topic) for registration in node.seen_alone.lookups} - {
             service.name
@@ -115,7 +115,9 @@ def _requests(
     for one in asked if service.examples else ():
         known = [c for c in service.examples if fitting.fits({**c.request}, {**one}, c.tolerance)]
         if not known:
-            seen = _shown({path: one.get(path, "nothing") for path in service.examples[0].request})
+            seen = fields_text(
+                {path: one.get(path, "nothing") for path in service.examples[0].request}
+            )
             yield node.finding(
                 "services",
                 f"{node.name} asks {service.name} for {seen}, which no example of the contract"
@@ -125,10 +127,6 @@ def _requests(
                 seen=seen,
             )
             return
-
-
-def _shown(message: Mapping[str, object]) -> str:
-    return ", ".join(f"{path} = {value}" for path, value in message.items()) or "nothing"
 
 
 _asked = evidence.when(

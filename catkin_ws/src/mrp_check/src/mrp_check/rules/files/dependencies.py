@@ -12,7 +12,7 @@ from catkin_pkg.package import Package as Manifest
 from mrp_check.code import uses
 from mrp_check.code.python_modules import is_ros
 from mrp_check.code.uses import Use
-from mrp_check.contract.finding import HABIT, HINT, READ, Finding
+from mrp_check.contract.finding import HABIT, HINT, READ, Finding, Line
 from mrp_check.contract.names import nearest
 from mrp_check.contract.requirements import Requirement, Rule
 from mrp_check.package.cmake import Call, Model
@@ -49,14 +49,18 @@ def _findings(case: Case) -> Iterator[Finding]:
         if not in_manifest:
             near = _misspelt(package, name, named(manifest), used)
             if near:
-                yield _misspelt_in_manifest(package, name, use, near)
+                line = package.find_line(FILE, f">{near}<") or first_dependency(package)
+                tags = [f"<depend>{one}</depend>" for one in (name, near)]
+                yield _misspelt_in(FILE, (FILE, line), name, use, near, *tags)
             else:
                 lacking.setdefault((FILE, is_apart and use.firm), {})[name] = use
         # Python finds it all the same.
         if not in_cmake and model.catkin and use.language == "cpp":
             near = _misspelt(package, name, model.components, ())
             if near:
-                yield _misspelt_in_cmake(name, use, near, model.catkin)
+                place = model.catkin.file, model.catkin.line
+                wanted = f"find_package(catkin REQUIRED COMPONENTS ... {name} ...)"
+                yield _misspelt_in("find_package(catkin ...)", place, name, use, near, wanted, near)
             else:
                 lacking.setdefault((model.catkin.file, is_apart and use.firm), {})[name] = use
     for (file, _), uses_ in lacking.items():
@@ -116,18 +120,20 @@ def _misspelt(
     return nearest(name, others, 0.8)
 
 
-def _misspelt_in_manifest(package: Package, name: str, use: Use, near: str) -> Finding:
+def _misspelt_in(
+    what: str, place: Line, name: str, use: Use, near: str, expected: str, seen: str
+) -> Finding:
+    is_manifest = what == FILE
     return Finding(
         "dependencies",
-        f"package.xml doesn't name {_used_in({name: use})}. It names {near}, but there's no such"
+        f"{what} doesn't name {_used_in({name: use})}. It names {near}, but there's no such"
         " package.",
-        FILE,
-        package.find_line(FILE, f">{near}<") or first_dependency(package),
-        certainty=READ if use.firm else HABIT,
-        expected=f"<depend>{name}</depend>",
-        seen=f"<depend>{near}</depend>",
+        *place,
+        certainty=READ if use.firm else HABIT if is_manifest else HINT,
+        expected=expected,
+        seen=seen,
         fix=f"Write {name} for {near}.",
-        change=(f">{near}<", f">{name}<"),
+        change=(f">{near}<", f">{name}<") if is_manifest else (near, name),
         packages=(name,),
     )
 
@@ -165,22 +171,6 @@ def _used_in(found: Mapping[str, Use]) -> str:
         return f"{name}, which {use.file} uses on line {use.line}"
     *rest, last = [f"{name} (used in {use.file}:{use.line})" for name, use in found.items()]
     return f"{', '.join(rest)} and {last}"
-
-
-def _misspelt_in_cmake(name: str, use: Use, near: str, call: Call) -> Finding:
-    return Finding(
-        "dependencies",
-        f"find_package(catkin ...) doesn't name {_used_in({name: use})}. It names {near}, but"
-        " there's no such package.",
-        call.file,
-        call.line,
-        certainty=READ if use.firm else HINT,
-        expected=f"find_package(catkin REQUIRED COMPONENTS ... {name} ...)",
-        seen=near,
-        fix=f"Write {name} for {near}.",
-        change=(near, name),
-        packages=(name,),
-    )
 
 
 def _not_in_cmake(found: Mapping[str, Use], model: Model, call: Call, firm: bool) -> Finding:

@@ -26,13 +26,9 @@ def _findings(case: Case) -> Iterator[Finding]:
     launch = case.launch
     if not launch or launch.error:
         return
-    others = [
-        node
-        for node in launch.nodes
-        if node.name not in case.spec.nodes or not case.spec.is_contract
-    ]
-    others = [n for n in others if n.package == case.package.name]
-    for name in case.spec.nodes if case.spec.is_contract else ():
+    asked = case.spec.nodes if case.spec.is_contract else ()
+    others = [n for n in launch.nodes if n.name not in asked and n.package == case.package.name]
+    for name in asked:
         found = [node for node in launch.nodes if node.name == name]
         if not found:
             yield _missing(case.package, launch, name, others)
@@ -99,23 +95,18 @@ def _missing(package: Package, launch: Launch, name: str, spare: list[Started]) 
             seen=f'name="{node.name}"',
             fix=f'Write name="{name}".',
         )
+    tags = [e for e in elements(package.bytes(launch.file)) if e.tag in ("node", "group", "launch")]
+    lines = [element.line for element in tags]
     return Finding(
         "launch-nodes",
         f"The launch file doesn't start the node {name}.",
         launch.file,
-        _last_line(package, launch),
+        lines[-1] if lines else 1,
         node=name,
         expected=f'a <node> with name="{name}"',
         seen=", ".join(n.name for n in launch.nodes) or "no node",
         fix=f'Add a <node> with name="{name}".',
     )
-
-
-def _last_line(package: Package, launch: Launch) -> int:
-    lines = [
-        e.line for e in elements(package.bytes(launch.file)) if e.tag in ("node", "group", "launch")
-    ]
-    return lines[-1] if lines else 1
 
 
 def _executables(package: Package, model: Model) -> set[str]:

@@ -76,9 +76,20 @@ def _in_cmake(case: Case, files: list[str], are_asked: bool) -> Iterator[Finding
         is_made = path in model.message_files or _is_of_action(path, model)
         if not is_made and (not own or file[:-4] in own):
             command = f"add_{case.package.kind(path)}_files"
-            elsewhere = _elsewhere(case, path)
+            named = (one for one in model.message_files if last_part(one) == file)
+            elsewhere = next((one for one in named if one not in case.package.files), None)
             if elsewhere:
-                yield _misplaced(model.message_files[elsewhere].line, command, path, elsewhere)
+                yield Finding(
+                    "messages",
+                    f"{command}() looks for {elsewhere}, but the file is at {path}, so CMake"
+                    " stops.",
+                    FILE,
+                    model.message_files[elsewhere].line,
+                    CERTAIN,
+                    expected=elsewhere,
+                    seen=path,
+                    fix=f"Move {path} to {elsewhere}.",
+                )
                 continue
             yield _message_finding(
                 f"{path} isn't named in {command}(), so no code is generated from it.",
@@ -116,26 +127,6 @@ def _is_of_action(path: str, model: Model) -> bool:
     actions = (file for file in model.message_files if file.endswith(".action"))
     made = {name for one in actions for name in uses.generated(one)}
     return path.endswith(".msg") and last_part(path)[: -len(".msg")] in made
-
-
-def _elsewhere(case: Case, path: str) -> str | None:
-    """Return the place at which CMakeLists.txt looks for a definition that lies here, or None."""
-    named = case.model.message_files
-    others = (one for one in named if last_part(one) == last_part(path))
-    return next((one for one in others if one not in case.package.files), None)
-
-
-def _misplaced(line: int, command: str, path: str, elsewhere: str) -> Finding:
-    return Finding(
-        "messages",
-        f"{command}() looks for {elsewhere}, but the file is at {path}, so CMake stops.",
-        FILE,
-        line,
-        CERTAIN,
-        expected=elsewhere,
-        seen=path,
-        fix=f"Move {path} to {elsewhere}.",
-    )
 
 
 def _is_brought_along(model: Model) -> bool:

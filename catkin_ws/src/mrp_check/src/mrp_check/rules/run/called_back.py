@@ -22,7 +22,6 @@ def _findings(case: Case) -> Iterator[Finding]:
     yield from each_node(_busy)(case)
     reported = set()
     for launched in case.observed.launches:
-        where = f"under {launched.file}" if launched.file else "together with the other nodes"
         for path, name in launched.nodes.items():
             topic = _unheard(launched.seen, path) if name not in reported else None
             if topic:
@@ -30,8 +29,8 @@ def _findings(case: Case) -> Iterator[Finding]:
                 file, line = case.places.of(name, Kind.SPIN, Kind.SUBSCRIBER)
                 yield Finding(
                     "spin",
-                    f"Messages on {topic} come to {name}, {where}, but it calls no callback: it"
-                    " never gets to ros::spin() or ros::spinOnce().",
+                    f"Messages on {topic} come to {name}, {launched.where}, but it calls no"
+                    " callback: it never gets to ros::spin() or ros::spinOnce().",
                     file,
                     line,
                     HABIT if _may_wait(case.facts, name) else SEEN,

@@ -5,7 +5,6 @@ from __future__ import annotations
 
 from typing import Iterator
 
-from mrp_check.code import asked
 from mrp_check.confined.places import Kind
 from mrp_check.contract.finding import HABIT, HINT, Finding, Where
 from mrp_check.contract.requirements import Rule
@@ -44,14 +43,10 @@ def _has_alternatives(case: Case) -> bool:
     """Return whether two nodes call themselves the same, or serve the same action or service."""
     found: list[tuple[str, str]] = []
     for node, files in case.facts.sources.items():
-        said = {(one.kind.value, one.base) for one in asked.of(case.facts, files)}
+        said = {(one.kind.value, one.base) for one in case.facts.asked(files)}
         said |= {("is", place.text or node) for place in case.facts.of(node, Kind.INIT)[:1]}
         found += [one for one in said if one[0] in ("is", "offers", "serves")]
     return len(found) > len({*found})
-
-
-def _where(launched: Launched) -> str:
-    return f"under {launched.file}" if launched.file else "together with the other nodes"
 
 
 def _raised(case: Case, launched: Launched, lines: list[str]) -> Iterator[Finding]:
@@ -86,7 +81,7 @@ def _error(case: Case, launched: Launched, name: str, found: Traceback) -> Itera
         return
     yield Finding(
         id_of_error(kind, text, "callbacks"),
-        f"{name} runs into an error {_where(launched)}: {kind}: {text}",
+        f"{name} runs into an error {launched.where}: {kind}: {text}",
         *place,
         expected="a node that works without an error",
         seen=f"{kind}: {text}, in: {source}",
@@ -100,7 +95,7 @@ def _died(case: Case, launched: Launched, path: str, code: int) -> Finding:
     said = [one.text.strip()[:300] for one in logs if one.level in ("ERROR", "FATAL")]
     return Finding(
         "starts",
-        f"{name} ends {_where(launched)}, {code_text(code)}; by itself it keeps running."
+        f"{name} ends {launched.where}, {code_text(code)}; by itself it keeps running."
         + (f" Its last error: {said[-1]}" if said else ""),
         *case.places.of(name, Kind.INIT, Kind.HANDLE),
         expected="a node that runs until Ctrl-C",

@@ -17,7 +17,7 @@ from mrp_check.contract.spec import Shutdown
 from mrp_check.run import evidence
 from mrp_check.run.case import Case
 from mrp_check.run.node import Node
-from mrp_check.run.places import Places, Traceback
+from mrp_check.run.places import Traceback
 from mrp_check.run.words import code_text, last_words
 
 _BEFORE = 0.1  # seconds: what is printed so shortly before it is asked belongs to its end, too
@@ -190,7 +190,8 @@ def _leftovers(case: Case) -> Iterator[Finding]:
         if {(name, "left"), left.command} & reported or alone and alone.killed:
             continue
         reported |= {(name, "left"), left.command}
-        file, line = _starts_program(name, places)
+        starts = places.of(name, Kind.STARTS, Kind.INIT) if name else None
+        file, line = starts or places.facts.first(Kind.STARTS)
         name = name or next((node for node in spec.nodes if file in places.sources(node)), None)
         yield Finding(
             "leftovers",
@@ -201,12 +202,6 @@ def _leftovers(case: Case) -> Iterator[Finding]:
             seen=left.command[:200],
             node=name,
         )
-
-
-def _starts_program(name: str | None, places: Places) -> Where:
-    if name:
-        return places.of(name, Kind.STARTS, Kind.INIT)
-    return places.facts.first(Kind.STARTS)
 
 
 def _findings(case: Case) -> Iterator[Finding]:

@@ -114,7 +114,7 @@ def _of_types(case: Case, graph: Graph, end: End, publishers: list[End]) -> Iter
 def _alone(case: Case, graph: Graph, end: End, published: set[str]) -> Iterator[Finding]:
     """Yield the Finding about a topic that nobody publishes on."""
     heard = {subscriber.topic for subscriber in graph.subscribers}
-    near = meant(case, end, graph.publishers, graph.subscribers)
+    near = _meant(case, end, graph.publishers, graph.subscribers)
     is_actions = last_part(end.topic) in ("feedback", "result", "status")
     if is_actions and any(not node.is_up for node in case.nodes.values()):
         return  # the action is served by one that did not run
@@ -172,7 +172,7 @@ def _did_not_run_and_names(case: Case, topic: str) -> bool:
     return any(last_part(topic) in case.package.text(file) for file in files)
 
 
-def meant(case: Case, end: End, publishers: list[End], subscribers: list[End]) -> list[End]:
+def _meant(case: Case, end: End, publishers: list[End], subscribers: list[End]) -> list[End]:
     """Return the publishers that a subscriber waits for in vain, as it has another name for their
     topic: it is alike, or their type is the package's own or plain, and they alone are without a
     partner."""
@@ -188,13 +188,8 @@ def meant(case: Case, end: End, publishers: list[End], subscribers: list[End]) -
     ]
     waiting = {o.topic for o in subscribers if o.type == end.type and o.topic not in published}
     is_one = len({one.topic for one in alone}) == len(waiting) == 1
-    return near or [one for one in alone if is_plain(case, end) and is_one and one in others]
-
-
-def is_plain(case: Case, end: End) -> bool:
-    """Return whether a topic's type is one that this package's nodes say something to each other
-    with, rather than to a robot's."""
-    return end.type.partition("/")[0] in (case.package.name, "std_msgs")
+    is_plain = end.type.partition("/")[0] in (case.package.name, "std_msgs")
+    return near or [one for one in alone if is_plain and is_one and one in others]
 
 
 def is_like(one: End, other: End) -> bool:

@@ -7,14 +7,13 @@ import ast
 import re
 from typing import Iterator
 
-from mrp_check.code import asked, uses
+from mrp_check.code import uses
 from mrp_check.code.facts import Facts
 from mrp_check.confined.launch_dump import Started
 from mrp_check.confined.places import Kind
 from mrp_check.contract.finding import HABIT, HINT, Finding, Line, Where
 from mrp_check.contract.names import last_part
 from mrp_check.contract.requirements import Requirement, Rule
-from mrp_check.contract.spec import Spec
 from mrp_check.package.package import Package
 from mrp_check.run import evidence
 from mrp_check.run.case import Case
@@ -43,11 +42,16 @@ _OF_ACTIONS = {"feedback", "result", "status"}
 
 def findings(case: Case) -> Iterator[Finding]:
     yield from _problems(case)
-    yield from _launch_findings(case.package, case.spec, case.observed)
+    yield from _launch_findings(case.package, case.observed)
     yield from _killed(case.facts, case.observed)
     for node in case.nodes.values():
         if not node.has_executable and not _lacks_what_is_not_here(case, node):
-            yield _no_executable(node)
+            yield node.finding(
+                "starts",
+                f"{node.name} couldn't be run: it has no executable.",
+                node.places.in_launch_file(node.name),
+                expected=f"an executable for {node.name}",
+            )
     for node in case.nodes.values():
         for finding in node.not_up:
             if not case.spec.is_contract:
@@ -69,12 +73,12 @@ def _problems(case: Case) -> Iterator[Finding]:
         yield Finding(
             "starts",
             f"The nodes couldn't be run: {problem}.",
-            *_launch_place(case.package, case.spec, case.observed),
+            *_launch_place(case.package, case.observed),
             expected="nodes that can be started",
         )
 
 
-def _launch_findings(package: Package, spec: Spec, seen: Observed) -> Iterator[Finding]:
+def _launch_findings(package: Package, seen: Observed) -> Iterator[Finding]:
     """Yield a Finding if roslaunch gives up, and ends what it has started."""
     if not seen.own_launch or not seen.launch or seen.launch.ending != "itself":
         return
@@ -86,7 +90,7 @@ def _launch_findings(package: Package, spec: Spec, seen: Observed) -> Iterator[F
         named = re.search(r"__name:=(\w+)", said)
         why = said.partition(" __name:=")[0]
         started = seen.started.get(named.group(1)) if named else None
-        place = _launch_place(package, spec, seen)
+        place = _launch_place(package, seen)
         if started and started.file:
             place = started.file, started.line
         prefix = f' launch-prefix="{started.prefix}"' if started and started.prefix else ""
@@ -115,20 +119,11 @@ def _killed(facts: Facts, seen: Observed) -> Iterator[Finding]:
         )
 
 
-def _launch_place(package: Package, spec: Spec, seen: Observed) -> Where:
+def _launch_place(package: Package, seen: Observed) -> Where:
     for started in seen.started.values():
         if started.file:
             return started.file, started.line
     return ("CMakeLists.txt" if "CMakeLists.txt" in package.files else "package.xml"), 1
-
-
-def _no_executable(node: Node) -> Finding:
-    return node.finding(
-        "starts",
-        f"{node.name} couldn't be run: it has no executable.",
-        node.places.in_launch_file(node.name),
-        expected=f"an executable for {node.name}",
-    )
 
 
 def weigh_start(case: Case, node: Node, finding: Finding) -> None:
@@ -235,7 +230,7 @@ def _early_call(node: Node, lines: list[str]) -> Line | None:
         return None
     if raised and not any("ServiceException" in line for line in lines):
         return None
-    place = asked.unwaited(node.places.facts, node.places.sources(node.name))
+    place = node.places.facts.unwaited(node.places.sources(node.name))
     return (place.file, place.line) if place else None
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from typing import Iterator, NamedTuple
 
-from mrp_check.code import asked, uses
+from mrp_check.code import uses
 from mrp_check.confined.places import Kind, Place
 from mrp_check.contract.finding import HABIT, HINT, Finding
 from mrp_check.contract.names import nearest
@@ -53,7 +53,7 @@ _SOUGHT = (
 
 def _findings(case: Case) -> Iterator[Finding]:
     # What no node is made of may be built one day: it gives what it says.
-    every = asked.of(case.facts, {place.file for place in case.facts.places})
+    every = case.facts.asked({place.file for place in case.facts.places})
     own = uses.made(case.package)
     # Who reads gains has all of gains/p, too.
     params = {
@@ -97,7 +97,7 @@ def _finding(node: str, place: Place, near: str | None, sought: _Sought) -> Find
 def _unwaited(case: Case, node: str) -> Iterator[Finding]:
     """Yield a warning if a node is launched with what offers the service that it calls, and doesn't
     wait until that is there."""
-    place = asked.unwaited(case.facts, case.facts.sources[node])
+    place = case.facts.unwaited(case.facts.sources[node])
     if not place or not _is_launched_with(case, node):
         return
     is_python = case.package.kind(place.file) == "python"
