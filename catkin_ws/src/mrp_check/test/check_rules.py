@@ -50,6 +50,9 @@ find_package(catkin REQUIRED COMPONENTS roscpp rospy std_msgs)
 catkin_package(CATKIN_DEPENDS roscpp rospy std_msgs)
 catkin_install_python(PROGRAMS src/odd.py DESTINATION bin)
 """
+NODE = (
+    "#!/usr/bin/env python\nimport rospy\nfrom std_msgs.msg import UInt32\nrospy.init_node('a')\n"
+)
 PUB_SUB = spec.read(spec.find("pub_sub"))
 # How commands are confined here, and as root wherever it is; otherwise nothing is promised.
 _OF_ROOT = sandbox.isolation() if os.getuid() else sandbox.Isolation.USER

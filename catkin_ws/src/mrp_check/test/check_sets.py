@@ -7,8 +7,10 @@ packages.py of mrp_check lays them out. DEFECTS are those that the checker must 
 import pathlib
 import re
 
-from mrp_check.contract import defects
+from mrp_check.contract import defects, spec
 from mrp_check.contract.packages import STYLES, break_, fields_of, lay_out, spec_of
+from mrp_check.package.package import Package
+from mrp_check.verdict import check
 
 __all__ = ["STYLES", "break_", "fields_of", "lay_out", "spec_of"]
 
@@ -55,6 +57,11 @@ def contents(folder):
         str(path.relative_to(folder)): (bool(path.stat().st_mode & 0o100), path.read_bytes())
         for path in files
     }
+
+
+def check_tutorial(place, *only, **options):
+    """Return the Report of the package at a place, by the tutorial's contract."""
+    return check.check(Package(place), spec.read(spec.find("pub_sub")), only, **options)
 
 
 def _is_at(finding, file, pattern, folder):

@@ -84,55 +84,67 @@ def test_leaves_a_daemon_behind(confined, closes_all):
     assert confined.token in result.left[0]
 
 
-def test_stopped_processes_are_killed(confined):
-    result = confined("import os, signal; os.kill(os.getpid(), signal.SIGSTOP)", time=FEW_SECONDS)
-    assert result.ended_by == "time"
-
-
-def test_forks_without_end(confined):
-    result = confined(
+# What a program does -> the program, its limits, and what ends it: one of these.
+ENDED = {
+    "stops_itself": (
+        "import os, signal; os.kill(os.getpid(), signal.SIGSTOP)",
+        {"time": FEW_SECONDS},
+        ("time",),
+    ),
+    "forks_without_end": (
         """
         import os
         while True:
-            try:
-                os.fork()
-            except OSError:
-                pass
+            try: os.fork()
+            except OSError: pass
         """,
-        processes=50,
-        time=FEW_SECONDS,
-    )
-    assert result.ended_by in ("processes", "time")
-
-
-def test_each_process_makes_the_next_and_ends(confined):
-    result = confined(
+        {"processes": 50, "time": FEW_SECONDS},
+        ("processes", "time"),
+    ),
+    # It may look as if it had ended: what matters is that none is left.
+    "each_makes_the_next_and_ends": (
         """
         import os
         for _ in range(10**9):
-            if os.fork():
-                os._exit(0)
+            if os.fork(): os._exit(0)
         """,
-        time=FEW_SECONDS,
-    )
-    # It may look as if it had ended: what matters is that none is left.
-    assert result.ended_by in (None, "time")
-
-
-def test_threads_without_end(confined):
-    result = confined(
+        {"time": FEW_SECONDS},
+        (None, "time"),
+    ),
+    "threads_without_end": (
         f"""
         import threading, time
         while True:
-            try:
-                threading.Thread(target=time.sleep, args=({FOR_EVER},)).start()
-            except RuntimeError:
-                pass
+            try: threading.Thread(target=time.sleep, args=({FOR_EVER},)).start()
+            except RuntimeError: pass
         """,
-        processes=50,
-        time=FEW_SECONDS,
-    )
-    assert result.ended_by in ("processes", "time")
+        {"processes": 50, "time": FEW_SECONDS},
+        ("processes", "time"),
+    ),
+    "many_take_much_memory": (
+        f"""
+        import os, time
+        for _ in range(10):
+            if os.fork() == 0:
+                x = b"x" * (60 * 2**20)
+                break
+        time.sleep({FOR_EVER})
+        """,
+        {"memory": 300 * 2**20, "time": 60},
+        ("memory",),
+    ),
+    "writes_many_files": (
+        "for n in range(10**6): open(str(n), 'wb').write(b'x' * 2**20)",
+        {"disk": 50 * 2**20, "file_size": 2 * 2**20, "time": 60},
+        ("disk",),
+    ),
+}
+
+
+@pytest.mark.parametrize("attack", ENDED)
+def test_what_goes_on_is_ended(confined, attack):
+    program, limits, why = ENDED[attack]
+    assert confined(program, **limits).ended_by in why
 
 
 @pytest.mark.parametrize("stream", ["stdout", "stderr"])
@@ -155,26 +167,21 @@ def test_output_that_is_not_text(confined):
     assert "ABC" in result.output
 
 
-def test_one_process_takes_much_memory(confined):
-    result = confined("x = bytearray(500 * 2**20)", memory=200 * 2**20)
-    assert result.code == 1
-    assert "MemoryError" in result.errors
-
-
-def test_many_processes_take_much_memory(confined):
-    result = confined(
-        f"""
-        import os, time
-        for _ in range(10):
-            if os.fork() == 0:
-                x = b"x" * (60 * 2**20)
-                time.sleep({FOR_EVER})
-        time.sleep({FOR_EVER})
-        """,
-        memory=300 * 2**20,
-        time=60,
-    )
-    assert result.ended_by == "memory"
+@pytest.mark.parametrize(
+    ("program", "limits", "says"),
+    [
+        ("x = bytearray(500 * 2**20)", {"memory": 200 * 2**20}, "MemoryError"),
+        (
+            "f = [open('/dev/null') for n in range(10**4)]",
+            {"open_files": 100},
+            "Too many open files",
+        ),
+    ],
+    ids=["memory", "open_files"],
+)
+def test_one_process_takes_too_much(confined, program, limits, says):
+    result = confined(program, **limits)
+    assert result.code == 1 and says in result.errors
 
 
 def test_processor_time(confined):
@@ -189,19 +196,6 @@ def test_writes_a_large_file(confined):
     assert (result.code, result.ended_by) == (1, None)
     assert "File too large" in result.errors
     assert (confined.scratch / "f").stat().st_size <= 5 * 2**20
-
-
-def test_writes_many_files(confined):
-    result = confined(
-        """
-        for n in range(10**6):
-            open(str(n), "wb").write(b"x" * 2**20)
-        """,
-        disk=50 * 2**20,
-        file_size=2 * 2**20,
-        time=60,
-    )
-    assert result.ended_by == "disk"
 
 
 def test_digs(confined):
@@ -222,28 +216,13 @@ def test_digs(confined):
     assert not confined.scratch.exists()
 
 
-def test_opens_many_files(confined):
-    result = confined("f = [open('/dev/null') for n in range(10**4)]", open_files=100)
-    assert result.code == 1
-    assert "Too many open files" in result.errors
-
-
 def test_deletes_its_own_files(confined):
     confined.scratch.mkdir()
-    program = confined.scratch / "program.py"
-    program.write_text(
-        f"import os, shutil, time; shutil.rmtree('.', ignore_errors=True); time.sleep({FOR_EVER})"
-    )
-    result = confined(
-        f"""
-        import shutil, time
-        shutil.rmtree(".", ignore_errors=True)
-        time.sleep({FOR_EVER})
-        """,
-        time=FEW_SECONDS,
-    )
-    assert result.ended_by == "time"
-    assert not program.exists()
+    file = confined.scratch / "file"
+    file.touch()
+    program = f"import shutil, time; shutil.rmtree('.', True); time.sleep({FOR_EVER})"
+    assert confined(program, time=FEW_SECONDS).ended_by == "time"
+    assert not file.exists()
 
 
 def test_takes_away_its_own_rights(confined):

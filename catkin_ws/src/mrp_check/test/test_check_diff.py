@@ -6,11 +6,9 @@ import subprocess
 import check_rules
 import pytest
 from mrp_check.verdict import diff
-from test_check_python import replaced
+from test_check_python import TIMER, replaced
 
 pytestmark = pytest.mark.quick
-
-TIMER = "rospy.Timer(rospy.Duration(0.5), self.callback)"
 
 
 def patched(folder, text):

@@ -9,9 +9,6 @@ from check_rules import ISOLATIONS
 from mrp_check import sandbox
 from mrp_check.build import headers
 from mrp_check.confined import gcc_headers, variables
-from mrp_check.contract import spec
-from mrp_check.package.package import Package
-from mrp_check.verdict import check
 
 NODE = "src/publisher_cpp_node.cpp"
 # g++ sees the error in a header of ROS's.
@@ -94,9 +91,7 @@ def compiled(tmp_path, open_folders):
 
     def once(change=lambda text: text):
         (place / NODE).write_text(change(correct))
-        report = check.check(
-            Package(place), spec.read(spec.find("pub_sub")), ("compile",), kept=scratch
-        )
+        report = check_sets.check_tutorial(place, "compile", kept=scratch)
         said = [one.message for one in report.findings]
         if said:
             return said

@@ -9,10 +9,7 @@ import tempfile
 
 import check_sets
 import pytest
-from mrp_check.contract import spec
-from mrp_check.package.package import Package
 from mrp_check.sandbox.scratch import kept_folder
-from mrp_check.verdict import check
 
 pytestmark = [pytest.mark.slow, pytest.mark.usefixtures("open_folders")]
 
@@ -36,8 +33,8 @@ def checked(tmp_path, programs):
     def once(static=False):
         programs.clear()
         with kept_folder("this version") as kept:
-            contract, ids = spec.read(spec.find("pub_sub")), () if static else ("compile",)
-            report = check.check(Package(place), contract, ids, kept=kept, static=static)
+            ids = [] if static else ["compile"]
+            report = check_sets.check_tutorial(place, *ids, kept=kept, static=static)
         return [one.id for one in report.findings], "catkin_make" in programs
 
     return once

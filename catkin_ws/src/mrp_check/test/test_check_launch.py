@@ -6,9 +6,8 @@ import types
 
 import check_rules
 import pytest
-from check_rules import PUB_SUB, told
+from check_rules import told
 from mrp_check.confined import launch_dump
-from mrp_check.package import launch as launching
 from mrp_check.rules.contract import launch_contract
 from mrp_check.rules.files import launch_file, launch_nodes
 
@@ -59,47 +58,27 @@ def replaced(old, new):
 
 
 PUBLISHER_PY = 'type="publisher_py_node.py" name="publisher_py_node"'
+NOWHERE = '<launch><{} "$(find nowhere)/a"/>'
 BROKEN = {
     "no_type": ('type="publisher_cpp_node" ', "", [("launch-file", 4)], "type="),
     "no_such_package": (
-        "  <arg name",
-        '  <include file="$(find nowhere)/a.launch"/>\n  <arg name',
-        [("launch-file", 2)],
-        "nowhere",
+        *("<launch>", NOWHERE.format("include file=")),
+        *([("launch-file", 1)], "nowhere"),
     ),
     "no_such_package_of_an_argument": (
-        "  <arg name",
-        '  <arg name="model" default="$(find nowhere)/a.urdf"/>\n  <arg name',
-        [("launch-file", 2)],
-        "isn't there: nowhere",
-    ),
-    "name_twice": (
-        PUBLISHER_PY,
-        'type="publisher_py_node.py" name="publisher_cpp_node"',
-        [("launch-file", 5)],
-        "publisher_cpp_node",
+        *("<launch>", NOWHERE.format('arg name="model" default=')),
+        *([("launch-file", 1)], "isn't there: nowhere"),
     ),
     "not_started": (NODES[1], "", [("launch-nodes", 6)], "publisher_py_node"),
     "other_group": ('default="mrp"', 'default="mpr"', [("launch-group", 2)], "mpr"),
-    "no_group": ('<group ns="$(arg group)">', "<group>", [("launch-group", 3)], "mrp"),
-    "own_group": (
-        NODES[1],
-        NODES[1].replace("<node ", '<node ns="more" '),
-        [("launch-group", 5)],
-        "/mrp/more",
-    ),
-    "group_written_down": ("$(arg group)", "mrp", [("launch-group", 3)], "second robot"),
+    "own_group": (PUBLISHER_PY, f'{PUBLISHER_PY} ns="more"', [("launch-group", 5)], "/mrp/more"),
     "unknown_attribute": (
-        NODES[1],
-        NODES[1].replace("<node ", '<node ouput="log" '),
-        [("launch-file", 5)],
-        'output="..."',
+        *(PUBLISHER_PY, f'{PUBLISHER_PY} ouput="log"'),
+        *([("launch-file", 5)], 'output="..."'),
     ),
     "element_elsewhere": (
-        NODES[1],
-        NODES[1].replace("/>", '><arg name="a" value="1"/></node>'),
-        [("launch-file", 5)],
-        "<arg> within <node>",
+        *(NODES[1], NODES[1].replace("/>", '><arg name="a" value="1"/></node>')),
+        *([("launch-file", 5)], "<arg> within <node>"),
     ),
     "text_between": (NODES[1], f"/{NODES[1]}", [("launch-file", 5)], "between the tags"),
     "unknown_element": ("  <arg name", "  <prameter/>\n  <arg name", [("launch-file", 2)], "param"),
@@ -113,23 +92,13 @@ def test_broken_launch_file(old, new, wanted, words, tmp_path):
     assert re.search(words, f"{found[0].message} {found[0].expected} {found[0].fix}")
 
 
-@pytest.mark.quick
-def test_other_file_name(tmp_path):
-    package = check_rules.make(tmp_path, launch__pubsub_DOT_launch=LAUNCH)
-    path, (finding,) = launching.readable(package, PUB_SUB)
-    assert (path, finding.id, finding.file) == (None, "launch-file", "launch/pubsub.launch")
-
-
 @pytest.mark.parametrize(
     ("old", "new"),
     [
         ("<launch>", "<launch>\n  <!-- a comment -->"),
         ("</launch>", '  <node pkg="rosout" type="rosout" name="more"/>\n</launch>'),
         ("</launch>", '  <node pkg="some_pkg" type="a.py" name="more" ns="x"/>\n</launch>'),
-        (
-            NODES[0],
-            NODES[0].replace("/>", '>\n      <remap from="chatter" to="talk"/>\n    </node>'),
-        ),
+        (NODES[0], NODES[0].replace("/>", '><remap from="chatter" to="talk"/></node>')),
         (NODES[0], NODES[0].replace("<node ", '<node required="true" respawn="false" ')),
         ("<group ", '<param name="rate" value="2"/>\n  <group '),
     ],
@@ -150,19 +119,20 @@ def test_what_asks_for_an_argument_is_read_all_the_same(tmp_path):
     case.close()
 
 
-def test_nodes_may_be_in_an_included_file(tmp_path):
-    inner = "<launch>\n" + "".join(NODES) + "</launch>\n"
-    include = '    <include file="$(find some_pkg)/launch/nodes.launch"/>\n'
-    text = LAUNCH.replace("".join(NODES), include)
-    assert told(findings(tmp_path, text, launch__nodes_DOT_launch=inner)) == []
-
-
-def test_line_of_an_included_file(tmp_path):
-    inner = "<launch>\n" + "".join(NODES).replace("subscriber_py_node.py", "subscriber.py")
-    include = '    <include file="$(find some_pkg)/launch/nodes.launch"/>\n'
-    text = LAUNCH.replace("".join(NODES), include)
-    (finding,) = findings(tmp_path, text, launch__nodes_DOT_launch=inner + "</launch>\n")
-    assert (finding.id, finding.file, finding.line) == ("launch-nodes", "launch/nodes.launch", 5)
+@pytest.mark.parametrize(
+    ("program", "found"),
+    [
+        ("subscriber_py_node.py", []),
+        ("subscriber.py", [("launch-nodes", "launch/nodes.launch", 5)]),
+    ],
+    ids=["right", "wrong"],
+)
+def test_nodes_may_be_in_an_included_file(program, found, tmp_path):
+    nodes = "".join(NODES)
+    inner = f"<launch>\n{nodes.replace('subscriber_py_node.py', program)}</launch>\n"
+    text = LAUNCH.replace(nodes, '<include file="$(find some_pkg)/launch/nodes.launch"/>\n')
+    said = findings(tmp_path, text, launch__nodes_DOT_launch=inner)
+    assert [(one.id, one.file, one.line) for one in said] == found
 
 
 @pytest.mark.quick

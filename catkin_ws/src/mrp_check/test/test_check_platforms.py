@@ -187,13 +187,6 @@ def test_what_cannot_be_checked_has_a_score_of_0_and_one_sentence(make, says, tm
     assert found["output"].count("\n") == 0
 
 
-def test_points_need_a_contract(tmp_path, capsys):
-    with pytest.raises(SystemExit):
-        check_command.main(["--any", "--gradescope", str(tmp_path / "results.json"), str(tmp_path)])
-    assert "--gradescope needs the points of a contract" in capsys.readouterr().err
-    assert not (tmp_path / "results.json").exists()
-
-
 CLASS = [
     submission(NAMED, report(SPIN, VALUES)),
     submission("Bea O'Neil_777_assignsubmission_file", unchecked("It has no package.xml.")),

@@ -5,14 +5,11 @@ import types
 
 import check_rules
 import pytest
-from check_rules import MANIFEST
-from mrp_check.build import configuring
 from mrp_check.code.facts import Facts
 from mrp_check.confined.launch_dump import Started
 from mrp_check.confined.places import Kind, Place
 from mrp_check.confined.seen import LaunchResult, Log, Message, Registration, Seen
 from mrp_check.contract.finding import ERROR, HABIT, HINT, NOTE, WARNING, Finding
-from mrp_check.package.cmake import Model
 from mrp_check.rules.code import same_name
 from mrp_check.rules.files import messages
 from mrp_check.rules.run import called_back, exceptions, meeting, starts
@@ -21,9 +18,19 @@ from mrp_check.run.observing import Launched, Observed
 pytestmark = pytest.mark.quick
 
 
-def case(package):
-    facts = Facts(sources={file: [file] for file in package.of_kind("cpp")})
-    return types.SimpleNamespace(package=package, facts=facts, launch=None, launches=[])
+PACKAGE = types.SimpleNamespace(name="some_pkg", text={"src/b.cpp": "talk /say"}.get)
+
+
+def findings(rule, launches, **known):
+    """Return what a rule says of what was seen under launch files."""
+    places = types.SimpleNamespace(of=lambda *_: ("src/a.cpp", 1), of_topic=lambda *_: ("a.cpp", 1))
+    observed = types.SimpleNamespace(launches=launches, direct=None)
+    given = {"observed": observed, "places": places, "nodes": {}, "package": PACKAGE, **known}
+    return [*check_rules.of(rule.RULE, types.SimpleNamespace(**given))]
+
+
+def severities(rule, launches, **known):
+    return [one.severity for one in findings(rule, launches, **known)]
 
 
 @pytest.mark.parametrize(
@@ -40,11 +47,10 @@ def case(package):
 def test_two_programs_of_one_name(files, anonymous, found, tmp_path):
     text = 'int main() { ros::init(argc, argv, "talker"); }\n'
     names = {f"{file.replace('.', '_DOT_')}": text for file in files}
-    known = case(check_rules.make(tmp_path / "some_pkg", **names))
-    known.facts.sources = {f"node_{number}": [file] for number, file in enumerate(files)}
-    known.facts.places = [
-        Place(file, 1, Kind.INIT, "talker", anonymous=anonymous) for file in files
-    ]
+    package = check_rules.make(tmp_path / "some_pkg", **names)
+    places = [Place(file, 1, Kind.INIT, "talker", anonymous=anonymous) for file in files]
+    facts = Facts(places, {f"node_{number}": [file] for number, file in enumerate(files)})
+    known = types.SimpleNamespace(package=package, facts=facts, launch=None, launches=[])
     assert [one.file for one in check_rules.of(same_name.RULE, known)] == found
 
 
@@ -71,14 +77,7 @@ def test_names_that_a_launch_file_may_give(files, made_up, found):
     runs = [launched(file, "/say/raw", "hear") for file in files]
     runs.append(launched("", "/hear/raw", "hear", "say"))
     runs[-1].made_up = made_up
-    observed = types.SimpleNamespace(launches=runs, direct=None)
-    places = types.SimpleNamespace(of_topic=lambda *_: ("src/a.cpp", 1))
-    known = types.SimpleNamespace(observed=observed, places=places, nodes={}, package=PACKAGE)
-    said = check_rules.of(meeting.RULE, known)
-    assert [one.severity for one in said if one.severity == ERROR] == found
-
-
-PACKAGE = types.SimpleNamespace(name="some_pkg", text={"src/b.cpp": "talk /say"}.get)
+    assert [one for one in severities(meeting, runs) if one == ERROR] == found
 
 
 @pytest.mark.parametrize(
@@ -101,14 +100,8 @@ def test_a_topic_of_another_name(topic, names, down, found):
     if down == ["one node does both"]:
         seen.nodes["/say"], down = "hear", []
     seen.seen.seen.publications[:] = [Registration("/say", "/say", "std_msgs/String", 1)]
-    known = types.SimpleNamespace(
-        observed=types.SimpleNamespace(launches=[seen], direct=None),
-        places=types.SimpleNamespace(of_topic=lambda *_: ("src/a.cpp", 1)),
-        nodes={"b": types.SimpleNamespace(is_up=not down)},
-        facts=Facts(sources={"b": down}),
-        package=PACKAGE,
-    )
-    said = [*check_rules.of(meeting.RULE, known)]
+    nodes = {"b": types.SimpleNamespace(is_up=not down)}
+    said = findings(meeting, [seen], nodes=nodes, facts=Facts(sources={"b": down}))
     assert [one.severity for one in said] == found
     assert [one for one in said if "first slash" in one.fix] == said * (topic == "/robot/say")
 
@@ -128,13 +121,7 @@ def test_a_topic_of_several_types(file, others, found):
     heard = [Registration("/hear", "/a", "std_msgs/String", 1)]
     nodes = {"/hear": "hear", **{one.node: "say" for one in said}}
     seen = types.SimpleNamespace(seen=Seen(publications=said, subscriptions=heard))
-    runs = [Launched(file, nodes, seen)]
-    places = types.SimpleNamespace(of_topic=lambda *_: ("src/a.cpp", 1))
-    observed = types.SimpleNamespace(launches=runs, direct=None)
-    known = types.SimpleNamespace(observed=observed, places=places, nodes={}, package=PACKAGE)
-    assert [
-        one.severity for one in check_rules.of(meeting.RULE, known) if one.id == "type"
-    ] == found
+    assert severities(meeting, [Launched(file, nodes, seen)]) == found
 
 
 @pytest.mark.parametrize(
@@ -152,14 +139,9 @@ def test_a_node_that_gets_messages_and_calls_no_callback(asked, kinds, found):
     messages_ = [Message("/say", "/talk", {}, time / 10) for time in range(10 * asked)]
     seen = Seen(publications=said, subscriptions=heard, messages=messages_)
     result = LaunchResult("enough", asked, [], seen, uncalled=["/hear"])
-    places = types.SimpleNamespace(of=lambda *_: ("src/a.cpp", 1))
-    known = types.SimpleNamespace(
-        observed=types.SimpleNamespace(launches=[Launched("", {"/hear": "hear"}, result)]),
-        facts=Facts([Place("src/a.cpp", 2, kind) for kind in kinds], {"hear": ["src/a.cpp"]}),
-        places=places,
-        nodes={},
-    )
-    assert [one.severity for one in check_rules.of(called_back.RULE, known)] == found
+    facts = Facts([Place("src/a.cpp", 2, kind) for kind in kinds], {"hear": ["src/a.cpp"]})
+    launches = [Launched("", {"/hear": "hear"}, result)]
+    assert severities(called_back, launches, facts=facts) == found
 
 
 @pytest.mark.parametrize(("header", "found"), [("nowhere_msgs/A.h", 0), ("std_msgs/String.h", 1)])
@@ -227,18 +209,6 @@ def test_a_parameter_that_is_set_under_another_name(asked_for, given, is_it):
     assert (f"sets {given}," in finding.message, "inside <node>" in finding.fix) == (is_it, is_it)
 
 
-def test_a_target_that_is_waited_for_and_does_not_exist_is_found_where_cmake_stops(tmp_path):
-    package = check_rules.make(tmp_path / "src" / "some_pkg", package_DOT_xml=MANIFEST)
-    output = (
-        "CMake Error at some_pkg/CMakeLists.txt:4 (add_dependencies):\n"
-        '  The dependency target "some_pkg_gencp" of target "a" does not exist.\n\n'
-    )
-    model = Model(package.root, [], complete=False)
-    finding = configuring.finding(package, output, package.root, model)
-    assert (finding.file, finding.line) == ("CMakeLists.txt", 4)
-    assert "Did you mean some_pkg_gencpp?" in finding.message
-
-
 @pytest.mark.parametrize(
     ("name", "text", "said"),
     [
@@ -265,17 +235,6 @@ def test_ros_reads_each_line_of_a_definition(name, text, said, tmp_path):
     assert all(said in one.message for one in found)
 
 
-def test_a_package_that_generate_messages_does_not_name(tmp_path):
-    package = check_rules.make(tmp_path / "some_pkg")
-    output = (
-        "CMake Error at some_pkg/CMakeLists.txt:4 (generate_messages):\n"
-        "  Cannot locate message [Point]: unknown package [geometry_msgs] on search\n  path [{}]\n"
-    )
-    model = Model(package.root, [], complete=False)
-    finding = configuring.finding(package, output, package.root, model)
-    assert "uses geometry_msgs/Point, but generate_messages() doesn't name" in finding.message
-
-
 @pytest.mark.parametrize(
     ("line", "kind", "time", "other", "found"),
     [
@@ -300,7 +259,7 @@ def test_what_a_node_raises_under_roslaunch(line, kind, time, other, found, tmp_
     lines = [(time, "err", kind), (4, "out", died)]
     logged = Log("/odd", "ERROR", "No service.", "", 0, 3)
     seen = LaunchResult(ending="enough", asked=5, lines=lines, seen=Seen(logs=[logged]))
-    launches = [types.SimpleNamespace(nodes={"/odd": "odd"}, file="", seen=seen)]
+    launches = [Launched("", {"/odd": "odd"}, seen)]
     named = {"src/odd.py": "odd", "src/b.py": other}
     starts = [Place(file, 1, Kind.INIT, name) for file, name in named.items()]
     known = types.SimpleNamespace(

@@ -5,38 +5,44 @@ import types
 
 import check_rules
 import pytest
-from check_rules import CMAKE, file_findings, told
+from check_rules import CMAKE, NODE, file_findings, told
 from mrp_check.rules.files import scripts
 
 pytestmark = pytest.mark.quick
 
-NODE = (
-    "#!/usr/bin/env python\nimport rospy\nfrom std_msgs.msg import UInt32\nrospy.init_node('a')\n"
-)
+WITHOUT = types.SimpleNamespace(is_contract=False, nodes={})
 
 
 @pytest.mark.parametrize(
-    ("first", "cmake_text", "expected"),
+    ("first", "is_wrong"),
     [
-        ("#!/usr/bin/env python", CMAKE, []),
-        ("#!/usr/bin/env python3", "", []),
-        ("#!/usr/bin/python3", "", []),
-        ("#! /usr/bin/python3 -u", "", []),
-        ("#!/usr/bin/env -S python3 -u", "", []),
-        ("# no shebang", CMAKE, [("scripts", 1)]),
-        ("#!/usr/bin/env pyhton", CMAKE, [("scripts", 1)]),
-        ("#!/usr/bin/pyhton3", "", [("scripts", 1)]),
-        ("#!/bin/bash", CMAKE, [("scripts", 1)]),
-        ("\n#!/usr/bin/env python", CMAKE, [("scripts", 1)]),
+        ("#!/usr/bin/env python", None),  # only where nothing else starts it
+        ("#!/usr/bin/env python3", False),
+        ("#!/usr/bin/python3", False),
+        ("#! /usr/bin/python3 -u", False),
+        ("#!/usr/bin/env -S python3 -u", False),
+        ("#!/usr/bin/env python2", True),
+        ("#!/usr/bin/env pyhton", True),
+        ("#!/usr/bin/pyhton3", True),
+        ("#!no_python", True),
+        ("#!/bin/bash", True),
+        ("# no shebang", True),
+        ("\n#!/usr/bin/env python", True),
     ],
-    ids=range(10),
+    ids=range(12),
 )
-def test_first_line(first, cmake_text, expected, tmp_path):
-    text_ = CMAKE if cmake_text else CMAKE.replace("catkin_install_python", "# ")
-    source = first + NODE[NODE.index("\n") :]
+@pytest.mark.parametrize("is_relayed", [True, False], ids=["relayed", "alone"])
+@pytest.mark.parametrize("has_contract", [True, False], ids=["contract", "any"])
+def test_first_line(first, is_wrong, is_relayed, has_contract, tmp_path):
+    """Without a contract, it is no error where what catkin_install_python() makes starts it."""
+    text_ = CMAKE if is_relayed else CMAKE.replace("catkin_install_python", "# ")
+    source = f"{first}\nimport rospy\n"
     package = check_rules.make(tmp_path, src__odd_DOT_py=source, CMakeLists_DOT_txt=text_)
-    found = file_findings(scripts, package, started={"src/odd.py": None})
-    assert told(found) == expected
+    known = {"spec": check_rules.PUB_SUB if has_contract else WITHOUT}
+    known["started"] = {} if is_relayed else {"src/odd.py": None}
+    found = [(one.severity, one.line) for one in file_findings(scripts, package, **known)]
+    severity = "warning" if is_relayed and not has_contract else "error"
+    assert found == [(severity, 1)] * (not is_relayed if is_wrong is None else is_wrong)
 
 
 def test_what_asks_for_python_may_not_be_executable_either(tmp_path):
@@ -57,23 +63,11 @@ def test_a_copy_of_a_script_may_be_the_one_that_is_executable(tmp_path):
     assert len(told(file_findings(scripts, package, started=given))) == 1  # one is relayed
 
 
-@pytest.mark.parametrize(("is_relayed", "severity"), [(True, "warning"), (False, "error")])
-def test_without_a_contract_a_relayed_script_needs_no_first_line(is_relayed, severity, tmp_path):
-    text_ = CMAKE if is_relayed else CMAKE.replace("catkin_install_python", "# ")
-    source = NODE[NODE.index("\n") + 1 :]
-    package = check_rules.make(tmp_path, src__odd_DOT_py=source, CMakeLists_DOT_txt=text_)
-    spec = types.SimpleNamespace(is_contract=False, nodes={})
-    (finding,) = file_findings(scripts, package, started={"src/odd.py": None}, spec=spec)
-    assert (finding.severity, finding.line) == (severity, 1)
-
-
-@pytest.mark.parametrize(("by", "severity"), [("catkin_install_python", "note"), ("# ", "error")])
-def test_script_that_is_not_executable(by, severity, tmp_path):
-    text_ = CMAKE.replace("catkin_install_python", by)
+def test_relayed_script_that_is_not_executable(tmp_path):
     source = NODE.replace("env python", "env python3")
-    package = check_rules.make(tmp_path, src__odd_DOT_py=source, CMakeLists_DOT_txt=text_)
+    package = check_rules.make(tmp_path, src__odd_DOT_py=source)
     (tmp_path / "src" / "odd.py").chmod(0o644)
-    assert told(file_findings(scripts, package), severity) == [("scripts", 1)]
+    assert told(file_findings(scripts, package), "note") == [("scripts", 1)]
 
 
 def test_script_that_hides_a_module_of_rospys(tmp_path):

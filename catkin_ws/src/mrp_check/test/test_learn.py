@@ -11,10 +11,8 @@ import pyte
 import pytest
 from mrp_check.cli import learn
 from mrp_check.confined import variables
-from mrp_check.contract import defects, spec
+from mrp_check.contract import defects
 from mrp_check.learning.exercise import Course
-from mrp_check.package.package import Package
-from mrp_check.verdict import check
 from mrp_testing import compiler_cache
 from mrp_testing.process import Process, processes_with
 from mrp_testing.waiting import wait_until, within
@@ -221,8 +219,7 @@ def checks_of(tmp_path, programs, *only):
 
     def checked():
         programs.clear()
-        contract = spec.read(spec.find("pub_sub"))
-        report = check.check(Package(place), contract, only, kept=scratch)
+        report = check_sets.check_tutorial(place, *only, kept=scratch)
         built = (scratch / "workspace" / "devel" / "lib" / "mrp").glob("*_cpp_node")
         times = {path.name: path.stat().st_mtime_ns for path in built}
         return [f.id for f in report.findings], [*programs], times
