@@ -14,6 +14,7 @@ from mrp_testing.workspace import WORKSPACE
 pytestmark = pytest.mark.quick
 
 CHECK = WORKSPACE / "src" / "mrp_check" / "scripts" / "check"
+HERE = WORKSPACE / "src" / "mrp_check" / "test"
 
 
 def run(*arguments, cwd=None, program=CHECK, **variables):
@@ -31,11 +32,12 @@ def run(*arguments, cwd=None, program=CHECK, **variables):
     ("arguments", "says"),
     [
         (["no_such_folder"], "check: There's no folder no_such_folder.\n"),
+        ([f"{HERE}s"], f"check: There's no folder {HERE}s. Did you mean test?\n"),
         ([os.devnull], "check: /dev/null isn't a folder; expected the folder of a package.\n"),
         ([".", "--spec", "none.yaml"], "check: none.yaml: the spec can't be read: No such file"),
         ([".", "--spec", __file__], f"check: {__file__}:"),
     ],
-    ids=range(4),
+    ids=range(5),
 )
 def test_what_cannot_be_checked_is_exit_code_2(arguments, says):
     done = run(*arguments)
@@ -44,17 +46,18 @@ def test_what_cannot_be_checked_is_exit_code_2(arguments, says):
     assert done.stderr.count("\n") == 1
 
 
-def test_folder_without_manifest_names_the_package_in_it(tmp_path):
-    (tmp_path / "src" / "a").mkdir(parents=True)
-    (tmp_path / "src" / "a" / "package.xml").write_text("<package/>")
+def test_folder_without_manifest_names_the_packages_in_it(tmp_path):
+    for name in ("a", "b"):
+        (tmp_path / "src" / name).mkdir(parents=True)
+        (tmp_path / "src" / name / "package.xml").write_text("<package/>")
     reports = {
         f"--{kind}": tmp_path / f"report.{kind}" for kind in ("json", "junit", "sarif", "html")
     }
     done = run("--github", tmp_path, *(word for option in reports.items() for word in option))
     assert done.returncode == 2
     assert all(path.read_text() for path in reports.values())
-    assert f"Did you mean {tmp_path}/src/a?" in done.stderr
-    assert done.stdout.startswith("::error title=mrp_check::") and "/src/a?" in done.stdout
+    assert f"Did you mean {tmp_path}/src/a or {tmp_path}/src/b?" in done.stderr
+    assert done.stdout.startswith("::error title=mrp_check::") and "/src/b?" in done.stdout
     data = json.loads((tmp_path / "report.json").read_text())
     assert (data["verdict"], data["findings"]) == ("unchecked", [])
 

@@ -14,7 +14,7 @@ import xml.etree.ElementTree as ElementTree
 from typing import Iterable, overload
 
 from mrp_check.contract.errors import PackageError
-from mrp_check.contract.names import last_part, printable
+from mrp_check.contract.names import last_part, nearest, perhaps, printable
 
 # What is built or kept by tools, and no part of a package.
 NOT_SOURCES = {".git", ".svn", ".vscode", ".idea", "__pycache__", ".pytest_cache", "CMakeFiles"}
@@ -74,7 +74,9 @@ class Package:
     def __init__(self, root: str | pathlib.Path) -> None:
         self.root = pathlib.Path(root).absolute()
         if not self.root.exists():
-            raise PackageError(f"There's no folder {root}.")
+            beside = self.root.parent.glob("*/")
+            near = nearest(self.root.name, [printable(path.name) for path in beside])
+            raise PackageError(f"There's no folder {root}.{perhaps(near)}")
         if not self.root.is_dir():
             raise PackageError(f"{root} isn't a folder; expected the folder of a package.")
         self._bytes: dict[str, bytes] = {}
@@ -133,7 +135,8 @@ class Package:
         below = sorted(path for path in self.files if path.endswith("/package.xml"))
         text = f"{self.root} has no package.xml: expected the folder of a catkin package."
         if below:
-            text += f" Did you mean {self.root / below[0][: -len('/package.xml')]}?"
+            folders = [str(self.root / path[: -len("/package.xml")]) for path in below[:3]]
+            text += f" Did you mean {' or '.join(folders)}?"
         return text
 
     def bytes(self, path: str) -> bytes:
