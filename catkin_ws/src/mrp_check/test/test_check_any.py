@@ -12,6 +12,7 @@ import check_rules
 import jsonschema
 import pytest
 from check_sets import is_told, shown
+from mrp_check import sandbox
 from mrp_check.cli import check as command
 from mrp_check.contract.finding import ERROR, NOTE, WARNING
 from mrp_check.contract.spec import NodeSpec
@@ -118,6 +119,8 @@ def test_no_contract_is_written_from_a_package_that_does_not_work(
     assert ended.value.code == 2
     assert said.startswith(f"check: no contract was written, because {says}"), said
     assert [path.name for path in tmp_path.iterdir()] == ["some_pkg"]
+    if has_cmake:
+        assert checked(folder).isolation == sandbox.isolation_text("CMake and the compiler")
 
 
 def test_run_tests_checks_a_package(tmp_path):

@@ -47,10 +47,14 @@ def test_first_line(first, is_wrong, is_relayed, has_contract, tmp_path):
 
 def test_what_asks_for_python_may_not_be_executable_either(tmp_path):
     text_ = CMAKE.replace("catkin_install_python", "# ")
-    package = check_rules.make(tmp_path, src__odd_DOT_py=NODE, CMakeLists_DOT_txt=text_)
+    package = check_rules.make(
+        tmp_path, src__even_DOT_py=NODE, src__odd_DOT_py=NODE, CMakeLists_DOT_txt=text_
+    )
     (package.root / "src/odd.py").chmod(0o644)
-    first, second = file_findings(scripts, package, started={"src/odd.py": None})
+    given = {"src/even.py": None, "src/odd.py": None}
+    other, first, second = file_findings(scripts, package, started=given)
     assert "asks for 'python'" in first.message and "isn't executable," in second.message
+    assert first.expected == other.expected  # the report tells it once, with both places
 
 
 def test_a_copy_of_a_script_may_be_the_one_that_is_executable(tmp_path):

@@ -60,14 +60,14 @@ def isolation() -> Isolation:
     return Isolation.NONE if os.getuid() else Isolation.USER
 
 
-def isolation_text(static: bool = False) -> str:
+def isolation_text(tools: str = "") -> str:
     """Return what the Isolation is, and what bubblewrap says where it makes no sandbox.
 
-    static: whether the package's files are only read
+    tools: what has run, if no node of the package has
     """
     error = bubblewraps_error()
-    if static and not error:
-        return "No node ran; CMake did, in a sandbox."
+    if tools and not error:
+        return f"No node ran; {tools} did, in a sandbox."
     return " ".join(filter(None, [isolation().value, error]))
 
 

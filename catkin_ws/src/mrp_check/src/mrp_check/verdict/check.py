@@ -181,6 +181,13 @@ class _Examination:
     def _open(self):
         return [id_ for id_ in self.ids if id_ not in self.failed]
 
+    def _only_tools(self):
+        """Return what has run, if no node has; an empty text if one has, or may yet."""
+        if self.case.static:
+            return "CMake"
+        seen = vars(self.case).get("observed")
+        return "CMake and the compiler" if seen and not seen.executables else ""
+
     def report(self):
         package, known = self.case.package, vars(self.case)
         is_any = isinstance(self.case, AnyCase)
@@ -216,7 +223,7 @@ class _Examination:
             console=_console(known.get("observed")),
             tools=_failed_step(known.get("catkin")),
             suppressed=[finding for finding in suppressed if finding.id in self.ids],
-            isolation=sandbox.isolation_text(self.case.static),
+            isolation=sandbox.isolation_text(self._only_tools()),
             folder=package.root.resolve(),
         )
 

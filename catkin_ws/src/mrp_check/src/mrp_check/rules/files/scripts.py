@@ -190,7 +190,7 @@ def _not_relayed(model: Model, path: str, plain: str) -> Finding:
         " 'python', which this system doesn't have: it has python3.",
         path,
         1,
-        expected=f"catkin_install_python(PROGRAMS ... {path} ...) in CMakeLists.txt",
+        expected="a line for it in catkin_install_python(PROGRAMS ...) of CMakeLists.txt",
         seen=plain,
         fix=add,
         why="no-python",
