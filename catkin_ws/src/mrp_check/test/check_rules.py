@@ -69,7 +69,7 @@ def make(folder, **files):
         path = folder / name
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_bytes(content if isinstance(content, bytes) else content.encode())
-        if name.endswith(".py"):
+        if name.endswith((".py", ".sh")):
             path.chmod(0o755)
     return Package(folder)
 

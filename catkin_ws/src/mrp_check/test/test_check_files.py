@@ -276,8 +276,11 @@ def test_own_service_is_made_before_it_is_used(without, file, says, tmp_path):
     calls = (
         "add_service_files(FILES Ask.srv)\ngenerate_messages()\ncatkin_package()\n"
         "add_executable(a src/a.cpp)\nadd_dependencies(a some_pkg_gencpp)\n"
+        "add_library(own src/own.cpp)\nadd_dependencies(own some_pkg_gencpp)\n"
+        "add_executable(linked src/a.cpp)\ntarget_link_libraries(linked own)\n"
     )
     files = {"src__a_DOT_cpp": "#include <some_pkg/AskRequest.h>\n", "srv__Ask_DOT_srv": "---\n"}
+    files["src__own_DOT_cpp"] = ""
     package = with_messages(tmp_path, calls.replace(without, ""), **files)
     found = [
         f"{one.file}: {package.lines(one.file)[one.line - 1]} {one.message}"
@@ -310,9 +313,10 @@ def test_a_package_that_is_not_here_is_named_as_debian_has_it(
     [
         ("turtlesim", "", [3]),
         ("turtlesim", "<url>http://www.ros.org/turtlesim</url>", []),
+        ("turtlesim", "<url>http://www.ros.org/wiki/turtlesim</url>", []),
         *[("our_turtle", "", []), ("Some_pkg", "", [3]), ("2_pkg", "", [3]), ("some-pkg2", "", [])],
     ],
-    ids=range(6),
+    ids=range(7),
 )
 def test_a_package_has_a_usual_name_of_its_own(name, url, found, tmp_path, capfd):
     text = MANIFEST.replace("some_pkg", name).replace("</package>", f"{url}</package>")

@@ -98,14 +98,16 @@ def test_broken_launch_file(old, new, wanted, words, tmp_path):
         ("<launch>", "<launch>\n  <!-- a comment -->"),
         ("</launch>", '  <node pkg="rosout" type="rosout" name="more"/>\n</launch>'),
         ("</launch>", '  <node pkg="some_pkg" type="a.py" name="more" ns="x"/>\n</launch>'),
+        ("</launch>", '  <node pkg="some_pkg" type="run.sh" name="more"/>\n</launch>'),
         (NODES[0], NODES[0].replace("/>", '><remap from="chatter" to="talk"/></node>')),
         (NODES[0], NODES[0].replace("<node ", '<node required="true" respawn="false" ')),
         ("<group ", '<param name="rate" value="2"/>\n  <group '),
     ],
-    ids=range(6),
+    ids=range(7),
 )
 def test_what_looks_like_it_is_not_flagged(old, new, tmp_path):
-    assert told(findings(tmp_path, replaced(old, new), scripts__a_DOT_py="")) == []
+    files = {"scripts__a_DOT_py": "", "scripts__run_DOT_sh": "#!/bin/bash\n"}
+    assert told(findings(tmp_path, replaced(old, new), **files)) == []
 
 
 def test_what_asks_for_an_argument_is_read_all_the_same(tmp_path):

@@ -109,17 +109,20 @@ def test_what_looks_like_it_is_not_flagged(old, new, tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("manifest", "found"),
+    ("module", "declared", "found"),
     [
-        (check_rules.MANIFEST, [("python-names", "certain")]),
-        (check_rules.MANIFEST.replace("roscpp", "old_pkg"), []),
+        ("old_pkg", "roscpp", [("python-names", "certain")]),
+        ("old_pkg", "old_pkg", []),
+        ("rosauth", "roscpp", [("python-names", "read")]),  # like rosout
+        ("rosauth", "rosauth", []),
     ],
-    ids=["", "declared"],
+    ids=range(4),
 )
-def test_a_package_by_its_old_name(manifest, found, tmp_path):
-    text = replaced("import rospy\n", "import rospy\nfrom old_pkg.srv import Go\n")
-    files = {"srv__Go_DOT_srv": "---\n", "package_DOT_xml": manifest}
-    said = check_rules.python_findings(tmp_path, text, **files)
+def test_a_package_that_is_not_here(module, declared, found, tmp_path):
+    text = replaced("import rospy\n", f"import rospy\nfrom {module}.srv import Go\n")
+    manifest = check_rules.MANIFEST.replace("roscpp", declared)
+    files = {"srv__Go_DOT_srv": "---\n"} if module == "old_pkg" else {}
+    said = check_rules.python_findings(tmp_path, text, package_DOT_xml=manifest, **files)
     assert [(one.id, one.certainty) for one in said] == found
 
 
@@ -148,12 +151,13 @@ def test_each_line_of_python_2_is_named(text, first, other, tmp_path):
         ("os.kill(0, 9)", Kind.KILLS, 0),
         ("server.set_succeeded()", Kind.ENDS, 0),
         ("len(sys.argv) < 2", Kind.COUNTS, 0),
+        ("words = rospy.myargv(); len(words) < 2", Kind.COUNTS, 0),
         ("sys.exit(3)", Kind.EXIT, 3),
         ("raise SystemExit('usage')", Kind.EXIT, 1),
     ],
 )
 def test_facts_say_what_happens_to_programs_and_goals(code, kind, value, tmp_path):
-    text = f"import multiprocessing, os, subprocess, sys\n{code}\n"
+    text = f"import multiprocessing, os, rospy, subprocess, sys\n{code}\n"
     _, found = check_rules.python_facts_of(tmp_path, text)
     assert [(one.kind, one.line, one.value) for one in found.places] == [(kind, 2, value)]
 
@@ -317,6 +321,15 @@ def test_what_else_is_wrong_in_a_file_that_python_cannot_read(code, lines, is_re
     package = check_rules.make(tmp_path, src__odd_DOT_py=code)
     source, found = python_read.further(package, "src/odd.py")
     assert ([one.line for one in found], source is not None) == (lines, is_read)
+
+
+@pytest.mark.parametrize(("folder", "names"), [("src", ["a"]), ("test", [])])
+def test_a_test_of_the_package_s_library_is_no_node(folder, names, tmp_path):
+    text = f"{check_rules.CMAKE}add_library(own src/own.cpp)\nadd_executable(a {folder}/a.cpp)\n"
+    text += "target_link_libraries(a own)\n"
+    files = {f"{folder}__a_DOT_cpp": "", "src__own_DOT_cpp": "ros::NodeHandle node;\n"}
+    package = check_rules.make(tmp_path, CMakeLists_DOT_txt=text, **files)
+    assert [*executables.spec(package, check_rules.model_of(package)).nodes] == names
 
 
 @pytest.mark.parametrize(

@@ -76,5 +76,5 @@ def _cpp(package: Package, model: Model) -> Iterator[specs.NodeSpec]:
     for name, target in model.executables().items():
         sources = [file for file in model.all_sources(target) if file in package.files]
         is_node = any(_ROSCPP.search(package.text(file)) for file in sources)
-        if is_node and not all(map(uses.is_test, sources)):
+        if is_node and not all(map(uses.is_test, target.sources or sources)):
             yield specs.NodeSpec(name, "cpp", executable=name)

@@ -302,8 +302,11 @@ class _Node:
         yield self.place(Kind.EXIT, self.called(node), value=value)
 
     def length(self, node: ast.Call) -> Iterator[Place]:
-        if node.args and self.source.dotted(node.args[0]) == "sys.argv":
-            yield self.place(Kind.COUNTS)
+        for given in node.args:
+            one = self.source.only(given) or given
+            words = one.func if isinstance(one, ast.Call) else given
+            if self.source.dotted(words) in ("sys.argv", "rospy.myargv"):
+                yield self.place(Kind.COUNTS)
 
     def signal(self, node: ast.Call) -> Iterator[Place]:
         name = self.source.dotted(argument(node, 0, "signalnum"))

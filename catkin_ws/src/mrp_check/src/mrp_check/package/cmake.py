@@ -243,14 +243,18 @@ class Model:
         own = rf"{re.escape(project)}_(gen(cpp|py)|generate_messages(_\w+)?)"
         return self.generate is None and bool(re.fullmatch(own, name))
 
-    def all_sources(self, target: Target, seen: tuple[str, ...] = ()) -> list[str]:
-        """Return the sources of a target and of the package's libraries that it is linked with."""
-        sources = list(target.sources)
+    def linked(self, target: Target, seen: tuple[str, ...] = ()) -> list[Target]:
+        """Return a target, and the package's libraries that it is linked with."""
+        found = [target]
         for name in target.links:
             other = self.targets.get(name)
             if other is not None and name not in seen and other is not target:
-                sources += self.all_sources(other, (*seen, target.name))
-        return list(dict.fromkeys(sources))
+                found += self.linked(other, (*seen, target.name))
+        return found
+
+    def all_sources(self, target: Target) -> list[str]:
+        """Return their sources."""
+        return list(dict.fromkeys(file for one in self.linked(target) for file in one.sources))
 
     def _project(self, call: Call) -> None:
         self.project = self.project or (call.arguments[0], call)

@@ -121,7 +121,9 @@ class Names(PythonRule):
                     fix=f"Write {self.package.name} for {missing}.",
                 )
                 return
-            if not near or uses.is_called_so(self.package, missing) or uses.is_of_debian(missing):
+            is_declared = self.package.find_line("package.xml", f"depend>{missing}<")
+            is_package = is_declared or uses.is_called_so(self.package, missing)
+            if not near or is_package or uses.is_of_debian(missing):
                 self.source.absent[missing] = uses.absent(missing, "python")
                 return
         else:

@@ -114,7 +114,8 @@ def _executables(package: Package, model: Model) -> set[str]:
     names = set(model.executables())
     names |= {last_part(script.path) for script in model.scripts}
     names |= {last_part(path) for path in package.of_kind("python")}
-    return names
+    others = (path for path in package.files if package.shebang(path))  # such as bash's
+    return names | {last_part(path) for path in others if package.is_executable(path)}
 
 
 def _can_start(case: Case, node: Started, spec_node: str | None = None) -> Iterator[Finding]:

@@ -220,7 +220,9 @@ def _order(package: Package, model: Model) -> Iterator[Finding]:
             for one in _included(package, model, target)
             if one[2].split("/")[0] == package.name and last_part(one[2])[:-2] in own
         ]
-        waits = any(_is_made(package, model, word) for word in target.dependencies)
+        # CMake builds a library, and what that waits for, before what is linked with it.
+        awaited = [word for one in model.linked(target) for word in one.dependencies]
+        waits = any(_is_made(package, model, word) for word in awaited)
         if used and not waits and _knows_what_waits(model) and model.generate is not None:
             file, line, header = used[0]
             yield Finding(

@@ -94,7 +94,7 @@ def _of_ros(package: Package) -> Iterator[Finding]:
     """Yield a warning if the package is called like one of ROS's own, and is another one: that has
     its page in its package.xml."""
     name, text = package.name, package.text("package.xml")
-    if uses.is_of_ros(name) and f"ros.org/{name}" not in text:
+    if uses.is_of_ros(name) and not re.search(rf"ros\.org/(wiki/)?{name}", text):
         line = package.find_line("package.xml", "<name", 1)
         yield Finding(
             "package-name",
