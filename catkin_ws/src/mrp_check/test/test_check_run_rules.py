@@ -8,11 +8,12 @@ import pytest
 from mrp_check.code.facts import Facts
 from mrp_check.confined.launch_dump import Started
 from mrp_check.confined.places import Kind, Place
-from mrp_check.confined.seen import LaunchResult, Log, Message, Registration, Seen
+from mrp_check.confined.seen import Alone, LaunchResult, Log, Message, Registration, Seen
 from mrp_check.contract.finding import ERROR, HABIT, HINT, NOTE, WARNING, Finding
+from mrp_check.contract.spec import Shutdown
 from mrp_check.rules.code import same_name
 from mrp_check.rules.files import messages
-from mrp_check.rules.run import called_back, exceptions, meeting, starts
+from mrp_check.rules.run import called_back, exceptions, exit, meeting, starts
 from mrp_check.run.observing import Launched, Observed
 
 pytestmark = pytest.mark.quick
@@ -21,16 +22,17 @@ pytestmark = pytest.mark.quick
 PACKAGE = types.SimpleNamespace(name="some_pkg", text={"src/b.cpp": "talk /say"}.get)
 
 
-def findings(rule, launches, **known):
+def findings(rule, runs, **known):
     """Return what a rule says of what was seen under launch files."""
     places = types.SimpleNamespace(of=lambda *_: ("src/a.cpp", 1), of_topic=lambda *_: ("a.cpp", 1))
-    observed = types.SimpleNamespace(launches=launches, direct=None)
-    given = {"observed": observed, "places": places, "nodes": {}, "package": PACKAGE, **known}
+    observed = types.SimpleNamespace(launches=runs, direct=None)
+    given = {"observed": observed, "places": places, "nodes": {}, "package": PACKAGE}
+    given.update({"launches": [], **known})
     return [*check_rules.of(rule.RULE, types.SimpleNamespace(**given))]
 
 
-def severities(rule, launches, **known):
-    return [one.severity for one in findings(rule, launches, **known)]
+def severities(rule, runs, **known):
+    return [one.severity for one in findings(rule, runs, **known)]
 
 
 @pytest.mark.parametrize(
@@ -63,21 +65,24 @@ def launched(file, topic, *names):
 
 
 @pytest.mark.parametrize(
-    ("files", "made_up", "found"),
+    ("files", "made_up", "unread", "found"),
     [
-        ([], (), [ERROR]),
-        (["launch/a.launch"], (), []),
-        ([], ("/say",), []),
-        ([], ("/sa",), [ERROR]),
+        ([], (), "", [ERROR]),
+        ([], (), "it needs an argument", []),
+        (["launch/a.launch"], (), "", []),
+        ([], ("/say",), "", []),
+        ([], ("/sa",), "", [ERROR]),
     ],
 )
-def test_names_that_a_launch_file_may_give(files, made_up, found):
-    """Without one, all nodes run together; with one, it has renamed what they need. Nor is it an
-    error that a topic is named after a node which the checker has renamed."""
+def test_names_that_a_launch_file_may_give(files, made_up, unread, found):
+    """Without one, all nodes run together; with one, it has renamed what they need, or may have if
+    roslaunch couldn't read it. Nor is it an error that a topic is named after a node which the
+    checker has renamed."""
     runs = [launched(file, "/say/raw", "hear") for file in files]
     runs.append(launched("", "/hear/raw", "hear", "say"))
     runs[-1].made_up = made_up
-    assert [one for one in severities(meeting, runs) if one == ERROR] == found
+    known = {"launches": [types.SimpleNamespace(error=unread)]}
+    assert [one for one in severities(meeting, runs, **known) if one == ERROR] == found
 
 
 @pytest.mark.parametrize(
@@ -181,12 +186,55 @@ def test_a_launch_file_gives_a_node_no_arguments(arguments, certainty, file):
 
 
 @pytest.mark.parametrize(
-    ("port", "certainty"), [("/dev/ttyUSB0", HINT), ("/tmp/ttyUSB0", "")], ids=range(2)
+    ("topic", "calls", "certainty"),
+    [("/tf", "", HINT), ("/talk", "", ""), ("/talk", "rospy.signal_shutdown", HABIT)],
 )
-def test_a_device_that_is_not_here_is_waited_for(port, certainty):
-    said = Finding("starts", "a ends.", "src/a.cpp", 1, node="a")
-    lines = [(0, "out", "open: No such file or directory")]
-    direct = types.SimpleNamespace(lines=lines, code=255)
+def test_what_waits_for_messages_does_not_end(topic, calls, certainty):
+    """A listener to tf calls back nothing of the node's own. Others may mean to end."""
+    heard = types.SimpleNamespace(subscriptions=[Registration("/a", topic, "", 1)])
+    ends = [Place("src/a.cpp", 1, Kind.EXIT, calls)] if calls else []
+    facts = Facts(places=ends, sources={"a": ["src/a.cpp"]})
+    places = types.SimpleNamespace(facts=facts, sources=lambda node: [])
+    direct = Alone(code=0, ended_after=1.0)
+    node = types.SimpleNamespace(name="a", direct=direct, places=places, seen_alone=heard)
+    case = types.SimpleNamespace(
+        package=PACKAGE, launches=[], built=True, spec=None, observed=Observed()
+    )
+    said = Finding("spin", "a ends.", "src/a.cpp", 1, node="a")
+    starts.weigh_start(case, node, said)
+    assert said.certainty == certainty
+
+
+@pytest.mark.parametrize(("code", "found"), [(0, WARNING), (1, WARNING), (-11, ERROR)])
+def test_what_ends_with_an_error_has_ended(code, found):
+    raised = ("a.py", 1), "AttributeError", "port"
+    of = {"of": lambda *_: ("a.py", 1), "traceback": lambda lines: raised, "facts": Facts()}
+    direct = Alone(asked=1.0, stopped_in=0.1, code=code, name="/a", lines=[])
+    node = types.SimpleNamespace(name="a", direct=direct, places=types.SimpleNamespace(**of))
+    node.finding = lambda id_, message, place, **more: Finding(id_, message, *place, **more)
+    spec = types.SimpleNamespace(is_contract=False, shutdown=Shutdown(seconds=5))
+    case = types.SimpleNamespace(spec=spec, nodes={"a": node})
+    said = [*check_rules.of(exit.RULE, case, exit.findings)]
+    assert [one.severity for one in said] == [found]
+
+
+NOT_THERE = "open: No such file or directory"
+
+
+@pytest.mark.parametrize(
+    ("said", "port", "certainty", "what"),
+    [
+        (NOT_THERE, "/dev/ttyUSB0", HINT, "a waits for a device: "),
+        (NOT_THERE, "/tmp/ttyUSB0", "", "a ends: "),
+        ("The port parameter is required and not set.", "", HINT, "a waits for a parameter: "),
+        ("Failed to get param 'port'", "", HINT, "a waits for a parameter: "),
+        ("Failed to allocate", "", "", "a ends: "),
+    ],
+    ids=range(5),
+)
+def test_what_only_its_user_has_is_waited_for(said, port, certainty, what):
+    finding = Finding("starts", f"a ends: {said}", "src/a.cpp", 1, node="a")
+    direct = types.SimpleNamespace(lines=[(0, "out", said)], code=255)
     package = types.SimpleNamespace(name="some_pkg")
     places = types.SimpleNamespace(facts=Facts(), sources=lambda node: [])
     node = types.SimpleNamespace(name="a", direct=direct, places=places)
@@ -194,8 +242,8 @@ def test_a_device_that_is_not_here_is_waited_for(port, certainty):
     case = types.SimpleNamespace(
         nodes={"a": node}, package=package, launches=launches, built=True, observed=Observed()
     )
-    starts.weigh_start(case, node, said)
-    assert (said.certainty, "waits for a device" in said.message) == (certainty, bool(certainty))
+    starts.weigh_start(case, node, finding)
+    assert (finding.certainty, finding.message) == (certainty, what + said)
 
 
 @pytest.mark.parametrize(
@@ -243,8 +291,9 @@ def test_ros_reads_each_line_of_a_definition(name, text, said, tmp_path):
         ("n = int(text)", "ValueError", 1, "odd", [WARNING, NOTE]),  # of the same name
         ("n = int(text)", "ValueError", 5.1, "even", [ERROR]),  # it was asked to end by then
         ("n = ask()", "KeyboardInterrupt", 1, "even", [ERROR]),  # that it died
+        ("n = connect()", "ConnectionRefusedError", 1, "even", [NOTE]),
     ],
-    ids=range(5),
+    ids=range(6),
 )
 def test_what_a_node_raises_under_roslaunch(line, kind, time, other, found, tmp_path):
     files = {"src__odd_DOT_py": f"{line}\n", "src__b_DOT_py": ""}

@@ -3,12 +3,15 @@
 that it needs."""
 
 import json
+import types
 
 import check_rules
 import pytest
 from mrp_check.cli import check as command
+from mrp_check.contract.errors import CannotCheck
 from mrp_check.package import siblings
 from mrp_check.package.package import Package
+from mrp_check.rules.run import compile
 
 _MSGS = """\
 cmake_minimum_required(VERSION 3.10)
@@ -91,6 +94,25 @@ def test_a_package_needs_what_its_manifest_names_and_what_that_needs(workspace):
     assert siblings.needed(alone) == []  # without a repository, only what lies in the same folder
     (workspace / ".git").mkdir()
     assert [one.name for one in siblings.needed(alone)] == ["a_msgs"]
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize("folder", ["a_msgs", "a_nodes"])
+def test_what_fails_in_another_package_is_not_this_ones_fault(folder, workspace):
+    """One that this package is built with may need what isn't on this machine."""
+    package = Package(workspace / "src" / "a_nodes")
+    package.siblings = siblings.needed(package)
+    said = f"make[2]: *** [{folder}/CMakeFiles/a.dir/build.make:76: {folder}/a.o] Error 1\n"
+    said += f"make[1]: *** [CMakeFiles/Makefile2:1409: {folder}/CMakeFiles/a.dir/all] Error 2\n"
+    built = types.SimpleNamespace(ok=False, output=said, why_ended="")
+    case = check_rules.case_of(package, workspace / "scratch", built=built)
+    try:
+        found = [*compile.findings(case)]
+    except CannotCheck as error:
+        found = [f"{error}"]
+    case.close()
+    assert len(found) == 1
+    assert ("It's built with a_msgs, which can't" in f"{found[0]}") == (folder == "a_msgs")
 
 
 @pytest.mark.slow

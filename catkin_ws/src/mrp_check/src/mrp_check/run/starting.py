@@ -74,7 +74,7 @@ def _raised(node: Traces, place: Where, kind: str, text: str) -> Finding:
         f"{node.name} ends as soon as it is started: {kind}: {text}"
         + (f" It isn't on this machine: {uses.absent(name, 'python')}." if apart else ""),
         place,
-        HINT if is_known or apart else SEEN,
+        HINT if is_known or apart or is_unanswered(kind, text) else SEEN,
         expected=_EXPECTED,
         seen=f"{kind}: {text}",
     )
@@ -122,6 +122,11 @@ def _not_registered(node: Traces) -> Finding:
         expected=f"a node {node.path}",
         seen="no node of that name",
     )
+
+
+def is_unanswered(kind: str, text: str) -> bool:
+    """Return whether an error says that no other program, or no other machine, answers here."""
+    return kind.endswith(("ConnectionRefusedError", "gaierror")) or "unreachable" in text
 
 
 def id_of_error(kind: str, text: str, otherwise: str) -> str:

@@ -4,16 +4,20 @@
 from __future__ import annotations
 
 import os
+import re
 from typing import Iterator
 
 from mrp_check.build import compiler, configuring, linker
 from mrp_check.code import uses
-from mrp_check.contract.errors import NotHere
+from mrp_check.contract.errors import CannotCheck, NotHere
 from mrp_check.contract.finding import Finding
-from mrp_check.contract.names import last_part
+from mrp_check.contract.names import last_part, printable
 from mrp_check.contract.requirements import Requirement, Rule
 from mrp_check.run import evidence
 from mrp_check.run.case import Case
+
+# What make says of a target that it couldn't make, with the folder of its package.
+_FAILED = re.compile(r"\*\*\* \[(?:CMakeFiles/Makefile2:\d+: )?([^/\s]+)/CMakeFiles/")
 
 
 def findings(case: Case) -> Iterator[Finding]:
@@ -32,10 +36,19 @@ def findings(case: Case) -> Iterator[Finding]:
     found = [compiler.finding(package, p) for p in problems if p.file not in absent]
     found += linker.findings(package, output, case.model)
     if not found and not absent:
+        if others := _failed_siblings(case):
+            raise CannotCheck(f"It's built with {' and '.join(others)}, which can't be built here.")
         found = [configuring.unknown(package, case.built, "compile")]
     yield from found
     if absent:
         raise NotHere(uses.absent(name, "cpp") for name in sorted({*absent.values()}))
+
+
+def _failed_siblings(case: Case) -> list[str]:
+    """Return the names of the packages that make names as failed; none if it names this one."""
+    failed = {*_FAILED.findall(case.built.output if case.built else "")}
+    folders = {printable(one.root.resolve().name): one.name for one in case.package.siblings}
+    return [folders[one] for one in sorted(failed)] if failed <= {*folders} else []
 
 
 def _of_other_machines(case: Case) -> Iterator[Finding]:

@@ -6,13 +6,13 @@ from __future__ import annotations
 from typing import Iterator
 
 from mrp_check.confined.places import Kind
-from mrp_check.contract.finding import HABIT, HINT, Finding, Where
+from mrp_check.contract.finding import HABIT, HINT, SEEN, Finding, Where
 from mrp_check.contract.requirements import Rule
 from mrp_check.run.case import Case
 from mrp_check.run.node import Node, each_node
 from mrp_check.run.observing import Launched
 from mrp_check.run.places import Traceback
-from mrp_check.run.starting import id_of_error
+from mrp_check.run.starting import id_of_error, is_unanswered
 from mrp_check.run.traces import ends
 from mrp_check.run.words import code_text
 
@@ -83,6 +83,7 @@ def _error(case: Case, launched: Launched, name: str, found: Traceback) -> Itera
         id_of_error(kind, text, "callbacks"),
         f"{name} runs into an error {launched.where}: {kind}: {text}",
         *place,
+        HINT if is_unanswered(kind, text) else "",
         expected="a node that works without an error",
         seen=f"{kind}: {text}, in: {source}",
         node=name,
@@ -132,6 +133,7 @@ def _raises(node: Node) -> Iterator[Finding]:
             id_of_error(kind, text, "callbacks"),
             f"{node.name} runs into an error as it works: {kind}: {text}",
             place,
+            HINT if is_unanswered(kind, text) else SEEN,
             expected="a node that works without an error",
             seen=f"{kind}: {text}, in: {source}",
         )

@@ -136,13 +136,16 @@ def _alone(case: Case, graph: Graph, end: End, published: set[str]) -> Iterator[
         return
     other = near[0]
     # Under their own launch file, both are without a partner: what one says, the other should hear.
-    is_own = graph.where not in (_TOGETHER, _BY_ITSELF) and other.topic not in heard
-    is_sure = (
-        is_own or is_like(other, end) and (other.topic not in heard or not _is_moved(other, end))
+    is_run = graph.where not in (_TOGETHER, _BY_ITSELF)
+    is_sure = is_run and other.topic not in heard
+    is_sure = is_sure or (
+        is_like(other, end) and (other.topic not in heard or not _is_moved(other, end))
     )
-    # A topic that's named after its node has another name where the checker has renamed the node.
+    # A launch file that roslaunch couldn't read may give topics other names; and one that's named
+    # after its node has another name where the checker has renamed the node.
+    is_open = not is_run and any(launch.error for launch in case.launches)
     made_up = tuple(f"{name}/" for name in graph.made_up)
-    is_sure = is_sure and not any(f"{one.topic}/".startswith(made_up) for one in (end, other))
+    is_open = is_open or any(f"{one.topic}/".startswith(made_up) for one in (end, other))
     digits = [re.sub(r"\d", "", one.topic) for one in (other, end)]
     fix = "Give both topics one name; a <remap> in the launch file does so, too."
     if other.topic == f"/{last_part(end.topic)}":
@@ -156,7 +159,7 @@ def _alone(case: Case, graph: Graph, end: End, published: set[str]) -> Iterator[
         f" {other.node} publishes on {other.topic}.",
         file,
         line,
-        SEEN if is_sure and digits[0] != digits[1] else HABIT,
+        SEEN if is_sure and not is_open and digits[0] != digits[1] else HABIT,
         expected=other.topic,
         seen=end.topic,
         fix=fix,

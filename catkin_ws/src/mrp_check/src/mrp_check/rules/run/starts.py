@@ -19,7 +19,7 @@ from mrp_check.run import evidence
 from mrp_check.run.case import Case
 from mrp_check.run.node import Node
 from mrp_check.run.observing import Observed
-from mrp_check.run.traces import ends
+from mrp_check.run.traces import ROS_TOPICS, ends
 from mrp_check.run.words import code_text, last_words
 
 _ARGUMENTS, _PARAMETER = "arguments on its command line", "a parameter"
@@ -34,6 +34,11 @@ _WAITS = (
     (r"(?i)can.t open camera|VIDEOIO|/dev/(video|tty|input)\w*", _DEVICE, ""),
     (r"KeyError: ", _PARAMETER, "param"),
     (r"IndexError: list index|ValueError: ", "arguments", "sys.argv"),
+)
+# The last words of a node that names a parameter as missing.
+_NO_PARAMETER = re.compile(
+    r"(?i)\bparam(eter)?s?\b.*\b(required|missing|not)\b"
+    r"|\b(required|missing|no|not|failed|unable)\b.*\bparam(eter)?s?\b"
 )
 _WAITS_FOR_ARGUMENTS = f"waits for {_ARGUMENTS}"
 _FEW = 6  # lines
@@ -169,6 +174,11 @@ def _of_start(case: Case, node: Node, finding: Finding) -> bool:
         finding.message = f"{finding.message.rstrip('.')}. It dies under {dies}, too."
         add_name_that_is_set(case, finding)
         return False
+    if finding.id == "starts" and _NO_PARAMETER.search(finding.message):
+        finding.certainty = HINT
+        said = finding.message.partition(": ")[2]
+        finding.message = f"{node.name} waits for {_PARAMETER}: {said}"
+        return False
     if not any("Error:" in line for line in lines) and misses_arguments(node, finding):
         finding.certainty = HINT
         finding.message = f"{node.name} {_WAITS_FOR_ARGUMENTS}."
@@ -183,7 +193,11 @@ def _of_start(case: Case, node: Node, finding: Finding) -> bool:
         finding.certainty, (finding.file, finding.line) = HABIT, early
         finding.message += " It doesn't wait for the service that it calls."
         return False
-    if node.direct and node.direct.code == 0 and not _is_left_alone(node):
+    if node.direct and node.direct.code == 0 and _is_left_alone(node):
+        ends = [p for p in node.places.facts.of(node.name, Kind.EXIT) if p.text != "return"]
+        if ends:  # it may have meant to, as of what it was answered
+            finding.certainty = HABIT
+    elif node.direct and node.direct.code == 0:
         finding.certainty = HINT
         finding.message = f"{node.name} exits with code 0: {last_words(lines) or 'without a word'}"
     return False
@@ -259,7 +273,7 @@ def _names(node: Node, finding: Finding) -> set[str]:
 
 def _is_left_alone(node: Node) -> bool:
     """Return whether a node ended that was to be called back."""
-    heard = {registration.topic for registration in node.seen_alone.subscriptions}
+    heard = {registration.topic for registration in node.seen_alone.subscriptions} - ROS_TOPICS
     if node.places.facts.of(node.name, Kind.COMMANDS):
         # Those of the client itself call nothing of the node's.
         heard = {topic for topic in heard if last_part(topic) not in _OF_ACTIONS}
