@@ -197,6 +197,7 @@ def test_what_waits_for_messages_does_not_end(topic, calls, certainty):
     places = types.SimpleNamespace(facts=facts, sources=lambda node: [])
     direct = Alone(code=0, ended_after=1.0)
     node = types.SimpleNamespace(name="a", direct=direct, places=places, seen_alone=heard)
+    node.errors = list
     case = types.SimpleNamespace(
         package=PACKAGE, launches=[], built=True, spec=None, observed=Observed()
     )
@@ -237,7 +238,7 @@ def test_what_only_its_user_has_is_waited_for(said, port, certainty, what):
     direct = types.SimpleNamespace(lines=[(0, "out", said)], code=255)
     package = types.SimpleNamespace(name="some_pkg")
     places = types.SimpleNamespace(facts=Facts(), sources=lambda node: [])
-    node = types.SimpleNamespace(name="a", direct=direct, places=places)
+    node = types.SimpleNamespace(name="a", direct=direct, places=places, errors=lambda: [said])
     launches = [types.SimpleNamespace(nodes=[], params={"/a/port": port})]
     case = types.SimpleNamespace(
         nodes={"a": node}, package=package, launches=launches, built=True, observed=Observed()

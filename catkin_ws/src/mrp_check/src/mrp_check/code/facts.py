@@ -57,6 +57,10 @@ class Facts:
         places = [p for kind in kinds for p in self.places if p.kind is kind and p.file in files]
         return places[0] if places and places[0].kind is not Kind.WAITS else None
 
+    def exits(self, node: str) -> list[Place]:
+        """Return where the sources of a node end it by a call, such as of exit()."""
+        return [place for place in self.of(node, Kind.EXIT) if place.text != "return"]
+
     def first(self, *kinds: Kind) -> tuple[str | None, int | None]:
         """Return the (file, line) of the first of these kinds that any source has."""
         for kind in kinds:

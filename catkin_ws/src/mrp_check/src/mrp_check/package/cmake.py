@@ -253,7 +253,7 @@ class Model:
         return found
 
     def all_sources(self, target: Target) -> list[str]:
-        """Return their sources."""
+        """Return the sources of a target, and of the package's libraries that it is linked with."""
         return list(dict.fromkeys(file for one in self.linked(target) for file in one.sources))
 
     def _project(self, call: Call) -> None:

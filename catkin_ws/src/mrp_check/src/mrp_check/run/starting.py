@@ -82,10 +82,10 @@ def _raised(node: Traces, place: Where, kind: str, text: str) -> Finding:
 
 def _ended(node: Traces) -> Finding:
     """Return the Finding about a node that started ROS, and came to its end."""
-    ends = [p for p in node.places.facts.of(node.name, Kind.EXIT) if p.text != "return"]
-    if ends and node.places.facts.of(node.name, Kind.SPIN):
-        why = f", though it waits: most likely by its call of {ends[0].text}()."
-        place: Where = ends[0].file, ends[0].line
+    exits = node.places.facts.exits(node.name)
+    if exits and node.places.facts.of(node.name, Kind.SPIN):
+        why = f", though it waits: most likely by its call of {exits[0].text}()."
+        place: Where = exits[0].file, exits[0].line
         fix = "Remove the call, or make sure that it only runs at the end."
     else:
         why = ": nothing keeps it waiting for messages or for its timer."

@@ -24,9 +24,9 @@ def _of(node: SourceNode) -> Iterator[Finding]:
         return
     called_back = node.places(Kind.SUBSCRIBER)
     if not node.is_python:
-        lines = node.package.line
         timers = [place for place in node.places(Kind.TIMER) if place.oneshot is not True]
-        called_back += [one for one in timers if "Rate" not in lines(one.file, one.line)]
+        line = node.package.line
+        called_back += [timer for timer in timers if "Rate" not in line(timer.file, timer.line)]
     # rospy calls back in threads of its own: there a loop is enough.
     if waits and (node.is_python or not called_back):
         return

@@ -174,9 +174,9 @@ def _of_start(case: Case, node: Node, finding: Finding) -> bool:
         finding.message = f"{finding.message.rstrip('.')}. It dies under {dies}, too."
         add_name_that_is_set(case, finding)
         return False
-    if finding.id == "starts" and _NO_PARAMETER.search(finding.message):
+    said = last_words(node.errors())
+    if finding.id == "starts" and _NO_PARAMETER.search(said):
         finding.certainty = HINT
-        said = finding.message.partition(": ")[2]
         finding.message = f"{node.name} waits for {_PARAMETER}: {said}"
         return False
     if not any("Error:" in line for line in lines) and misses_arguments(node, finding):
@@ -194,8 +194,7 @@ def _of_start(case: Case, node: Node, finding: Finding) -> bool:
         finding.message += " It doesn't wait for the service that it calls."
         return False
     if node.direct and node.direct.code == 0 and _is_left_alone(node):
-        ends = [p for p in node.places.facts.of(node.name, Kind.EXIT) if p.text != "return"]
-        if ends:  # it may have meant to, as of what it was answered
+        if node.places.facts.exits(node.name):  # it may have meant to, as of what it was answered
             finding.certainty = HABIT
     elif node.direct and node.direct.code == 0:
         finding.certainty = HINT

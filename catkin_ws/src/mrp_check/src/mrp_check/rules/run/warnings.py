@@ -88,7 +88,7 @@ _OFTEN, _LATE = 5, 1.0  # look-ups that fail; seconds before the end in which on
 
 
 def _findings(case: Case) -> Iterator[Finding]:
-    told: set[tuple[str, str]] = set()
+    reported: set[tuple[str, str]] = set()
     own: dict[str, list[Log]] = {}
     for node in case.nodes.values():
         if node.is_up:
@@ -97,16 +97,13 @@ def _findings(case: Case) -> Iterator[Finding]:
         if run.node not in case.nodes:
             continue
         lines = [log for log in run.logs if log.level in _LEVELS]
-        for finding in _of_libraries(case.nodes[run.node], run, lines):
-            if (run.node, finding.seen) not in told:
-                told.add((run.node, finding.seen))
+        node = case.nodes[run.node]
+        for finding in (*_of_libraries(node, run, lines), *_of_rotations(node, run)):
+            if (run.node, finding.seen) not in reported:
+                reported.add((run.node, finding.seen))
                 yield finding
         frames = [log for log in lines if _FRAMES.search(log.text)]
-        yield from _of_frames(case.nodes[run.node], run, frames)
-        for finding in _of_rotations(case.nodes[run.node], run):
-            if (run.node, finding.seen) not in told:
-                told.add((run.node, finding.seen))
-                yield finding
+        yield from _of_frames(node, run, frames)
         of_node = [log for log in lines if logged.is_own(case.package, log) and log not in frames]
         own[run.node] = max(own.get(run.node, []), of_node, key=len)
     for name, lines in own.items():
