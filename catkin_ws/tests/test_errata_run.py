@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Builds and runs the code of the original page: the number in a test's name is the defect's.
+"""Builds and runs the code of the original page. A test's name has the number of its erratum.
 
-Most of what shows only then is a defect of the checker's, too, and test_broken.py runs it.
+Most errata that only show in a run are also defects for the checker: test_broken.py runs those.
 """
 
 import re

@@ -21,7 +21,7 @@ def facts():
 
 
 def findings(*entries):
-    """Return an error for each entry, such as "spin src/a.py:1 static a"; - is none."""
+    """Return an error for each entry, such as "spin src/a.py:1 static a"; "-" stands for none."""
     found = []
     for entry in entries:
         id_, place, stage, node = (None if word == "-" else word for word in entry.split())

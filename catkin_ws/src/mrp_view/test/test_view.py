@@ -78,7 +78,7 @@ class TestView(unittest.TestCase):
     def test_only_its_own_page_gets_an_answer(self):
         """Asks as another site's page in the same browser would: with its name or its origin.
 
-        Two names are allowed besides: one that was given, and that of Codespaces.
+        The viewer answers to its own addresses, to the name in --name, and to that of Codespaces.
         """
         names = ["robot.local", "space-0.app.github.dev"]
         with Viewer("--name", names[0], extra_env={"CODESPACE_NAME": "space"}) as viewer:
