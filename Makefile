@@ -46,7 +46,6 @@ PACKAGES_test-all := $(PACKAGES_test) docs debug cluster test-all
 PACKAGES_test-browser := $(PACKAGES_build) view check docs test browser
 PACKAGES_bench := $(PACKAGES_build) bench
 PACKAGES_docs := docs
-PACKAGES_docs-book := docs book
 PACKAGES_deb := $(PACKAGES_build) deb
 PACKAGES_lint := $(PACKAGES_test-all) lint
 PACKAGES_release := release
@@ -228,16 +227,6 @@ lint: packages-lint $(BUILT_TUTORIAL)  ## check the style of all sources
 .PHONY: docs-record
 docs-record: packages-test-all  ## do what the pages say, and record what they show; PAGE=latch: of one page
 	@$(IN_WORKSPACE) $(WITH_TESTING) /usr/bin/python3 tools/record_pages.py $(PAGE)
-
-# LaTeX takes a minute, and its packages much room: so only the workflow calls it.
-.PHONY: docs-book
-docs-book: packages-docs-book  ## make a book of the pages, as EPUB and as PDF
-	@$(IN_WORKSPACE) tools/make_book.sh
-	@echo "Read $(CURDIR)/catkin_ws/build/book/mrp.pdf, or mrp.epub beside it"
-
-.PHONY: pictures
-pictures: packages-test-browser $(BUILT_WHOLE)  ## take the pictures of the README and of the pages again
-	@$(IN_WORKSPACE) $(ALONE) source devel/setup.bash; tools/make_pictures.py; tools/make_map.py
 
 # What else runs on this machine shows in the figures: end it before. The page on speed shows a whole
 # run: copy catkin_ws/build/bench/results.json to catkin_ws/src/mrp/doc/recorded.

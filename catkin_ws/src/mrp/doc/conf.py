@@ -28,7 +28,6 @@ extensions = [
     "error_texts",
     "contract_keys",
     "quiz",
-    "book",
 ]
 
 html_theme = "furo"
@@ -55,16 +54,6 @@ copybutton_selector = "div:not(.output) > div.highlight pre"
 
 # A link that leads nowhere is an error, as is everything that Sphinx warns of: it is run with -W.
 nitpicky = True
-
-# The book, as EPUB and as PDF: see extension/book.py.
-epub_title = "A publisher and a subscriber, in Python and C++"
-epub_show_urls = "no"
-epub_css_files = []
-epub_exclude_files = ["_static/page.css", "_static/page.js"]
-latex_engine = "xelatex"
-latex_documents = [("index", "mrp.tex", epub_title, author, "howto")]
-latex_elements = {"papersize": "a4paper", "makeindex": "", "printindex": ""}
-latex_show_urls = "no"
 
 
 def setup(app):

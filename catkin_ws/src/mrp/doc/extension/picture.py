@@ -44,7 +44,7 @@ class Picture(SphinxDirective):
                 "</svg></div>",
             ]
         )
-        return nodes.raw(text, text, format="html", alt=alt)
+        return nodes.raw(text, text, format="html")
 
 
 def _ends(graph):
