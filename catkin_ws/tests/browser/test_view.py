@@ -2,11 +2,9 @@
 """mrp_view's page in a browser, with real nodes and a master of its own."""
 
 import base64
-import csv
 import itertools
 import os
 import signal
-import xml.etree.ElementTree as ElementTree
 
 import checks
 import pytest
@@ -165,8 +163,6 @@ def test_markup_is_text(each_page):
         lambda: row(each_page, "#senders", "/test_page", "/markup")[7:] == [MARKUP],
         "the text itself",
     )
-    rospy.logwarn(MARKUP)
-    wait_for_text(each_page, "#log", MARKUP)
     assert each_page.run("return document.title") == "mrp_view"
     assert each_page.find("main img, main script") == []
     publisher.unregister()
@@ -186,29 +182,12 @@ def test_names_that_are_markup_are_text(each_page):
     api.unregisterPublisher(topic, "http://localhost:1/")
 
 
-def test_log_is_filtered(each_page):
-    rospy.loginfo("a line to be filtered")
-    rospy.logerr("a line that stays")
-    wait_for_text(each_page, "#log", "a line that stays")
-    assert "a line to be filtered" in text(each_page, "#log")
-    choose = (
-        "const one = document.querySelector(arguments[0]); one.value = arguments[1];"
-        "one.dispatchEvent(new Event('change'))"
-    )
-    each_page.run(choose, "#log-level", "ERROR")
-    assert "a line to be filtered" not in text(each_page, "#log")
-    assert "a line that stays" in text(each_page, "#log")
-    each_page.run(choose, "#log-level", "DEBUG")
-    each_page.run(choose, "#log-node", "/test_page")
-    assert "a line to be filtered" in text(each_page, "#log")
-
-
 def test_without_a_mouse(page):
     """Tab reaches all that can be pressed, and within the graph the arrow keys go on."""
     publisher = rospy.Publisher("keys", UInt32, queue_size=1)
     page.wait_until(lambda: len(items(page)) >= 2, "a graph")
     page.run("document.activeElement.blur()")
-    wanted = {"pause", "show-log", "show-viewer", "plot-topic", "log-node", "log-level", "log"}
+    wanted = {"pause", "show-log", "show-viewer"}
     reached = set()
     for _ in range(30):
         page.press(Keys.TAB)
@@ -284,31 +263,6 @@ def test_topics_can_be_chosen(each_page):
     publisher.unregister()
 
 
-def test_export(page, tmp_path):
-    publisher = rospy.Publisher("exported", String, queue_size=10)
-    page.wait_until(lambda: publisher.get_num_connections() == 1, "the viewer")
-    publisher.publish('=1+1,"x"')
-    page.wait_until(lambda: row(page, "#senders", "/test_page", "/exported"), "the message")
-    page.wait_until(lambda: any("/exported" in item for item in items(page)), "the topic")
-    page.command("Page.setDownloadBehavior", behavior="allow", downloadPath=str(tmp_path))
-
-    def saved(button, name):
-        press_button(page, button)
-        path = tmp_path / name
-        page.wait_until(lambda: path.is_file() and path.stat().st_size, name)
-        return path.read_bytes()
-
-    picture = ElementTree.fromstring(saved("export-svg", "graph.svg"))
-    assert picture.tag == "{http://www.w3.org/2000/svg}svg"
-    assert "exported" in ElementTree.tostring(picture, encoding="unicode")
-    assert saved("export-png", "graph.png").startswith(b"\x89PNG")
-    messages = list(csv.reader(saved("export-messages", "messages.csv").decode().splitlines()))
-    assert ["/exported", "/test_page", "", '\'=1+1,"x"'] in [line[1:] for line in messages]
-    counts = list(csv.reader(saved("export-counts", "counts.csv").decode().splitlines()))
-    assert ["/exported", "/test_page", "/mrp_view", "1"] in [line[:4] for line in counts]
-    publisher.unregister()
-
-
 def test_viewer_is_restarted(browser, core):
     port = free_port()
     # Not the name of the other tests' viewer, which would end.
@@ -379,7 +333,6 @@ def look(request, browser, shown):
         lambda: any("Dead" in item or "dead" in item for item in items(browser)), "dead"
     )
     browser.wait_until(lambda: "✗" in text(browser, "#graph"), "a red edge")
-    browser.wait_until(lambda: browser.find("#plot .line"), "a plot")
     return size, mode
 
 

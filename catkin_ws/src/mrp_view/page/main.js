@@ -3,26 +3,20 @@
 
 import { Connection } from "./connection.js";
 import { byId, html, setText } from "./dom.js";
-import { saveCsv, savePng, saveSvg } from "./export.js";
 import { count, Graph } from "./graph.js";
-import { LogView } from "./log.js";
-import { History, showPlot } from "./plot.js";
 import { keyOfLink, keyOfSender, showLinks, showSenders } from "./tables.js";
 
 const NARROW = matchMedia("(max-width: 700px)");
 const LOG_TOPICS = ["/rosout", "/rosout_agg"];
 
 const graph = new Graph();
-const log = new LogView();
-const history = new History();
 const senders = new Map();
 const links = new Map();
-const shown = new Map(); // key of a sender -> [[now, count, samples], ...] of the last two seconds
+const shown = new Map(); // key of a sender -> [[now, count, how often it was shown], ...] of the last two seconds
 const hidden = new Set(); // topics
 let findings = [];
 let latest = null; // the last graph
 let now = 0;
-let viewerId = null;
 let state = "connecting";
 let paused = false;
 
@@ -50,7 +44,7 @@ function take(message) {
     showCounts();
     return;
   }
-  if (message.all) begin(message);
+  if (message.all) begin();
   now = message.now;
   for (const row of message.rows) receive(row);
   for (const [topic, from] of message.gone ?? []) senders.delete(keyOfSender({ topic, from }));
@@ -60,32 +54,27 @@ function take(message) {
     findings = message.findings;
     showFindings();
   }
-  if (message.log.length || message.all) log.add(message.log, message.log_count);
-  history.forget(now);
   showTables();
   if (message.links.length || message.links_gone?.length || message.all) showCounts();
 }
 
 // Everything comes anew: after a pause, a lost connection, or a restart of the viewer.
-function begin(message) {
+function begin() {
   senders.clear();
   links.clear();
   shown.clear();
-  log.clear();
-  if (viewerId !== message.id) history.clear();
-  viewerId = message.id;
 }
 
 function receive(row) {
   const key = keyOfSender(row);
+  const isNew = row.count > (senders.get(key)?.count ?? 0);
   senders.set(key, row);
-  history.add(key, row.samples, now);
   const before = shown.get(key) ?? [[now, row.count, 0]];
   const last = before[before.length - 1];
-  before.push([now, row.count, last[2] + row.samples.length]);
+  before.push([now, row.count, last[2] + Number(isNew)]);
   while (before.length > 2 && before[1][0] < now - 2) before.shift();
   shown.set(key, before);
-  if (!row.samples.length || !isShown(row.topic)) return;
+  if (!isNew || !isShown(row.topic)) return;
   const subscribers = (latest?.graph.links ?? [])
     .filter((link) => link.topic === row.topic && link.from === row.from && link.state === "ok")
     .map((link) => link.to);
@@ -112,7 +101,6 @@ function showTables() {
   setTimeout(() => {
     tablesDue = false;
     showSenders(visibleSenders(), shares());
-    showPlot(history, visibleSenders(), now);
   }, 250);
 }
 
@@ -183,24 +171,4 @@ byId("pause").addEventListener("click", () => {
   showStatus();
 });
 for (const id of ["show-log", "show-viewer"]) byId(id).addEventListener("change", choose);
-byId("plot-topic").addEventListener("change", (event) => {
-  event.target.dataset.chosen = "yes";
-  showPlot(history, visibleSenders(), now);
-});
 NARROW.addEventListener("change", () => connection.tell());
-byId("export-svg").addEventListener("click", saveSvg);
-byId("export-png").addEventListener("click", savePng);
-byId("export-messages").addEventListener("click", () => {
-  const rows = [["time", "topic", "publisher", "number", "text"]];
-  for (const [key, samples] of history.samples) {
-    const [topic, from] = key.split("\n");
-    if (isShown(topic)) for (const [time, number, text] of samples) rows.push([time, topic, from, number, text]);
-  }
-  saveCsv(rows, "messages.csv");
-});
-byId("export-counts").addEventListener("click", () => {
-  const rows = [["topic", "publisher", "subscriber", "messages", "sent", "received", "dropped", "missing"]];
-  for (const sender of visibleSenders()) rows.push([sender.topic, sender.from, latest?.viewer, sender.count, null, null, null, sender.missing?.[0]]);
-  for (const link of visibleLinks()) rows.push([link.topic, link.from, link.to, null, link.sent, link.received, link.dropped, link.missing]);
-  saveCsv(rows, "counts.csv");
-});

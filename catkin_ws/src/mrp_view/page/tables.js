@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The tables of the publishers' messages and of the connections.
 
-import { byId, html, setText, styleOf, svg } from "./dom.js";
+import { byId, colourOf, html, setText, svg } from "./dom.js";
 
 // Keeps the rows of a table, sorted by their keys.
 class Table {
@@ -79,11 +79,10 @@ export function showSenders(rows, shares) {
   }
 }
 
-// The line that is this publisher's in the plot.
+// The colour of this publisher's messages in the graph.
 function sign(publisher) {
-  const { colour, dash } = styleOf(publisher);
-  const line = svg("line", { x1: 0, y1: 5, x2: 22, y2: 5, "stroke-width": 3, "stroke-dasharray": dash });
-  line.style.stroke = colour;
+  const line = svg("line", { x1: 0, y1: 5, x2: 22, y2: 5, "stroke-width": 3 });
+  line.style.stroke = colourOf(publisher);
   return svg("svg", { class: "sign", width: 24, height: 10, "aria-hidden": "true" }, line);
 }
 
