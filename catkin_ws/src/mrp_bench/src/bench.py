@@ -7,21 +7,21 @@ It brings a master of its own, on a free port of this machine alone.
 
 import argparse
 import pathlib
-import shutil
 import signal
 import sys
 import time
 
-from mrp_bench import launches, plans, report
-from mrp_bench.processes import Master
-from mrp_bench.programs import ProgramError
-from mrp_bench.rounds import Results, run
+from mrp_bench import figures, robots, tables
+from mrp_bench.programs import Master, ProgramError
+
+ROUNDS = 6
+ROBOTS = (1, 2, 5, 10, 20, 50)
 
 
 def arguments():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("folder", type=pathlib.Path, help="where the results go")
-    parser.add_argument("--quick", action="store_true", help="less of everything")
+    parser.add_argument("--quick", action="store_true", help="one round, and no robots")
     return parser.parse_args()
 
 
@@ -30,26 +30,25 @@ def say(line, begin=time.monotonic()):  # noqa: B008  (this program's begin)
 
 
 def main():
-    # Also where SIGINT is ignored, as in what a shell runs in the background: the programs that
-    # stand still must not be left behind.
+    # Also where SIGINT is ignored, as in what a shell runs in the background.
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, signal.default_int_handler)
     args = arguments()
-    shutil.rmtree(args.folder, ignore_errors=True)
-    args.folder.mkdir(parents=True)
-    plan = plans.QUICK if args.quick else plans.FULL
-    rounds = plans.QUICK_ROUNDS if args.quick else plans.FULL_ROUNDS
-    results = Results(args.folder)
+    args.folder.mkdir(parents=True, exist_ok=True)
+    log = args.folder / "programs.log"
+    log.unlink(missing_ok=True)
     try:
-        with Master(args.folder / "programs.log"):
-            run(plan, rounds, results, say)
-            if not args.quick:
-                launches.run(plans.ROBOTS, 1, results, say)
-        report.write(results, say)
+        with Master(log):
+            rows = figures.measure(1 if args.quick else ROUNDS, log, say)
+            many = [] if args.quick else [robots.measure(count, log, say) for count in ROBOTS]
     except ProgramError as error:
         sys.exit(f"error: {error}")
     except KeyboardInterrupt:
         sys.exit("ended before all was measured")
+    content = {"machine": figures.machine(), "robots": many, "rows": rows}
+    (args.folder / "results.json").write_text(figures.as_text(content))
+    print(tables.markdown(content))
+    say(f"these figures are in {args.folder}/results.json")
 
 
 if __name__ == "__main__":

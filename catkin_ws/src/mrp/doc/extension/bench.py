@@ -32,7 +32,7 @@ def paragraph(text, **more):
 
 class Machine(SphinxDirective):
     def run(self):
-        return [paragraph(text) for text in tables.machine(results(self.env))]
+        return [paragraph(tables.machine(results(self.env)))]
 
 
 class Tables(SphinxDirective):

@@ -42,10 +42,6 @@ public:
   {
   }
 
-  explicit Options(const std::vector<std::string>& arguments) : arguments_(arguments)
-  {
-  }
-
   int number(const std::string& name, int value_if_not_there) const
   {
     for (const std::string& argument : arguments_)

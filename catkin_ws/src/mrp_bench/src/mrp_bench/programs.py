@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The measured programs: started, told what to send, and asked for what has arrived.
+"""The measured programs: started, told what to send, and asked for what has arrived; and a master.
 
 How they talk is said in include/mrp_bench/program.h.
 """
@@ -7,23 +7,22 @@ How they talk is said in include/mrp_bench/program.h.
 import array
 import collections
 import os
+import pathlib
 import queue
+import re
 import signal
+import socket
 import subprocess
 import threading
+import time
 
+import rosgraph
 import roslib.packages
-
-from mrp_bench.processes import cpu, tree, with_parent
 
 PACKAGE = "mrp_bench"
 
 # Seconds in which a program must have answered.
 DEADLINE = 120
-
-# What is sent: messages of that many bytes, so many per second (0: as fast as it goes), and how
-# many.
-Stream = collections.namedtuple("Stream", "size rate count")
 
 # sent: the stamps, in ns. received: of each receiver, stamps and times of arrival in turns.
 # sender_cpu: seconds of processor time. receiver_cpu: that of all receivers, or None if they are
@@ -94,12 +93,6 @@ class Program:
             )
         return numbers
 
-    def signal(self, number):
-        try:
-            os.killpg(self._popen.pid, number)
-        except ProcessLookupError:
-            pass
-
     def cpu(self):
         """Return the processor time that it has used so far, with its children, in seconds."""
         return cpu(tree(self._popen.pid))
@@ -109,26 +102,20 @@ class Program:
             self._popen.stdin.close()
         except BrokenPipeError:
             pass
-        self.signal(signal.SIGCONT)
-        self.signal(signal.SIGINT)
+        self._popen.send_signal(signal.SIGINT)
 
     def end(self):
         """Wait for the end; kill what does not end by itself."""
         try:
             self._popen.wait(10)
         except subprocess.TimeoutExpired:
-            pass
-        self.signal(signal.SIGKILL)
-        self._popen.wait()
+            self._popen.kill()
+            self._popen.wait()
         self._reader.join()
 
 
 class Running:
-    """The programs of a way (see ways.py), which stand still until they are needed.
-
-    They are started by start(), which several of these do at once, and then finished by connect().
-    Use it in a `with`.
-    """
+    """The programs of a way (see ways.py), connected. Use it in a `with`."""
 
     def __init__(self, way, log):
         self.way = way
@@ -137,28 +124,30 @@ class Running:
         self._log = log
         self._namespace = f"/mrp_bench/{way.name}_{os.getpid()}"
 
-    def start(self):
-        if self.way.receiver:
-            self.receivers = [self._program(self.way.receiver) for _ in range(self.way.receivers)]
-        if not self.way.is_raw:
-            self.sender = self._program(self.way.sender)
+    def __enter__(self):
+        try:
+            if self.way.receiver:
+                command = self.way.receiver
+                self.receivers = [self._program(command) for _ in range(self.way.receivers)]
+            command = self.way.sender
+            if self.way.is_raw:
+                (port,) = self.receivers[0].answer("port")
+                command = (*command, f"send={port}")
+            self.sender = self._program(command)
+            if not self.way.is_raw:
+                for receiver in self.receivers or [self.sender]:
+                    receiver.answer("subscribed")
+            self.sender.answer("ready")
+        except BaseException:
+            self.__exit__()
+            raise
+        return self
 
     def _program(self, command):
         return Program(command, self._log, self._namespace)
 
-    def connect(self):
-        if self.way.is_raw:
-            (port,) = self.receivers[0].answer("port")
-            self.sender = self._program([self.way.sender[0], f"send={port}"])
-        for receiver in self.receivers or [self.sender]:
-            if not self.way.is_raw:
-                receiver.answer("subscribed")
-        self.sender.answer("ready")
-        self.signal(signal.SIGSTOP)
-
     def measure(self, stream):
         """Let the sender send a Stream, and return what became of it, as a Measurement."""
-        self.signal(signal.SIGCONT)
         sender_cpu, receiver_cpu = self.sender.cpu(), _cpu(self.receivers)
         self.sender.tell(f"run {stream.size} {stream.rate} {stream.count}")
         sent = self.sender.answer("sent").tolist()
@@ -168,28 +157,86 @@ class Running:
         ]
         sender_cpu = self.sender.cpu() - sender_cpu
         receiver_cpu = _cpu(self.receivers) - receiver_cpu
-        self.signal(signal.SIGSTOP)
         return Measurement(sent, received, sender_cpu, receiver_cpu if self.receivers else None)
 
-    def _programs(self):
-        return [*self.receivers, *filter(None, [self.sender])]
-
-    def signal(self, number):
-        for program in self._programs():
-            program.signal(number)
-
-    def ask_to_end(self):
-        for program in self._programs():
-            program.ask_to_end()
-
-    def __enter__(self):
-        return self
-
     def __exit__(self, *exception):
-        self.ask_to_end()
-        for program in self._programs():
+        programs = [*self.receivers, *filter(None, [self.sender])]
+        for program in programs:
+            program.ask_to_end()
+        for program in programs:
             program.end()
 
 
 def _cpu(programs):
     return sum(program.cpu() for program in programs)
+
+
+def with_parent(command, number=signal.SIGKILL):
+    """Return the command with which a program gets that signal when the thread that starts it ends.
+
+    So nothing is left behind where a process is killed, which then cannot end what it has started.
+    SIGKILL is for those that stand still: it is the only one that ends them.
+    """
+    # setpriv becomes the program: there is no other process.
+    return ["setpriv", "--pdeathsig", signal.Signals(number).name, *command]
+
+
+def tree(pid):
+    """Return the process ids of a process and of all its descendants that run."""
+    pids = [pid]
+    for task in pathlib.Path(f"/proc/{pid}/task").glob("*/children"):
+        try:
+            for child in task.read_text().split():
+                pids += tree(int(child))
+        except (FileNotFoundError, ProcessLookupError):
+            pass  # it has just ended
+    return pids
+
+
+def cpu(pids):
+    """Return the processor time that all threads of these processes have used, in seconds."""
+    nanoseconds = 0
+    for pid in pids:
+        for path in pathlib.Path(f"/proc/{pid}/task").glob("*/schedstat"):
+            try:
+                nanoseconds += int(path.read_text().split()[0])
+            except (FileNotFoundError, ProcessLookupError):
+                pass  # it has just ended
+    return nanoseconds / 1e9
+
+
+def megabytes(pid):
+    """Return the memory of a process; what several share is divided among them (proc(5): Pss)."""
+    text = pathlib.Path(f"/proc/{pid}/smaps_rollup").read_text()
+    return int(re.search(r"^Pss:\s*(\d+)", text, re.MULTILINE).group(1)) / 1024
+
+
+class Master:
+    """roscore on a free port, of which all programs know that are started within this `with`.
+
+    log: the file to which what it prints is appended
+    """
+
+    def __init__(self, log):
+        with socket.socket() as probe:
+            probe.bind(("localhost", 0))
+            port = probe.getsockname()[1]
+        os.environ["ROS_MASTER_URI"] = f"http://localhost:{port}"
+        with open(log, "ab") as file:
+            self._roscore = subprocess.Popen(
+                with_parent(["roscore", "-p", str(port)], signal.SIGINT),
+                stdout=file,
+                stderr=file,
+                start_new_session=True,
+            )
+        while self._roscore.poll() is None and not rosgraph.is_master_online():
+            time.sleep(0.02)
+        # While it is not set, each node asks for it at each line that it logs.
+        rosgraph.Master("/bench").setParam("/rosout_disable_topics_generation", False)
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *exception):
+        self._roscore.send_signal(signal.SIGINT)
+        self._roscore.wait()

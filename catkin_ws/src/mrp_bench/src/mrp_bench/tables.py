@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The tables of what results.json says, for table.md and for the tutorial's pages.
+"""The tables of what results.json says, for a terminal and for the tutorial's pages.
 
 It imports no library, because the pages are built without numpy and without ROS.
 """
@@ -7,11 +7,6 @@ It imports no library, because the pages are built without numpy and without ROS
 from typing import NamedTuple
 
 from mrp_bench.ways import LIMITS, WAYS, size_text
-
-NOISY = "too noisy"
-
-# A ratio is no figure if the bounds of its confidence interval lie further apart than this factor.
-_WIDEST_INTERVAL = 2
 
 
 class Table(NamedTuple):
@@ -24,17 +19,13 @@ class Table(NamedTuple):
 
 
 def machine(content):
-    """Return the paragraphs that say where and how the figures were measured."""
-    facts, noise = content["machine"], content["noise"]
-    verdict = content["verdict"]
-    return [
+    """Return the paragraph that says where the figures were measured."""
+    facts = content["machine"]
+    return (
         f"Measured on {facts['cores']} cores of {facts['processor']}, {facts['gigabytes']} GB, "
         f"{facts['system']}, Linux {facts['kernel']}, roscpp {facts['roscpp']}, "
-        f"Python {facts['python']}.",
-        f"Noise: other programs took {_percent(noise['least'])} to {_percent(noise['most'])} of "
-        f"the processors' time, in {noise['probes']} probes.",
-        *([f"**{verdict[0].upper()}{verdict[1:]}.** The samples are kept."] if verdict else []),
-    ]
+        f"Python {facts['python']}."
+    )
 
 
 def summary(content):
@@ -54,7 +45,7 @@ def summary(content):
                 WAYS[way].text,
                 f"{slow['latency']['p50']:.0f}",
                 f"{slow['latency']['p99']:.0f}",
-                f"{ratio[0]:.1f}" if ratio else "1",
+                f"{ratio:.1f}" if ratio else "1",
                 _thousands(fast["throughput"]),
             ]
         )
@@ -65,20 +56,14 @@ def summary(content):
 def latency(content):
     """Return a table for each size and rate."""
     header = ["way", "p50, µs", "p90, µs", "p99, µs", "max, µs", "x C++", "x Python"]
-    header += ["lost", "order", "CPU: sender", "receiver"]
-    noisy = content["verdict"]
     return [
-        Table(
+        _table(
             f"{size_text(size)} at {rate} Hz",
             header,
-            [
-                [
-                    WAYS[row["way"]].text,
-                    *(NOISY if noisy else f"{value:.1f}" for value in row["latency"].values()),
-                    *(_ratio(row["latency_ratio"].get(limit), noisy) for limit in LIMITS),
-                    *_delivered(row, noisy),
-                ]
-                for row in rows
+            rows,
+            lambda row: [
+                *(f"{value:.1f}" for value in row["latency"].values()),
+                *_ratios(row["latency_ratio"]),
             ],
         )
         for size, rate, rows in _slices(content)
@@ -88,26 +73,24 @@ def latency(content):
 
 def throughput(content):
     """Return a table for each size."""
-    header = ["way", "per second", "x C++", "x Python", "lost", "order"]
-    header += ["CPU: sender", "receiver"]
-    noisy = content["verdict"]
+    header = ["way", "per second", "x C++", "x Python"]
     return [
-        Table(
+        _table(
             f"{size_text(size)} as fast as it goes",
             header,
-            [
-                [
-                    WAYS[row["way"]].text,
-                    NOISY if noisy else _thousands(row["throughput"]),
-                    *(_ratio(row["throughput_ratio"].get(limit), noisy) for limit in LIMITS),
-                    *_delivered(row, noisy),
-                ]
-                for row in rows
-            ],
+            rows,
+            lambda row: [_thousands(row["throughput"]), *_ratios(row["throughput_ratio"])],
         )
         for size, rate, rows in _slices(content)
         if not rate
     ]
+
+
+def _table(title, header, rows, cells):
+    """Return a Table of ways: a way's text, its own cells, and what all have in common."""
+    header = [*header, "lost", "order", "CPU: sender", "receiver"]
+    all_cells = [[WAYS[row["way"]].text, *cells(row), *_delivered(row)] for row in rows]
+    return Table(title, header, all_cells)
 
 
 def _slices(content):
@@ -116,25 +99,16 @@ def _slices(content):
         yield size, rate, rows
 
 
-def _delivered(row, noisy):
-    """Return the last cells: what was lost does not depend on noise, but processor time does."""
+def _delivered(row):
     lost = f"{row['lost']} of {row['sent']}" if row["lost"] else "0"
     order = f"{row['disordered']} wrong" if row["disordered"] else "kept"
-    sender, receiver = row["sender_cpu"], row["receiver_cpu"]
-    cpu = [f"{sender:.2f}", "the same" if receiver is None else f"{receiver:.2f}"]
-    return [lost, order, *([NOISY, NOISY] if noisy else cpu)]
+    receiver = row["receiver_cpu"]
+    receiver = "the same" if receiver is None else f"{receiver:.2f}"
+    return [lost, order, f"{row['sender_cpu']:.2f}", receiver]
 
 
-def _ratio(estimate, noisy):
-    if estimate is None:
-        return ""
-    return NOISY if noisy or is_noisy(estimate) else _interval(estimate)
-
-
-def is_noisy(estimate):
-    """Return whether a value with its bounds is too uncertain to be a figure."""
-    _, low, high = estimate
-    return high > _WIDEST_INTERVAL * low
+def _ratios(ratios):
+    return [f"{ratios[limit]:.2f}" if limit in ratios else "" for limit in LIMITS]
 
 
 # What is tabled of many robots.
@@ -152,42 +126,21 @@ _WHOLE = ("p50", "p99")  # without decimals
 
 def robots(content):
     """Return the table of many robots, if there were any."""
-    of, noisy = content["robots"], content["verdict"]
-    if not of["figures"]:
-        return []
     rows = [
-        [str(figure["robots"]), *_costs(figure, ROBOTS, noisy), str(figure["lost"])]
-        for figure in of["figures"]
+        [
+            str(figure["robots"]),
+            *(f"{figure[name]:.{0 if name in _WHOLE else 2}f}" for name in ROBOTS),
+            str(figure["lost"]),
+        ]
+        for figure in content["robots"]
     ]
-    return [
-        Table(
-            "Many robots of four nodes each",
-            ["robots", *ROBOTS.values(), "lost"],
-            rows,
-            ["The latencies are those of 8 bytes at 100 Hz, from C++ to C++, beside the robots."],
-        )
-    ]
-
-
-def _costs(figure, names, noisy):
-    return [
-        NOISY if noisy else f"{figure[name]:.0f}" if name in _WHOLE else f"{figure[name]:.2f}"
-        for name in names
-    ]
-
-
-def _interval(estimate):
-    """Return a value and its bounds; of a single measurement there are no bounds."""
-    value, *bounds = (f"{number:.2f}" for number in estimate)
-    return f"{value} [{', '.join(bounds)}]" if bounds else value
+    header = ["robots", *ROBOTS.values(), "lost"]
+    beside = "The latencies are those of 8 bytes at 100 Hz, from C++ to C++, beside the robots."
+    return [Table("Many robots of four nodes each", header, rows, [beside])] if rows else []
 
 
 def _thousands(value):
     return f"{value:,.0f}".replace(",", " ")
-
-
-def _percent(share):
-    return f"{share:.1%}".replace("%", " %")
 
 
 # Their names, as the pages call them.
@@ -197,3 +150,14 @@ TABLES = {
     "throughput": throughput,
     "robots": robots,
 }
+
+
+def markdown(content):
+    """Return all of it as text."""
+    parts = [machine(content)]
+    for name in ("latency", "throughput", "robots"):
+        for table in TABLES[name](content):
+            lines = [table.header, ["---"] + ["---:"] * (len(table.header) - 1), *table.rows]
+            text = "\n".join(f"| {' | '.join(cells)} |" for cells in lines)
+            parts += [f"### {table.title}", *table.before, text]
+    return "\n\n".join(parts)

@@ -1,7 +1,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The ways in which a message is sent and received: what is compared."""
+"""The ways in which a message is sent and received, and what each of them sends."""
 
+import collections
 import typing
+
+# What is sent: messages of that many bytes, so many per second (0: as fast as it goes), and how
+# many.
+Stream = collections.namedtuple("Stream", "size rate count")
 
 
 class Way(typing.NamedTuple):
@@ -58,12 +63,6 @@ _ALL = [
         "shared=1",
         "direct=1",
     ),
-    Way(
-        "cpp_nodelet",
-        "C++: nodelets in one manager",
-        ("bench_nodelets", "publish=1", "subscribe=1", "shared=1"),
-        None,
-    ),
     _way("cpp_batch", "C++: 100 values in a message", CPP, CPP, ("batch=100",)),
     _way("py_unqueued", "Python: queue_size=None", PY, PY, ("unqueued=1",)),
     _way(
@@ -93,3 +92,56 @@ def size_text(size):
         if size >= factor:
             return f"{size // factor} {unit}"
     return f"{size} B"
+
+
+kB, MB = 1 << 10, 1 << 20  # noqa: N816
+_PAIRS = ["raw_cpp", "raw_py", "cpp_cpp", "cpp_py", "py_cpp", "py_py"]
+_FASTER = [
+    "cpp_direct",
+    "cpp_one_process",
+    "cpp_shared",
+    "cpp_shared_direct",
+    "py_unqueued",
+    "py_unqueued_cpp_direct",
+]
+_FASTER_SMALL = [
+    *_FASTER,
+    "cpp_no_delay",
+    "cpp_async",
+    "py_timer_slack",
+    "py_no_delay",
+    "cpp_to_4",
+    "py_to_4",
+]
+_FASTER_LARGE = [*_FASTER, "cpp_no_delay", "py_no_delay", "py_buff_size", "py_serialised"]
+# As fast as it goes, a publisher in Python with a queue takes far longer for as many messages.
+_BURST_FAST = [
+    "cpp_cpp",
+    "cpp_py",
+    *_FASTER,
+    "cpp_no_delay",
+    "cpp_async",
+    "cpp_to_4",
+    "py_batch",
+]
+_BURST_SLOW = ["py_cpp", "py_py", "py_timer_slack", "py_no_delay", "py_to_4"]
+
+
+def steps(ways, *streams):
+    """Return (way, Stream) for each of the ways and streams."""
+    return [(way, Stream(*stream)) for stream in streams for way in ways]
+
+
+# A stream takes long enough that the kernel's buffers do not hold all of it.
+PLAN = [
+    *steps(_PAIRS + _FASTER_SMALL, (8, 1000, 500)),
+    # At 1 kB TCP may hold a message back until the one before it is acknowledged.
+    *steps([*_PAIRS, "cpp_no_delay", "py_no_delay"], (kB, 1000, 300)),
+    *steps(_PAIRS, (64 * kB, 500, 150), (4 * MB, 20, 12)),
+    *steps(["cpp_shared"], (4 * MB, 20, 12)),
+    *steps(_PAIRS + _FASTER_LARGE, (MB, 50, 25)),
+    *steps(["raw_cpp", "raw_py", "cpp_batch"], (8, 0, 200000)),
+    *steps(_BURST_FAST, (8, 0, 50000)),
+    *steps(_BURST_SLOW, (8, 0, 10000)),
+    *steps(_PAIRS + _FASTER_LARGE, (MB, 0, 100)),
+]
