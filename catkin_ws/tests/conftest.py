@@ -3,8 +3,6 @@
 
 import pytest
 import run_page
-from doctor_patient import Patient
-from mrp_testing.ports import free_port
 
 
 @pytest.fixture(scope="session")
@@ -13,8 +11,3 @@ def site(tmp_path_factory):
     folder = tmp_path_factory.mktemp("site")
     run_page.build(folder)
     return folder
-
-
-@pytest.fixture
-def patient(tmp_path):
-    return Patient(tmp_path, free_port())

@@ -1,33 +1,181 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Runs make doctor in a workspace and a shell in which just one thing is wrong."""
 
+import collections
 import contextlib
+import json
 import os
-import pty
+import re
+import shutil
+import socket
 import subprocess
+import threading
 import xmlrpc.client
 import xmlrpc.server
 
 import pytest
-from doctor_patient import (
-    NEEDING_PACKAGES,
-    PYTHON,
-    REAL_PATH,
-    TAKE_OUT,
-    WELL,
-    Check,
-    serving,
-    silent,
-    talker,
-)
 from mrp_check import releases
+from mrp_testing.ports import free_port
 from mrp_testing.process import Process
 from mrp_testing.waiting import DEADLINE
+from mrp_testing.workspace import WORKSPACE
 
 pytestmark = pytest.mark.slow
 
 ONE_ROS = "expected this shell to know one ROS, Debian, and one mrp; found "
 ONE_ADDRESS = "ROS_HOSTNAME and ROS_IP"
+DOCTOR = WORKSPACE / "tools" / "doctor.py"
+PYTHON = "/usr/bin/python3"
+REAL_PATH = "/usr/bin:/bin"
+
+# Runs the doctor with other facts of the machine (lower case) or constants (upper case).
+WITH_FACTS = """
+import json, sys
+sys.path.insert(0, sys.argv[1])
+import doctor
+facts = json.loads(sys.argv[2])
+vars(doctor).update({name: fact for name, fact in facts.items() if name.isupper()})
+fields = {name: fact for name, fact in facts.items() if name.islower()}
+sys.exit(doctor.examine(doctor.this_machine()._replace(**fields)))
+"""
+
+# What the doctor says where all is well.
+WELL = {
+    "packages": "all 3 of run.txt and tools.txt are installed",
+    "CMake": "CMAKE_POLICY_VERSION_MINIMUM is set",
+    "python3": "/usr/bin/python3 imports catkin_pkg and rospy",
+    "installation": "ROS comes from Debian",
+    "localhost": "localhost is this machine",
+    "host name": "not in use, because ROS_HOSTNAME is set",
+    "ROS_HOSTNAME and ROS_IP": "ROS_HOSTNAME=localhost is this machine",
+    "ROS_MASTER_URI": "http://localhost:{port} is on this machine",
+    "master's port": "{port} is free",
+    "scripts": "every script is executable",
+    "build": "setup.bash and both C++ nodes are there",
+    "build spaces": "catkin_make built build and devel",
+    "log files": "0.0 GB in ~/.ros/log",
+    "shell": "devel/setup.bash is sourced",
+}
+NEEDING_PACKAGES = {
+    "python3": "skipped: needs packages",
+    "installation": "skipped: needs packages",
+    "build": "skipped: needs packages",
+    "shell": "skipped: needs build",
+}
+TAKE_OUT = (
+    "open a new terminal; if it's the same there, delete the line from ~/.bashrc"
+    " (grep -n setup ~/.bashrc)"
+)
+
+LINE = re.compile(r"(\[OK\]   |\[FAIL\] |\[--\]   )([^:]+): (.*)")
+FIX = "       fix: "
+WHY = "       why:  "
+Check = collections.namedtuple("Check", "status text fixes")
+
+
+class Report:
+    """What the doctor printed, and its exit code."""
+
+    def __init__(self, code, output):
+        self.code, self.output = code, output
+        *lines, self.summary = output.splitlines()
+        self.checks = {}  # in the order of printing
+        self.why = {}  # title -> the entry of the page why
+        title = None
+        for line in lines:
+            if line.startswith(FIX):
+                self.checks[title].fixes.append(line[len(FIX) :])
+            elif line.startswith(WHY):
+                self.why[title] = re.search(r"\S+://\S+/pages/why.html#(\S+)", line)[1]
+            else:
+                status, title, text = LINE.fullmatch(line).groups()
+                self.checks[title] = Check(status.strip(" []"), text, [])
+
+    def of(self, status):
+        """Return title -> text of the checks with that status."""
+        return {title: c.text for title, c in self.checks.items() if c.status == status}
+
+    def assert_only_failure(self, title, text, *fixes, skipped=None):
+        skipped = skipped or {}
+        assert self.checks[title] == Check("FAIL", text, list(fixes)), self.output
+        assert self.of("--") == (skipped or {}), self.output
+        assert set(self.of("OK")) == set(WELL) - set(skipped) - {title}, self.output
+        assert list(self.why) == [title], self.output
+        assert (self.summary, self.code) == (f"{len(WELL)} checks, 1 failed", 1), self.output
+
+
+class Patient:
+    """A workspace and an environment in which all is well, for a test to spoil."""
+
+    def __init__(self, folder, port):
+        self.folder = folder
+        self.workspace = folder / "catkin_ws"
+        self.write("apt/run.txt", "# Comment.\nlibc6  # on every Debian\n\nbash|no-such-package\n")
+        self.write("apt/tools.txt", "libc6\nno-such-package | dpkg # any one of them\n")
+        self.write("src/mrp/package.xml", "<package><name>mrp</name></package>")
+        self.write("src/mrp/src/node.py", "#!/usr/bin/env python3\n", mode=0o755)
+        self.write("src/mrp/test/module.py", '"""No script."""\n')
+        self.write("devel/setup.bash", "")
+        self.write("devel/lib/mrp/publisher_cpp_node", "")
+        self.write("devel/lib/mrp/subscriber_cpp_node", "")
+        self.script = self.workspace / "tools" / "doctor.py"
+        self.script.parent.mkdir()
+        for part in ("doctor.py", "install_packages.sh"):
+            shutil.copy(DOCTOR.with_name(part), self.script.parent)
+        parts = ("__init__.py", "releases.py", "contract/__init__.py", "contract/resources.py")
+        files = [f"src/mrp_check/{part}" for part in parts]
+        for file in (*files, "package.xml", "contracts/pub_sub.yaml"):
+            name = f"src/mrp_check/{file}"
+            self.write(name, (WORKSPACE / name).read_text())
+        # The tests about python3 take the real one; it imports rospy slowly.
+        python3 = self.write("stand_in/python3", "#!/bin/sh\nexit 0\n", mode=0o755)
+        self.port = port
+        self.uri = f"http://localhost:{port}"
+        self.env = {
+            "PATH": f"{os.path.dirname(python3)}:{REAL_PATH}",
+            "HOME": str(folder),
+            "CMAKE_POLICY_VERSION_MINIMUM": "3.5",
+            "ROS_DISTRO": "Debian",
+            "ROS_HOSTNAME": "localhost",
+            "ROS_MASTER_URI": self.uri,
+            "ROS_PACKAGE_PATH": str(self.workspace / "src"),
+            "CMAKE_PREFIX_PATH": str(self.workspace / "devel"),
+        }
+
+    def write(self, name, text, mode=0o644):
+        """Write a file, by its path from the workspace; return its absolute path."""
+        path = self.workspace / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text)
+        path.chmod(mode)
+        return str(path)
+
+    def examine(self, **facts):
+        command = [PYTHON, str(self.script)]
+        if facts:
+            facts = json.dumps(facts, default=str)
+            command = [PYTHON, "-B", "-c", WITH_FACTS, str(self.script.parent), facts]
+        run = subprocess.run(
+            command, env=self.env, capture_output=True, text=True, timeout=DEADLINE
+        )
+        assert run.stderr == ""
+        return Report(run.returncode, run.stdout)
+
+    def system(self, **fields):
+        """Return a file like /etc/os-release, with these fields."""
+        text = "".join(f'{name}="{value}"\n' for name, value in fields.items())
+        return self.write("os-release", text)
+
+    def noetic(self, name="noetic"):
+        """Make ROS Noetic, or ROS One, the one that this shell knows; return the facts for it."""
+        (self.folder / "ros" / name).mkdir(parents=True)
+        self.env["ROS_DISTRO"] = name
+        return {"opt_ros": self.folder / "ros", "dpkg_query": "/no/dpkg-query"}
+
+
+@pytest.fixture
+def patient(tmp_path):
+    return Patient(tmp_path, free_port())
 
 
 @pytest.mark.quick
@@ -172,14 +320,6 @@ def test_folder_in_a_path(patient, name, folder, content, found):
         assert report.code == 0
 
 
-def test_other_ros_not_in_use(patient):
-    foxy = patient.folder / "ros" / "foxy"
-    foxy.mkdir(parents=True)
-    report = patient.examine(opt_ros=patient.folder / "ros")
-    assert report.checks["installation"].text == f"ROS comes from Debian; {foxy} isn't in use"
-    assert report.code == 0
-
-
 # Python
 
 
@@ -242,8 +382,8 @@ def test_rospy_hidden(patient, sourced):
 
 
 # glibc gives ::1 for localhost where /etc/hosts has nothing else for it; nodes listen on IPv4.
-@pytest.mark.parametrize("localhost", ["::1", "192.0.2.1"])
-def test_localhost_that_cannot_be_connected_to(patient, localhost):
+def test_localhost_that_cannot_be_connected_to(patient):
+    localhost = "::1"
     report = patient.examine(LOCALHOST=localhost, CONNECT_TIMEOUT=0.5)
     begin = f"expected {localhost} to be this machine; found that it can't be connected to: "
     assert report.of("FAIL").keys() == {"localhost"}
@@ -311,13 +451,10 @@ def test_ros_hostname_beside_ros_ip(patient, variables, host_name, address):
     ("name", "value", "problem"),
     [
         ("ROS_HOSTNAME", "http://localhost", "doesn't resolve"),
-        ("ROS_HOSTNAME", "no..host", "doesn't resolve"),
         ("ROS_HOSTNAME", "", "doesn't resolve"),
         ("ROS_HOSTNAME", "192.0.2.1", "can't be connected to: "),
         ("ROS_IP", "0.0.0.0", "isn't any machine's address"),
-        ("ROS_IP", "255.255.255.255", "can't be connected to: "),
         ("ROS_IP", "localhost", "isn't an IPv4 address"),
-        ("ROS_IP", "::1", "isn't an IPv4 address"),
     ],
 )
 def test_wrong_address(patient, name, value, problem):
@@ -337,8 +474,6 @@ def test_wrong_address(patient, name, value, problem):
     ("uri", "expected", "found"),
     [
         ("localhost:11311", "http://HOST:PORT", "'localhost:11311'"),
-        ("http://localhost:65536", "http://HOST:PORT", "'http://localhost:65536'"),
-        ("http://localhost:11311 ", "http://HOST:PORT", "'http://localhost:11311 '"),
         ("", "http://HOST:PORT", "''"),
         (
             "http://no-such-host.invalid:11311",
@@ -371,6 +506,24 @@ def test_master_uri_not_set(patient):
     assert report.code == 0
 
 
+@contextlib.contextmanager
+def serving(server):
+    thread = threading.Thread(target=server.serve_forever, args=(0.01,))
+    thread.start()
+    try:
+        yield server.server_address[1]
+    finally:
+        server.shutdown()
+        thread.join()
+        server.server_close()
+
+
+@contextlib.contextmanager
+def silent():
+    with socket.create_server(("localhost", 0)) as listener:
+        yield listener.getsockname()[1]
+
+
 def xml_rpc():
     """Return an XML-RPC server that is no master: its getPid answers with a text."""
     server = xmlrpc.server.SimpleXMLRPCServer(("localhost", 0), logRequests=False)
@@ -378,7 +531,7 @@ def xml_rpc():
     return serving(server)
 
 
-@pytest.mark.parametrize("program", [silent, talker, xml_rpc])
+@pytest.mark.parametrize("program", [silent, xml_rpc])
 def test_port_of_another_program(patient, program):
     with program() as port:
         patient.env["ROS_MASTER_URI"] = f"http://localhost:{port}"
@@ -523,27 +676,6 @@ def test_reader_has_sourced_an_mrp_of_their_own(patient):
 
 
 # The script as a whole
-
-
-def test_colours_on_a_terminal(patient):
-    patient.write("apt/run.txt", "no-such-package\n")
-    ours, theirs = pty.openpty()
-    with os.fdopen(ours, "rb", buffering=0) as terminal:
-        try:
-            subprocess.run(
-                [PYTHON, patient.script], env=patient.env, stdout=theirs, timeout=DEADLINE
-            )
-        finally:
-            os.close(theirs)
-        output = b""
-        with contextlib.suppress(
-            OSError
-        ):  # which is how a terminal's other end says that all is read
-            for block in iter(lambda: terminal.read(4096), b""):
-                output += block
-    for start in (b"\x1b[31m[FAIL]", b"\x1b[33m[--]  ", b"\x1b[32m[OK]  "):
-        assert start + b" \x1b[0m" in output
-    assert "\x1b" not in patient.examine().output
 
 
 def test_text_that_the_terminal_cannot_show(patient):

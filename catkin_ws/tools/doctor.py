@@ -17,17 +17,20 @@ import shutil
 import socket
 import subprocess
 import sys
+import xmlrpc.client
 
-# `make doctor` has Python pass over all that the user's shell says, and with it this folder.
-TOOLS = os.path.dirname(os.path.realpath(__file__))
-sys.path[:0] = [TOOLS, os.path.join(os.path.dirname(TOOLS), "src", "mrp_check", "src")]
+WORKSPACE = os.path.dirname(os.path.dirname(os.path.realpath(__file__)))
+sys.path.insert(0, os.path.join(WORKSPACE, "src", "mrp_check", "src"))
 
-from doctor_network import UNRESOLVED, host_problem, master, master_pid  # noqa: E402
 from mrp_check import releases  # noqa: E402
 from mrp_check.contract import resources  # noqa: E402
 
 PYTHON_TIMEOUT = 20  # seconds: from a slow disk it takes a few to import rospy
 LOCALHOST = "localhost"
+DEFAULT_MASTER_URI = "http://localhost:11311"
+MASTER_TIMEOUT = 3  # seconds
+CONNECT_TIMEOUT = 2  # seconds
+UNRESOLVED = "doesn't resolve"
 
 # What the checks look at: the environment, the folder catkin_ws, and facts of the machine.
 Machine = collections.namedtuple("Machine", "env workspace host_name os_release dpkg_query opt_ros")
@@ -341,6 +344,46 @@ def text_of(path):
     return ""
 
 
+def host_problem(host):
+    """Say what is wrong with a host that should be this machine; None if it is.
+
+    As a node of ROS, it listens on all IPv4 addresses, and is called by its name.
+    """
+    if re.fullmatch(r"0[0-9.]*", host):  # Linux takes it for this machine, and others do not
+        return "isn't any machine's address"
+    with socket.create_server(("0.0.0.0", 0)) as listener:
+        address = host, listener.getsockname()[1]
+        try:
+            with socket.create_connection(address, CONNECT_TIMEOUT) as caller:
+                listener.settimeout(CONNECT_TIMEOUT)
+                connection, peer = listener.accept()
+                connection.close()
+                return None if peer == caller.getsockname() else "is another machine"
+        except (socket.gaierror, UnicodeError):
+            return UNRESOLVED
+        except OSError as error:
+            return f"can't be connected to: {error.strerror or error}"
+
+
+def master(env):
+    """Return the master's URI, host and port; no host and port if the URI is malformed."""
+    uri = env.get("ROS_MASTER_URI", DEFAULT_MASTER_URI)
+    match = re.fullmatch(r"http://([^/:\s]+):([0-9]{1,5})/?", uri)
+    if not match or not 0 < int(match.group(2)) < 65536:
+        return uri, None, None
+    return uri, match.group(1), int(match.group(2))
+
+
+def master_pid(uri):
+    """Return the process id of the ROS master at a URI; None if none answers."""
+    socket.setdefaulttimeout(MASTER_TIMEOUT)
+    try:
+        code, _, pid = xmlrpc.client.ServerProxy(uri).getPid("/doctor")
+    except Exception:  # whatever listens there may answer anything
+        return None
+    return pid if code == 1 else None
+
+
 def ros_folder(machine):
     """Return the folder of ROS One or ROS Noetic, or None where ROS is Debian's."""
     paths = [os.path.join(machine.opt_ros, name) for name in ("one", "noetic")]
@@ -379,10 +422,9 @@ def is_inside(path, folder):
 
 
 def this_machine():
-    workspace = os.path.dirname(os.path.dirname(os.path.realpath(__file__)))
     host_name = socket.gethostname()
     os_release = "/etc/os-release"
-    return Machine(os.environ, workspace, host_name, os_release, "/usr/bin/dpkg-query", "/opt/ros")
+    return Machine(os.environ, WORKSPACE, host_name, os_release, "/usr/bin/dpkg-query", "/opt/ros")
 
 
 def examine(machine):
