@@ -124,7 +124,7 @@ docs: packages-docs  ## build the tutorial's pages
 
 .PHONY: docs-serve
 docs-serve: docs  ## build the pages, and serve them to this machine's browsers
-	@exec /usr/bin/python3 catkin_ws/tools/serve.py $(SITE)
+	@exec /usr/bin/python3 -u -m http.server --bind 127.0.0.1 --directory $(SITE) 0 2> /dev/null
 
 .PHONY: labs
 labs: packages-lab  ## list ten labs to start with, small demos of one fact each; ALL=1: all of them

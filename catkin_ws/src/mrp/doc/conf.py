@@ -21,7 +21,6 @@ extensions = [
     "terminal",
     "proofs",
     "listing",
-    "answer",
     "bench",
     "picture",
     "exercises",
