@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Directives that list what there is.
 
-.. labs::   every lab: its claim, its launch file, its tests
+.. labs::        every lab: its claim, its launch file, its tests
+.. exercises::   every exercise: the task, what is to be done, the page that explains it, and the
+                 erratum that it is made of
 """
 
 import re
@@ -15,6 +17,8 @@ from sphinx.util.docutils import SphinxDirective
 LABS = cases.WORKSPACE / "src" / "mrp_labs"
 # For the directives that list what the checker has.
 sys.path.insert(0, str(cases.WORKSPACE / "src" / "mrp_check" / "src"))
+
+from mrp_check.contract import defects  # noqa: E402
 
 
 class Generated(SphinxDirective):
@@ -75,6 +79,18 @@ class Labs(Generated):
         return "\n".join(parts)
 
 
+class Exercises(Generated):
+    def text(self):
+        return "\n".join(map(self.line, defects.exercises()))
+
+    def line(self, exercise):
+        self.env.note_dependency(str(exercise.path))
+        number = exercise.erratum
+        erratum = f", `{number} <errata.html#{number.lower()}>`__" if number else ""
+        return f"#. **{exercise.title}** ({exercise.kind}): :doc:`{exercise.page}`{erratum}"
+
+
 def setup(app):
     app.add_directive("labs", Labs)
+    app.add_directive("exercises", Exercises)
     return {"parallel_read_safe": False}

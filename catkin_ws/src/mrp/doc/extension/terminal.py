@@ -22,6 +22,9 @@ only: a regular expression: of what was printed, only lines that have it are sho
 shows: what these lines must show, one text per line: see meaning.py. Times, numbers of processes,
     ports and values are not compared otherwise.
 graph: the name in recorded/graphs.json for the graph (see picture.py) at this moment.
+
+When the site is built, all steps of its reader go into the file steps.json, in the order of
+reading: tools/run_page.py does them.
 """
 
 import json
@@ -32,7 +35,6 @@ from docutils import nodes
 from docutils.parsers.rst import directives
 from sphinx.directives.code import container_wrapper
 from sphinx.util.docutils import SphinxDirective
-from steps import add_step, connect
 
 
 class Terminal(SphinxDirective):
@@ -104,9 +106,23 @@ def recorded(directive, file, name):
     return found
 
 
+def add_step(env, **step):
+    """Add a step of the page that is being read."""
+    step["page"] = env.docname
+    env.metadata[env.docname].setdefault("steps", []).append(step)
+
+
+def _write_steps(app, exception):
+    if exception is None and app.builder.format == "html":
+        env = app.env
+        order = [env.config.root_doc, *env.toctree_includes.get(env.config.root_doc, [])]
+        steps = [step for docname in order for step in env.metadata[docname].get("steps", [])]
+        (pathlib.Path(app.outdir) / "steps.json").write_text(json.dumps(steps, indent=1))
+
+
 def setup(app):
     # True while tools/record_pages.py builds the site to record what the pages still lack.
     app.add_config_value("recording", False, "")
     app.add_directive("terminal", Terminal)
-    connect(app)
+    app.connect("build-finished", _write_steps)
     return {"parallel_read_safe": False}
