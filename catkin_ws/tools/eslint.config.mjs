@@ -19,9 +19,4 @@ export default [
       globals: { DOCUMENTATION_OPTIONS: "readonly", jQuery: "readonly" },
     },
   },
-  {
-    // Selenium runs the file as the body of a function.
-    files: ["**/tests/browser/*.js"],
-    languageOptions: { sourceType: "script", parserOptions: { ecmaFeatures: { globalReturn: true } } },
-  },
 ];

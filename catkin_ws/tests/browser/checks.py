@@ -2,13 +2,11 @@
 """What can be wrong with an open page: each check returns a list of faults."""
 
 import contextlib
-import pathlib
 
 from browser import SIZES
 from mrp_testing.workspace import WORKSPACE
 
 _AXE = WORKSPACE / "build" / "lint" / "node_modules" / "axe-core" / "axe.min.js"
-_CONTRAST = pathlib.Path(__file__).with_name("contrast.js").read_text()
 
 
 def assert_none(faults):
@@ -87,27 +85,26 @@ def proofs(browser):
         )
 
 
-def contrast(browser):
-    """All visible text has a contrast of at least 4.5 to what is behind it, as WCAG asks."""
-    with _all_shown(browser):
-        return browser.run(_CONTRAST)
-
-
-def axe(browser):
-    """axe-core finds nothing. It need not measure contrasts: `contrast` does, in pictures too."""
+def axe(browser, rules=None):
+    """axe-core finds nothing, by these of its rules or by all; such as text of too little contrast,
+    color-contrast."""
     with _all_shown(browser):
         browser.run("if (!window.axe) {" + _AXE.read_text() + "}")
         return browser.run(
             """
             // The page may answer first to all of it being shown.
             const frame = () => new Promise(requestAnimationFrame);
-            const options = {
-              resultTypes: ["violations"],
-              rules: { "color-contrast": { enabled: false } },
-            };
+            const options = { resultTypes: ["violations"] };
+            if (arguments[0]) options.runOnly = arguments[0];
             return frame().then(frame).then(() => axe.run(options)).then(({ violations }) =>
               violations.flatMap(({ id, nodes }) =>
                 nodes.map(({ html, failureSummary }) =>
                   `${id}: ${html.slice(0, 200)}: ${failureSummary}`)));
-            """
+            """,
+            rules,
         )
+
+
+def contrast(browser):
+    """All text can be read on what is behind it, by axe-core's measure; it can't tell in SVG."""
+    return axe(browser, ["color-contrast"])
