@@ -5,6 +5,7 @@ A variant is a patch in mrp_check/defects/. Its lines Fails and Says name the te
 rostest, and what it says about the variant.
 """
 
+import concurrent.futures
 import re
 import shutil
 import subprocess
@@ -14,7 +15,8 @@ import pytest
 from mrp_check.contract import defects
 from mrp_testing import compiler_cache, scratch
 
-pytestmark = pytest.mark.slow
+# One worker of pytest runs them.
+pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("broken")]
 
 VARIANTS = [defect for defect in defects.read_all() if defect.fails]
 DEADLINE = "10"  # seconds that a test waits for what a broken variant never does
@@ -53,27 +55,62 @@ def run_rostest(folder, name, case):
     }
 
 
-@pytest.fixture(scope="session")
-def workspace(tmp_path_factory):
-    """A workspace that is built once for each of pytest's workers.
+@pytest.fixture(scope="module")
+def outcomes(request, tmp_path_factory):
+    """Return the name of each chosen variant -> what its rostest said: see run_rostest.
 
-    Each test breaks its package, and then takes the patch back.
+    Those that are compiled run beside those that are not: they wait more than they work. And what
+    is compiled stays broken until the next one is built.
     """
-    folder = tmp_path_factory.mktemp("workspace")
-    scratch.make(folder, *scratch.TESTED)
-    scratch.catkin_make(folder)
-    return folder
+    chosen = [
+        item.callspec.params["variant"]
+        for item in request.session.items
+        if item.path == request.path and "variant" in getattr(item, "fixturenames", ())
+    ]
+
+    def run_all(kind, folder):
+        scratch.make(folder, *scratch.TESTED)
+        scratch.catkin_make(folder)
+        return {one.name: outcome(one, folder) for one in chosen if kind_of(one) == kind}
+
+    with concurrent.futures.ThreadPoolExecutor() as pool:
+        running = [
+            pool.submit(run_all, kind, tmp_path_factory.mktemp(kind))
+            for kind in sorted({kind_of(variant) for variant in chosen})
+        ]
+    return {name: found for future in running for name, found in future.result().items()}
 
 
-def rebuild(workspace, rostest):
+def outcome(variant, workspace):
+    """Break the package, run the rostest, and take the patch back; return what failed."""
+
+    def run_patch(*options):
+        command = ["patch", "-p1", "--fuzz=0", f"--input={variant.path}", *options]
+        subprocess.run(command, cwd=workspace / "src" / "mrp", check=True)
+
+    run_patch()
+    try:
+        build(workspace, variant)
+        return run_rostest(workspace, *variant.fails)
+    except AssertionError as error:  # it's this variant's alone
+        return {"": str(error)}
+    finally:
+        run_patch("--reverse")
+
+
+def build(workspace, variant):
     """Build what a patch has changed, or what was changed back after the last one: make knows.
 
     A rostest's own C++ program, if it has one, is no part of what make builds unasked.
     """
-    program = "test_" + rostest[: -len(".test")]
-    own = [program] if (workspace / f"src/mrp/test/{program}.cpp").exists() else []
+    program = "test_" + variant.fails[0].removesuffix(".test")
+    targets = ["all"] if kind_of(variant) == "compiled" else []
+    if (workspace / f"src/mrp/test/{program}.cpp").exists():
+        targets.append(program)
+    if not targets:
+        return
     done = subprocess.run(
-        ["make", "-C", workspace / "build", "all", *own],
+        ["make", "-C", workspace / "build", *targets],
         env={**scratch.environment(), **compiler_cache.variables(workspace)},
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,
@@ -82,26 +119,18 @@ def rebuild(workspace, rostest):
     assert done.returncode == 0, done.stdout
 
 
-# At most two of pytest's workers build the workspace.
-@pytest.mark.parametrize(
-    "variant",
-    [
-        pytest.param(one, id=one.name, marks=pytest.mark.xdist_group(f"broken_{number % 2}"))
-        for number, one in enumerate(VARIANTS)
-    ],
-)
-def test_broken_variant_fails(variant, workspace):
-    def run_patch(*options):
-        command = ["patch", "-p1", "--fuzz=0", f"--input={variant.path}", *options]
-        subprocess.run(command, cwd=workspace / "src" / "mrp", check=True)
+def kind_of(variant):
+    """Say whether a patch changes what is compiled, or only what runs from its sources."""
+    compiled = re.search(
+        r"^\+\+\+ .*(\.cpp|CMakeLists\.txt)$", variant.path.read_text(), re.MULTILINE
+    )
+    return "compiled" if compiled else "interpreted"
 
-    run_patch()
-    try:
-        rostest, case = variant.fails
-        rebuild(workspace, rostest)
-        failures = run_rostest(workspace, rostest, case)
-    finally:
-        run_patch("--reverse")
+
+@pytest.mark.parametrize("variant", VARIANTS, ids=lambda variant: variant.name)
+def test_broken_variant_fails(variant, outcomes):
+    failures = outcomes[variant.name]
+    case = variant.fails[1]
     assert case in failures, f"failed: {failures}"
     assert re.search(variant.says, failures[case]), failures[case]
 
