@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Type the README's two commands in places made from scratch, and record what was seen there.
+"""Type the README's two commands in places made from scratch, and say what was seen there.
 
 A place is SYSTEM-KIND or SYSTEM-KIND-ARCHITECTURE, such as 13-chroot. SYSTEM is 12, 13 or 14, a
 release of Debian, of which mmdebstrap makes a bare root. KIND is one of
@@ -19,8 +19,6 @@ Exit code: 1 if a place failed; 69 if this machine cannot make one, and none fai
 
 import argparse
 import contextlib
-import csv
-import datetime
 import os
 import pathlib
 import shutil
@@ -30,23 +28,15 @@ import tempfile
 import time
 
 WORKSPACE = pathlib.Path(__file__).resolve().parent.parent
-RECORD = pathlib.Path(__file__).with_suffix(".csv")
-README = WORKSPACE.parent / "README.md"
 FIELDS = (
-    "place date seconds_to_first_messages packages test passed failed skipped"
+    "place seconds_to_first_messages packages test passed failed skipped"
     " lines_in_dpkg_log files_changed_elsewhere"
 ).split()
 SUITES = {"12": "bookworm", "13": "trixie", "14": "forky"}
-USERS = {
-    "chroot": "root, without namespaces",
-    "namespaces": "root",
-    "user": "a user with sudo",
-    "container": "root in a container",
-}
 # What README asks of a reader: the rest, `make run` and `make test` install.
 ASKED = "git,make"
 
-# What is typed, as the user of the place. Lines that begin with "## " are what is recorded.
+# What is typed, as the user of the place. Lines that begin with "## " are what is seen.
 _TYPED = """\
 cd ~/mrp/
 set -m  # so the nodes get their own Ctrl-C
@@ -138,8 +128,6 @@ def main():
             what = ", ".join(f"{name}: {value}" for name, value in row.items())
             print(f"## PLACE: {time.monotonic() - begin:.0f} s, {what}", flush=True)
             codes.add(int(row["failed"] != "0"))
-            if arguments.record:
-                record(row)
     return 1 if 1 in codes else max(codes)
 
 
@@ -151,16 +139,11 @@ def parser():
     parser.add_argument(
         "--marked", action="store_true", help="run only the tests that a place can affect"
     )
-    parser.add_argument(
-        "--record",
-        action="store_true",
-        help=f"write into {RECORD.name} and into the README's table",
-    )
     return parser
 
 
 def seen(place, folder, marked):
-    """Make a place, type the commands in it, and return the row of the recording."""
+    """Make a place, type the commands in it, and return what was seen."""
     system, kind, *architecture = place.split("-")
     test = "make test"
     if marked:  # the other files import what only `make test` builds
@@ -172,10 +155,9 @@ def seen(place, folder, marked):
     if kind != "container":
         enter = root(system, kind, architecture, folder)
     row = dict.fromkeys(FIELDS, "0")
-    row["place"], row["test"] = place, "those of the place" if marked else "`make test`"
+    row["place"], row["test"] = place, "those of the place" if marked else "make test"
     if architecture:
         row["test"] = "not run"
-    row["date"] = datetime.date.today().isoformat()
     typed = _TYPED.replace("$TEST", f"({test})")
     with subprocess.Popen(
         [*enter, "env", f"EMULATED={''.join(architecture)}", "bash", "-s"],
@@ -252,43 +234,6 @@ def bootstrap(suite, architecture, target):
         raise UnavailableError(error) from None
     for name in ("hosts", "hostname", "resolv.conf"):
         (target / "etc" / name).write_text(pathlib.Path("/etc", name).read_text())
-
-
-def rows():
-    """Return the rows of the recording: of each place, the last one."""
-    if not RECORD.exists():
-        return []
-    with RECORD.open() as file:
-        return list(csv.DictReader(file))
-
-
-def record(row):
-    kept = [old for old in rows() if old["place"] != row["place"]]
-    with RECORD.open("w", newline="") as file:
-        writer = csv.DictWriter(file, FIELDS, lineterminator="\n")
-        writer.writeheader()
-        writer.writerows(sorted([*kept, row], key=lambda row: row["place"]))
-    before, header, after = README.read_text().partition(table()[0])
-    rest = after.partition("\n\n")[2]
-    README.write_text("\n".join([before + header, *table()[1:], "", rest]))
-
-
-def table():
-    """Return the lines of README's table."""
-    lines = [
-        "| where | as | first messages | new packages | tests | packages changed by tests |",
-        "| --- | --- | ---: | ---: | --- | ---: |",
-    ]
-    for row in rows():
-        system, kind, *architecture = row["place"].split("-")
-        where = " ".join(["Debian", system, *(f"on {name}, emulated" for name in architecture)])
-        seconds = f"{row['seconds_to_first_messages']} s"
-        tests = row["test"]
-        if not architecture:
-            tests += f": {row['passed']} passed, {row['failed']} failed"
-        cells = [where, USERS[kind], seconds, row["packages"], tests, row["lines_in_dpkg_log"]]
-        lines.append(f"| {' | '.join(cells)} |")
-    return lines
 
 
 if __name__ == "__main__":
