@@ -1,18 +1,16 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Marks a class: what a person sets is kept apart, and each change has its reason."""
+"""Marks a class: what a person sets is kept apart from what was measured."""
 
 import csv
 import dataclasses
 import pathlib
 import re
-import zipfile
 
 import pytest
 from check_rules import ASKED, Tags, hand_in
-from mrp_check.classroom import by_hand, class_table, classroom, mail, moodle, moved
+from mrp_check.classroom import by_hand, class_table, classroom
 from mrp_check.cli import check as check_command
 from mrp_check.contract import errors, spec
-from mrp_check.verdict import check
 from test_check_class import SPEC_FILE, Room
 
 pytestmark = pytest.mark.quick
@@ -108,107 +106,3 @@ def test_nothing_is_checked_before_the_file_can_be_used(tmp_path, monkeypatch, c
 def test_a_name_may_be_composed_in_two_ways(tmp_path):
     file = written(tmp_path, "student,maximum\nJ\u00fcrgen,3\n")
     assert by_hand.read(file, ["Ju\u0308rgen"], 40, None)["Ju\u0308rgen"].maximum == 3
-
-
-def marked(tmp_path, contract, package="", **broken):
-    """Return a submission of each name, after its mark has been compared with the last one."""
-    results = [
-        class_table.Submission(
-            name,
-            {
-                "verdict": check.FINDINGS if ids else check.MET,
-                "package": "a_pkg",
-                "spec": "s",
-                "requirements": {id_: check.BROKEN if id_ in ids else check.MET for id_ in ASKED},
-                "findings": [],
-            },
-            depends_on={"package": name + package, "contract": "1", "checker": "1"},
-        )
-        for name, ids in broken.items()
-    ]
-    moved.compare(tmp_path, results, contract)
-    return results
-
-
-def moves(results):
-    return {one.name: one.moved for one in results}
-
-
-def test_who_calls_again_sees_whose_marks_have_moved_and_why(tmp_path):
-    contract, all_ = spec.read(SPEC_FILE), len(ASKED)
-    first = dataclasses.replace(contract, points={"wrap": 3})
-    other = dataclasses.replace(contract, points={"wrap": 0, "spin": 3})
-    class_ = {"anna": ["wrap", "queue"], "berta": []}
-    assert moves(marked(tmp_path, first, **class_)) == {"anna": "", "berta": ""}
-    why = "spin is worth 3 now, before 1; wrap is no longer required"
-    changed = {
-        "anna": f"{all_ - 2} of {all_ + 2} -> {all_} of {all_ + 1}: {why}",
-        "berta": f"{all_ + 2} of {all_ + 2} -> {all_ + 1} of {all_ + 1}: {why}",
-    }
-    assert moves(marked(tmp_path, other, **class_)) == changed
-    assert moves(marked(tmp_path, other, **class_)) == changed
-    results = marked(tmp_path, other, **class_, carl=[])
-    assert moves(results) == {**changed, "carl": ""}
-
-    rows = list(csv.DictReader(class_table.csv_text(results, other).splitlines()))
-    assert [row["moved"] for row in rows] == [*changed.values(), ""]
-    assert changed["anna"] in Tags(class_table.html_text(results, other, tmp_path)).texts
-    assert f"anna: {changed['anna']}" in class_table.text(results, other)
-
-
-def test_what_a_student_or_a_person_has_changed_moves_a_mark_too(tmp_path):
-    contract, all_ = spec.read(SPEC_FILE), len(ASKED)
-    ids = [*ASKED][:8]
-    marked(tmp_path, contract, anna=ids, berta=["wrap"])
-    found = marked(tmp_path, contract, package="2", anna=[], berta=["wrap"])
-    assert moves(found) == {
-        "anna": f"{all_ - 8} -> {all_} of {all_}: {', '.join(ids[:5])}, 3 more are met now,"
-        " before not met; changed: package",
-        "berta": "",
-    }
-    found[1].by_hand = by_hand.ByHand(maximum=3)
-    moved.compare(tmp_path, found, contract)
-    assert moves(found) == {
-        "anna": "",
-        "berta": f"{all_ - 1} -> 3 of {all_}: by hand",
-    }
-
-
-def test_progress_since_an_earlier_hand_in(tmp_path):
-    """Hands in twice: Moodle gives each another number, and an archive may become a folder."""
-    contract, all_ = spec.read(SPEC_FILE), len(ASKED)
-    first, second = tmp_path / "1.checked", tmp_path / "2.checked"
-    for folder in (first, second):
-        folder.mkdir()
-    anna = "Anna M_{}_assignsubmission_file_".format
-    names = {anna(12): ["wrap", "spin", "queue"], "bert.zip": ["rate"], "carl": []}
-    marked(first, contract, **names, **{"two.zip": [], "two.tar.gz": []})
-    hidden = dataclasses.replace(contract, hidden=("wrap",))
-    later = {anna(77): ["queue", "rate"], "bert": ["rate"], "zoe": [], "two": []}
-    results = marked(second, hidden, **later)
-    moved.since(moved.before(first), results)
-
-    one = f"{all_ - 3} -> {all_ - 2} of {all_}; met now: {{}}; lost: rate".format
-    said = {anna(77): one("spin, wrap"), "bert": f"{all_ - 1} -> {all_ - 1} of {all_}"}
-    rows = csv.DictReader(class_table.csv_text(results, hidden).splitlines())
-    assert {row["submission"]: row["progress"] for row in rows if row["progress"]} == said
-    page = Tags(class_table.html_text(results, hidden, second)).texts
-    students = "1 of 2 students have more points, 0 have fewer"
-    sum_ = f"Since the earlier hand-in, {students}; all together +1."
-    assert {*said.values(), sum_} <= {*page}
-    assert sum_ in class_table.text(results, hidden)
-
-    assert mail.write(second, results, hidden) == []
-    name = anna(77)
-    assert f"Since the earlier hand-in: {one('spin')}\n" in (second / f"{name}.txt").read_text()
-    assert one("spin, wrap").replace(">", "&gt;") in (second / f"{name}.html").read_text()
-    moodle.write_pages(tmp_path / "marks.zip", results, hidden)
-    with zipfile.ZipFile(tmp_path / "marks.zip") as archive:
-        shown = archive.read(f"{name}/feedback.html").decode()
-    assert one("spin").replace(">", "&gt;") in shown
-    assert not (second / "zoe.html").exists()
-
-
-def test_a_folder_that_has_no_marks_is_named(tmp_path):
-    with pytest.raises(errors.CannotCheck, match="has no marks of a class"):
-        moved.before(tmp_path)

@@ -27,8 +27,6 @@ class Submission:
     kept: whether it is the report of an earlier call
     depends_on: what the report depends on -> a text that changes with it
     by_hand: what a person has set
-    moved: how the mark has moved, as moved.py says
-    before: the verdicts and the mark in an earlier hand-in, of `most` points
     """
 
     name: str
@@ -36,8 +34,6 @@ class Submission:
     kept: bool = False
     depends_on: dict = dataclasses.field(default_factory=dict)
     by_hand: ByHand = ByHand()
-    moved: str = ""
-    before: dict = dataclasses.field(default_factory=dict)
 
     def verdict_on(self, id_):
         """Return the verdict on one requirement: MET, BROKEN or UNCHECKED."""
@@ -50,24 +46,6 @@ class Submission:
     def mark(self, spec):
         """Return the points with what a person has set."""
         return self.by_hand.mark(self.points(spec))
-
-    def progress(self, spec, hidden=()):
-        """Return what has been gained and lost since the earlier hand-in: empty without one.
-
-        hidden: requirements of which nothing is said
-        """
-        if not self.before:
-            return ""
-        old, new = self.before["verdicts"], self.report["requirements"]
-        asked = [id_ for id_ in asked_by(spec) if id_ not in hidden]
-        ids = {
-            "met now": [id_ for id_ in asked if new.get(id_) == MET != old.get(id_)],
-            "lost": [id_ for id_ in asked if old.get(id_) == MET != new.get(id_)],
-        }
-        points, before = most(spec), self.before["most"]
-        of = "" if before == points else f" of {before:g}"
-        said = [f"{self.before['mark']:g}{of} -> {self.mark(spec):g} of {points:g}"]
-        return "; ".join([*said, *(f"{what}: {', '.join(ids[what])}" for what in ids if ids[what])])
 
     def shown(self, spec):
         """Return what the student may see of the Report."""
@@ -103,7 +81,7 @@ def csv_text(submissions, spec):
     file = io.StringIO()
     writer = csv.writer(file)
     asked = asked_by(spec)
-    columns = "submission package verdict points of by_hand mark moved progress".split()
+    columns = "submission package verdict points of by_hand mark".split()
     writer.writerow([*columns, *asked, "why", "isolation"])
     for one in submissions:
         writer.writerow(
@@ -115,8 +93,6 @@ def csv_text(submissions, spec):
                 f"{most(spec):g}",
                 cell(str(one.by_hand)),
                 f"{one.mark(spec):g}",
-                cell(one.moved),
-                cell(one.progress(spec)),
                 *map(one.verdict_on, asked),
                 cell(" | ".join(one.causes()[:_MOST_CAUSES])),
                 cell(one.report.get("isolation", "")),
@@ -163,8 +139,6 @@ def html_text(submissions, spec, pages):
         broken=broken_in(submissions),
         address_of=html.address_of,
         has_marks=any(str(submission.by_hand) for submission in submissions),
-        has_moved=any(submission.moved for submission in submissions),
-        since=since(submissions, spec),
         isolations=isolations(submissions),
     )
 
@@ -181,10 +155,7 @@ def text(submissions, spec):
             f"{one.name:{width}}  {one.report['verdict']:9}  {points:>7}  {reason}".rstrip()
         )
     lines += [f"{one.name}: {said_of_mark(one, spec)}" for one in submissions if str(one.by_hand)]
-    lines += [f"{one.name}: {one.moved}" for one in submissions if one.moved]
-    lines += [f"{one.name}: {one.progress(spec)}" for one in submissions if one.before]
-    lines += filter(None, [since(submissions, spec), *isolations(submissions)])
-    return terminal.plain("\n".join(lines))
+    return terminal.plain("\n".join([*lines, *isolations(submissions)]))
 
 
 def isolations(submissions):
@@ -195,22 +166,6 @@ def isolations(submissions):
             for submission in submissions
             if "isolation" in submission.report
         }
-    )
-
-
-def since(submissions, spec):
-    """Return how many have more or fewer points than in the earlier hand-in; empty without one."""
-    gains = [
-        submission.mark(spec) - submission.before["mark"]
-        for submission in submissions
-        if submission.before
-    ]
-    if not gains:
-        return ""
-    more, fewer = sum(gain > 0 for gain in gains), sum(gain < 0 for gain in gains)
-    return (
-        f"Since the earlier hand-in, {more} of {len(gains)} students have more points, {fewer} have"
-        f" fewer; all together {sum(gains):+g}."
     )
 
 

@@ -22,7 +22,7 @@ from mrp_check.report import html as page
 from mrp_check.report import terminal
 
 _COLUMNS = "Identifier,Full name,Grade,Maximum Grade,Last modified (grade),Feedback comments"
-DOWNLOADED = re.compile(r"([^_]+)_(\d+)_assignsubmission_file(_.*)?", re.DOTALL)
+_DOWNLOADED = re.compile(r"([^_]+)_(\d+)_assignsubmission_file(_.*)?", re.DOTALL)
 
 
 def text(submissions, spec):
@@ -42,8 +42,7 @@ def write_pages(path, submissions, spec):
     with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
         for one, name, number in _numbered(submissions):
             folder = f"{name}_{number}_assignsubmission_file_"
-            progress = one.progress(spec, spec.hidden)
-            report = page.text(one.shown(spec), has_links=False, progress=progress)
+            report = page.text(one.shown(spec), has_links=False)
             archive.writestr(f"{folder}/feedback.html", report)
 
 
@@ -55,7 +54,7 @@ def left_out(submissions):
 
 def _numbered(submissions):
     """Return (submission, student's name, number) of those whose number is in one name alone."""
-    found = [(submission, DOWNLOADED.fullmatch(submission.name)) for submission in submissions]
+    found = [(submission, _DOWNLOADED.fullmatch(submission.name)) for submission in submissions]
     named = [(one, match[1], match[2]) for one, match in found if match]
     counts = collections.Counter(number for _, _, number in named)
     return [entry for entry in named if counts[entry[2]] == 1]

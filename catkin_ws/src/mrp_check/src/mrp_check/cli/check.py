@@ -20,7 +20,6 @@ from mrp_check.classroom import (
     mail,
     marking,
     moodle,
-    moved,
     submissions,
 )
 from mrp_check.contract import spec
@@ -121,8 +120,6 @@ def parser(contract="pub_sub"):
 def _add_of_class(parser):
     set_ = "with --class: take late days, maxima and overrides of students' points from this CSV"
     parser.add_argument("--by-hand", metavar="FILE", help=set_)
-    since = "with --class: show what has changed since an earlier hand-in, whose DIR.checked it is"
-    parser.add_argument("--before", metavar="FOLDER", help=since)
     number = (
         f"with --class: run N checks in parallel, 1 to {classroom.MOST_JOBS} (default:"
         f" {classroom.JOBS}; with --scheduler, as many as its workers have threads)"
@@ -146,7 +143,7 @@ def _seconds(text):
 def run(options):
     """Check what the options say, write the reports, and return the exit code."""
     of_package = {*OF_PACKAGE, *FLAGS, "only"} - {*OF_CLASS}
-    of_class = {*OF_CLASS, "by_hand", "before", "scheduler"} - {*OF_PACKAGE}
+    of_class = {*OF_CLASS, "by_hand", "scheduler"} - {*OF_PACKAGE}
     try:
         for name in sorted(of_package if options.class_ else of_class):
             if getattr(options, name):
@@ -191,7 +188,6 @@ def run_class(options):
         names = [printable(entry.name) for entry in room.entries]
         points = class_table.most(contract)
         set_ = by_hand.read(options.by_hand, names, points, contract.late)
-    earlier = moved.before(options.before) if options.before else None
     try:
         with cluster.reached(options.scheduler, progress.show) as machines:
             say_how_apart(machines)
@@ -200,9 +196,6 @@ def run_class(options):
         progress.clear()
     for one in checked:
         one.by_hand = set_.get(one.name, one.by_hand)
-    moved.compare(room.results, checked, contract)
-    if earlier:
-        moved.since(earlier, checked)
     for name, (_, text) in OF_CLASS.items():
         write(getattr(options, name), text, checked, contract, room.results)
     for sentence in mail.write(room.results, checked, contract):

@@ -26,16 +26,14 @@ def render(template, **values):
     return terminal.plain(page)
 
 
-def text(report, has_links=True, progress=""):
+def text(report, has_links=True):
     """Return the page of one package's report.
 
     has_links: whether it links to the tutorial's pages, which are on this machine alone
-    progress: what has changed since an earlier hand-in
     """
     return render(
         "package.html",
         report=report,
-        progress=progress,
         summary=terminal.summary(report),
         groups=terminal.with_consequences(report.findings),
         stages=terminal.by_stage(report),
