@@ -17,7 +17,7 @@ from mrp_testing.cluster import cluster
 from mrp_testing.process import processes_with
 from mrp_testing.waiting import wait_until
 from test_check_class import BROKEN
-from test_check_cluster import SPEC, checked, headers, quick  # noqa: F401
+from test_check_cluster import SPEC, checked, quick  # noqa: F401
 from test_check_handed_in import BOMB, REFUSED, state
 from test_check_harm import PLANTED
 from test_check_stopped import command

@@ -15,7 +15,6 @@ import uuid
 import psutil
 import pytest
 from check_rules import hand_in
-from mrp_check.confined import cpp_headers, variables
 from mrp_check.contract import resources
 from mrp_check.contract.packages import lay_out
 from mrp_check.package.package import MAX_BYTES
@@ -34,17 +33,9 @@ NO_WORKER = (
 )
 
 
-@pytest.fixture(scope="module")
-def headers(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("headers")
-    cpp_headers.make(folder / cpp_headers.NAME)
-    return folder
-
-
 @pytest.fixture(autouse=True)
-def quick(monkeypatch, tmp_path, headers):
-    """ROS's headers are read once, nobody waits for long, and nothing is of the user's own Dask."""
-    monkeypatch.setenv(variables.HEADERS, str(headers))
+def quick(monkeypatch, tmp_path):
+    """Nobody waits for long, and nothing is of the user's own Dask."""
     monkeypatch.setenv("DASK_CONFIG", str(tmp_path / "none"))
     monkeypatch.setenv("DASK_DISTRIBUTED__COMM__TIMEOUTS__CONNECT", "5s")
     monkeypatch.setenv("PYTHONPATH", ":".join(sys.path))

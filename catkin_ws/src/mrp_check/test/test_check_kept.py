@@ -2,9 +2,6 @@
 """The folder that stays from one check to the next: what it saves, and what it must not carry."""
 
 import os
-import pathlib
-import subprocess
-import sys
 import tempfile
 
 import check_sets
@@ -78,37 +75,3 @@ def test_folder_that_others_can_change_is_left_alone(temporary):
     with kept_folder("1") as folder:
         assert folder != planted
     assert not [*planted.iterdir()]
-
-
-PROCESS = """
-import os, pathlib, signal, sys
-from mrp_check.sandbox.scratch import process_folder
-folder = process_folder()
-(folder / "file").touch()
-os.utime(folder, (0, 0))
-print(folder, flush=True)
-sys.stdin.read()
-os.kill(os.getpid(), signal.SIGKILL) if "kill" in sys.argv else None
-"""
-
-
-def test_the_folder_of_a_process_that_was_killed_is_deleted_by_the_next(temporary):
-    env = {**os.environ, "TMPDIR": str(temporary), "PYTHONPATH": ":".join(sys.path)}
-
-    def begun(*arguments):
-        return subprocess.Popen(
-            [sys.executable, "-c", PROCESS, *arguments],
-            env=env,
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            text=True,
-        )
-
-    with begun("kill") as killed, begun() as other:
-        folders = [pathlib.Path(one.stdout.readline().strip()) for one in (killed, other)]
-        killed.communicate()
-        assert [(path / "file").exists() for path in folders] == [True, True]
-        with begun() as third:
-            third.stdout.readline()
-            assert [path.exists() for path in folders] == [False, True]
-    assert [*temporary.iterdir()] == []

@@ -13,7 +13,6 @@ import shutil
 import typing
 
 from mrp_check import releases, sandbox
-from mrp_check.build import headers
 from mrp_check.build.stubs import Stubs, absent
 from mrp_check.confined import variables, written
 from mrp_check.contract.errors import CannotCheck
@@ -93,16 +92,7 @@ class Catkin:
             os.makedirs(cache, exist_ok=True)  # within the confinement it could not be made
             if os.getuid() == 0:
                 os.chmod(cache, 0o777)  # each check is another user's then
-        kept = headers.folder()
-        if kept:
-            environment[variables.HEADERS] = str(kept)
-            environment["CMAKE_CXX_COMPILER_LAUNCHER"] = headers.launcher()
-        return self.workspace.run(
-            *command,
-            readable=[kept] if kept else [],
-            writable=[cache] if cache else [],
-            env=environment,
-        )
+        return self.workspace.run(*command, writable=[cache] if cache else [], env=environment)
 
     def _step(self, result: confine.Result) -> Step:
         """Return the Step that came of a command. Raises CannotCheck if it took too long.
@@ -182,10 +172,6 @@ class Catkin:
             step = Step(*workspace.made)
             workspace.keep(self.configured, step)
             return step
-        if headers.folder():
-            flags = headers.missing(command for _, command in self.compile_commands().values())
-            if flags is not None:
-                workspace.submit(headers.make, flags)  # for what is built next
         # As catkin_make would, which took its time to find out that CMake need not run again.
         make = ["make", f"--directory={self.folder / 'build'}", *_KEEP_GOING]
         if workspace.compiles_again:

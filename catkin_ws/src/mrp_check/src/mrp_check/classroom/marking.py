@@ -18,12 +18,11 @@ import sys
 import tarfile
 import threading
 
-from mrp_check.confined import cpp_headers, variables
 from mrp_check.contract import resources
 from mrp_check.contract.errors import CannotCheck
 from mrp_check.package.package import MAX_BYTES, Package, is_of_tools
 from mrp_check.report import json_
-from mrp_check.sandbox.scratch import process_folder, scratch_folder
+from mrp_check.sandbox.scratch import scratch_folder
 
 _HERE = pathlib.Path(__file__).resolve().parents[1]
 _GRACE = 60  # seconds that a check may take beyond its own limit
@@ -32,8 +31,6 @@ _PROGRAM = "from mrp_check.cli.check import main; main()"
 _LOCK = threading.Lock()
 _RUNNING: dict[subprocess.Popen, str] = {}  # the checks, and their classes
 _STOPPED: set[str] = set()  # classes
-_READING = threading.Lock()
-_HEADERS: list[pathlib.Path] = []  # the folder in which ROS's headers are, once they are read
 
 
 @dataclasses.dataclass(frozen=True)
@@ -100,7 +97,11 @@ def mark(job: Job) -> tuple[dict, str]:
         contract.write_bytes(job.contract)
         command = [sys.executable, "-c", _PROGRAM, str(package), f"--spec={contract}"]
         command += [f"--timeout={job.timeout:g}", f"--json={report}", f"--html={page}"]
-        code, said = _run(job, command, _environment(scratch))
+        env = {**os.environ, "TMPDIR": str(scratch)}
+        env["PYTHONPATH"] = os.pathsep.join([str(_HERE.parent), env.get("PYTHONPATH", "")])
+        # There, all checks share ROS's headers as clang has read them: see cpp_headers.py.
+        env.setdefault("XDG_CACHE_HOME", os.path.expanduser("~/.cache"))
+        code, said = _run(job, command, env)
         found = json_.kept(report)
         if not found:
             raise CannotCheck(said[-1] if said else f"The check ended with {code}.")
@@ -113,16 +114,6 @@ def stop(class_: str) -> None:
         _STOPPED.add(class_)
         for popen in [popen for popen, of in _RUNNING.items() if of == class_]:
             _kill(popen)
-
-
-def _environment(scratch):
-    with _READING:  # the first check reads them for all that follow in this process
-        if not _HEADERS:
-            _HEADERS.append(process_folder())
-            cpp_headers.make(_HEADERS[0] / cpp_headers.NAME)
-    env = {**os.environ, "TMPDIR": str(scratch), variables.HEADERS: str(_HEADERS[0])}
-    env["PYTHONPATH"] = os.pathsep.join([str(_HERE.parent), env.get("PYTHONPATH", "")])
-    return env
 
 
 def _run(job, command, env):

@@ -9,7 +9,6 @@ import pathlib
 import signal
 import sys
 
-from mrp_check.confined import variables
 from mrp_check.contract.defects import DefectError
 from mrp_check.contract.errors import CannotCheck
 from mrp_check.contract.packages import PatchError
@@ -57,9 +56,6 @@ def learn(folder):
     """Follow the exercises: on the screen of a terminal, or in lines."""
     course = Course(folder)
     with scratch_folder() as scratch:
-        headers = scratch / "headers"
-        headers.mkdir(mode=0o755)
-        os.environ[variables.HEADERS] = str(headers)
         watched = Watched(course, scratch)
         try:
             if is_terminal():

@@ -16,12 +16,6 @@ import subprocess
 import sys
 import tempfile
 
-if __name__ == "__main__":
-    # In place of this file's own folder, whose modules are none of clang's.
-    sys.path[0] = str(pathlib.Path(__file__).resolve().parents[2])
-
-from mrp_check.confined import variables
-
 NAME = "ros.pch"  # of the file, in a folder that is given
 STANDARD = "-std=gnu++17"  # the default of g++ 12 and 14
 FOLDERS = ("/opt/ros/noetic/include", "/usr/include/xmlrpcpp")
@@ -35,9 +29,8 @@ def make(path: pathlib.Path) -> pathlib.Path:
     """Put the headers into the file `path`, and return it. Without clang or ROS there is none."""
     if path.exists():
         return path  # an earlier check has made it
-    kept, folder = _in_cache(), os.environ.get(variables.HEADERS)
-    of_many = [pathlib.Path(folder, NAME)] if folder else []
-    for earlier in (*of_many, *kept):
+    kept = _in_cache()
+    for earlier in kept:
         if earlier.exists():
             shutil.copyfile(earlier, path)
             return path

@@ -5,10 +5,8 @@ import pathlib
 import typing
 
 # What may be set for the checker: a folder for ccache, with which what is equal in many packages is
-# compiled once (a package that means harm could put something wrong into it: it is for tests); and
-# the folder in which a class or a course keeps ROS's headers, as clang and g++ have read them.
+# compiled once (a package that means harm could put something wrong into it: it is for tests).
 CCACHE = "MRP_CHECK_CCACHE"
-HEADERS = "MRP_CHECK_HEADERS"
 
 # What the checker hands to its own programs: how the observer starts the nodes, an apart.Apart;
 # what marks the processes of one run; and the observing.Hook of a Python node.

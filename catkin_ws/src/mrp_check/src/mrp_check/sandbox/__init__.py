@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import atexit
-import contextlib
 import enum
 import functools
 import os
@@ -14,8 +13,7 @@ import stat
 import subprocess
 import tempfile
 import threading
-import time
-from typing import Iterable, Iterator
+from typing import Iterable
 
 import psutil
 
@@ -29,10 +27,7 @@ _ETC = (
     " os-release passwd ros"
 ).split()
 _SHARED_MEMORY = 64 * warden.MEGABYTE
-CGROUPS = pathlib.Path("/sys/fs/cgroup")
 _DEEPEST = 200  # levels of folders: all that root puts there is above
-_SPARE = 10  # processes beyond the limit that a cgroup may hold: the watcher sees it broken first
-EMPTYING = 5.0  # seconds within which a cgroup is empty after its processes were killed
 # User ids that systemd, too, gives to what runs for a while; no user of a machine has one.
 _IDS = range(61184, 65520)
 _HANDING_OVER = threading.Lock()
@@ -110,54 +105,6 @@ def bubblewrap(binds: Iterable[tuple[str, str, str]]) -> list[str]:
             options += ["--perms", "0755", "--dir", str(parent)]
         options += [option, outside, within]
     return ["bwrap", *options, "--remount-ro", "/", "--"]
-
-
-@contextlib.contextmanager
-def cgroup(limits: warden.Limits) -> Iterator[pathlib.Path | None]:
-    """Make a cgroup v2 with these limits; yield its folder, or None where this user may make none.
-
-    A cgroup that has processes cannot share out what it has: the new one lies beside it, or above.
-    """
-    entries = pathlib.Path("/proc/self/cgroup").read_text().splitlines()
-    own = next((entry[4:] for entry in entries if entry.startswith("0::/")), "")
-    here = CGROUPS / own
-    group = next(filter(None, (_made(one, limits) for one in (here, *here.parents))), None)
-    try:
-        yield group
-    finally:
-        end = time.monotonic() + EMPTYING
-        while group and group.exists() and time.monotonic() < end:
-            try:
-                (group / "cgroup.kill").write_text("1")
-                group.rmdir()
-            except OSError:
-                time.sleep(0.01)
-
-
-def _made(folder: pathlib.Path, limits: warden.Limits) -> pathlib.Path | None:
-    try:
-        shared = (folder / "cgroup.subtree_control").read_text().split()
-        if not {"memory", "pids"}.issubset(shared):
-            return None
-        group = pathlib.Path(tempfile.mkdtemp(prefix="mrp_check_", dir=folder))
-        # Where /tmp is a tmpfs, the files in it are memory, too.
-        (group / "memory.max").write_text(str(limits.memory + limits.disk))
-        (group / "pids.max").write_text(str(limits.processes + _SPARE))
-        return group
-    except OSError:
-        return None
-
-
-def entering(group: pathlib.Path | None) -> list[str]:
-    """Return what a command begins with that runs in a cgroup, as far as it may enter that."""
-    enter = 'echo $$ 2> /dev/null > "$0"/cgroup.procs; exec "$@"'
-    return ["/bin/sh", "-c", enter, str(group)] if group else []
-
-
-def ran_out_of_memory(group: pathlib.Path | None) -> bool:
-    """Return whether the kernel has ended something in a cgroup, as it had no more memory."""
-    events = (group / "memory.events").read_text().splitlines() if group else []
-    return any(event.startswith("oom_kill ") and event != "oom_kill 0" for event in events)
 
 
 def hand_over(scratch: str) -> int | None:

@@ -4,8 +4,7 @@
 Always, as any user:
 - the command has a session and a process group, and a HOME, TMPDIR, ROS_HOME and ROS_LOG_DIR of its
   own, in a scratch folder;
-- it is ended when it breaks a limit: see Limits. A watching process and rlimits see to that; where
-  the machine grants a cgroup v2, the kernel does so for all of its processes together;
+- it is ended when it breaks a limit: see Limits. A watching process and rlimits see to that;
 - its output is read to the end, and kept up to a limit;
 - every process that it started is killed when it ends, even if it has detached itself: the watcher
   (confined/warden.py) adopts all orphans.
@@ -116,14 +115,8 @@ def run(
     words = [str(word) for word in command]
     task = warden.Task(words, scratch, env, limits or Limits(), user, namespaces, observes)
     with contextlib.ExitStack() as stack:
-        group = stack.enter_context(sandbox.cgroup(task.limits))
-        box = sandbox.entering(group)
-        if namespaces:
-            box += stack.enter_context(_namespaces(scratch, readable, writable))
-        result = _watched(box, task, None if namespaces or user is not None else mark)
-        if sandbox.ran_out_of_memory(group):
-            result.code, result.ended_by = None, "memory"
-    return result
+        box = stack.enter_context(_namespaces(scratch, readable, writable)) if namespaces else []
+        return _watched(box, task, None if namespaces or user is not None else mark)
 
 
 @contextlib.contextmanager
@@ -152,7 +145,7 @@ def stop() -> None:
 def _watched(box: Sequence[str], task: warden.Task, mark: str | None) -> Result:
     """Have a watcher do its task; return what came of it. Raises ConfineError.
 
-    box: the command that enters the cgroup and makes the namespaces, if there are any
+    box: the command that makes the namespaces, if there are any
     mark: that of what runs, if it could kill its watcher
     """
     watcher, stdin, pipes = _start(box, task)

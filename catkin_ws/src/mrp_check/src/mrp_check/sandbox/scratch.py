@@ -7,7 +7,6 @@ for each user, and what has not changed since then is not built again.
 
 from __future__ import annotations
 
-import atexit
 import contextlib
 import fcntl
 import os
@@ -15,14 +14,11 @@ import pathlib
 import shutil
 import stat
 import tempfile
-import time
 from typing import Iterator
 
 from mrp_check.confined import cpp_headers
 from mrp_check.sandbox import confine
 
-_OF_PROCESS = "mrp_check_process_"
-_LEFT = 60  # seconds after which a folder that nobody holds is that of a process which was killed
 _OPEN = 0o711  # for the user that the package's programs run as
 _LEAST = 2**30  # bytes that must be free: what stays must not fill a disk
 
@@ -36,25 +32,6 @@ def scratch_folder() -> Iterator[pathlib.Path]:
         yield folder
     finally:
         confine.remove(folder)
-
-
-def process_folder() -> pathlib.Path:
-    """Make a folder that all can read, and that goes with this process's end.
-
-    One that is killed cannot delete it: the next one does."""
-    for left in pathlib.Path(tempfile.gettempdir()).glob(f"{_OF_PROCESS}*"):
-        with contextlib.suppress(OSError), contextlib.ExitStack() as held:
-            found = left.lstat()
-            is_old = time.time() - found.st_mtime > _LEFT
-            if is_old and found.st_uid == os.getuid() and _is_locked(held, left):
-                shutil.rmtree(left)
-    folder = pathlib.Path(tempfile.mkdtemp(prefix=_OF_PROCESS))
-    folder.chmod(0o755)
-    held = contextlib.ExitStack()
-    _is_locked(held, folder)
-    held.callback(shutil.rmtree, folder, ignore_errors=True)
-    atexit.register(held.close)
-    return folder
 
 
 @contextlib.contextmanager
