@@ -99,6 +99,13 @@ def clone(path, files=FILES):
     git(path, "commit", "-m", "x")
 
 
+def seven_zip(path):
+    files = path.parent.parent / "files"
+    folder(files, below("mrp"))
+    command = ["cmake", "-E", "tar", "cf", path, "--format=7zip", "mrp"]
+    subprocess.run(command, cwd=files, check=True)
+
+
 def bundle(path, what):
     repository = path.parent.parent / "repository"
     clone(repository, below("my_ws/src/mrp"))
@@ -160,21 +167,10 @@ def workspace_tar(path):
     tar(path, {**below("./ws", WORKSPACE), "./ws/src/CMakeLists.txt": link})
 
 
-def large_beside(path):
-    """8 MB beside the package in a zip: it must not be read at all."""
-    zip_(path, {**below("ws/src/mrp"), "ws/video.mp4": b"x" * 8_000_000})
-    data = bytearray(path.read_bytes())
-    at = data.index(b"ws/video.mp4") + len("ws/video.mp4")
-    data[at : at + 100] = b"\xff" * 100  # a program that unpacks it stops here
-    path.write_bytes(data)
-
-
 def dotnet(path):
     """Windows' PowerShell, for long: backslashes between the folders."""
     zip_(path, {name.replace("/", "\\"): one for name, one in below("ws/mrp").items()}, unix=0)
 
-
-CRLF = {name: content.replace("\n", "\r\n") for name, content in FILES.items()}
 
 BUILT = {**below("mrp"), "mrp/build/CMakeCache.txt": "", "mrp/build/node.py": ""}
 # Which files are executable, if not node.py alone: Windows has no modes.
@@ -196,15 +192,14 @@ TAKEN = {
     "Bert Ä_12346_assignsubmission_file_mrp.zip": lambda path: zip_(path, FILES),
     "one.tar": lambda path: tar(path, below("./mrp"), ""),
     "one.tar.gz": lambda path: tar(path, below("mrp")),
-    "one.txz": lambda path: tar(path, below("mrp"), "xz"),
-    "one.tar.bz2": lambda path: tar(path, below("mrp"), "bz2"),
-    "no suffix": lambda path: tar(path, below("mrp")),
+    "no suffix": lambda path: tar(path, below("mrp"), "xz"),
     "clone": clone,
+    "one.7z": seven_zip,
+    "anna.bundle": lambda path: bundle(path, "HEAD"),
+    "berta.bundle": lambda path: bundle(path, "main"),
     "workspace": workspace,
     "workspace.tgz": workspace_tar,
     "built": lambda path: folder(path, BUILT),
     "built.zip": lambda path: zip_(path, BUILT),
     "deep": lambda path: folder(path / "/".join("abcdefg"), FILES),
-    "crlf.zip": lambda path: zip_(path, CRLF),
-    "large_beside.zip": large_beside,
 }

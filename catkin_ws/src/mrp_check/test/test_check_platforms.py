@@ -167,7 +167,7 @@ def test_without_hidden_requirements_nothing_is_left_out():
 @pytest.mark.parametrize(
     ("make", "says"),
     [
-        (lambda folder: (folder / "work.tar.gz").touch(), "work.tar.gz is an empty file"),
+        (lambda folder: (folder / "work.tar.gz").touch(), "it is an empty file"),
         (lambda folder: None, "no package.xml"),
         (lambda folder: folder.rmdir(), "There's no submission"),
         (lambda folder: (folder / "package.xml").mkdir(), "no package.xml"),

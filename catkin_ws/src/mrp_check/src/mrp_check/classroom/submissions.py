@@ -6,7 +6,6 @@ from __future__ import annotations
 import os
 import pathlib
 import re
-import tempfile
 
 from mrp_check.classroom import archive
 from mrp_check.contract.errors import PackageError
@@ -65,7 +64,7 @@ def package_in(entry: pathlib.Path, scratch: pathlib.Path, name: str = "") -> pa
     name: that of the package, if there are several
     """
     archives(entry)
-    found = _packages(entry, entry.name, scratch, archive.Budget())
+    found = _packages(entry, entry.name, scratch)
     if len(found) > 1 and name:
         found = {path: place for path, place in found.items() if _is_called(place, name)}
         if not found:
@@ -86,7 +85,7 @@ def _is_called(folder: pathlib.Path, name: str) -> bool:
 
 
 def _packages(
-    place: pathlib.Path, name: str, scratch: pathlib.Path, budget: archive.Budget, depth: int = 0
+    place: pathlib.Path, name: str, scratch: pathlib.Path, depth: int = 0
 ) -> dict[str, pathlib.Path]:
     """Return the packages in a folder or an archive, by their paths in it. Raises PackageError.
 
@@ -96,11 +95,8 @@ def _packages(
     found = {str(path.relative_to(place)): path for path in packages}
     problems = [_no_package(name, others)]
     for one in packed[:_MOST_ARCHIVES] if not packages and depth < _MOST_NESTED else []:
-        # The folder is called like the package, mostly: a rule asks for it.
-        folder = pathlib.Path(tempfile.mkdtemp(dir=scratch)) / (one.name.split(".")[0] or "package")
         try:
-            archive.unpack(one, folder, budget)
-            below = _packages(folder, one.name, scratch, budget, depth + 1)
+            below = _packages(archive.unpack(one, scratch), one.name, scratch, depth + 1)
         except PackageError as error:
             problems.append(error)
             continue

@@ -161,7 +161,7 @@ def kill_all(codes: Dict[int, int]) -> bool:
     return False
 
 
-def _disk_used(folder: str) -> int:
+def disk_used(folder: str) -> int:
     """Return the bytes that the files under a folder take on disk: very many if it is too deep."""
     used, look_at = 0, [folder]
     while look_at:
@@ -271,7 +271,7 @@ def _watch(task: Task) -> Outcome:
             # Where there is much to look at, look less often.
             next_scan = now + max(_SCAN, 5 * (time.monotonic() - now))
         if now >= next_disk_scan:
-            if sum(map(_disk_used, folders)) > limits.disk:
+            if sum(map(disk_used, folders)) > limits.disk:
                 ended_by = "disk"
             next_disk_scan = now + max(_DISK_SCAN, 20 * (time.monotonic() - now))
         _reap(codes)
