@@ -207,42 +207,28 @@ def test_each_save_is_checked_and_an_editors_own_files_are_not(tmp_path, checked
     assert (place / "src" / "subscriber_py_node.py").read_text() != ""
 
 
-def test_what_is_found_early_is_shown_early(tmp_path, capsys, monkeypatch):
-    """The check goes on only after its first findings are shown, and its verdict comes later."""
-    shown = threading.Event()
+def test_what_is_found_early_is_known_early(tmp_path, monkeypatch):
+    """The check goes on only after its first findings are known, and its verdict comes later."""
+    known = threading.Event()
 
     def fake(package, *_, early, **__):
         found = [Finding("spin", "In the files.", "src/a.py", 7)]
         early(check.Report("mrp", "", check.FINDINGS, found, {}))
-        assert shown.wait(DEADLINE)
-        found = [*found, Finding("exit", "In a run.")]
-        return check.Report("mrp", "", check.FINDINGS, found, {})
+        assert known.wait(DEADLINE)
+        return check.Report("mrp", "", check.FINDINGS, [*found, Finding("exit", "In a run.")], {})
 
     monkeypatch.setattr(check, "check", fake)
-    watched, printed = watch.Watched(Course(tmp_path), tmp_path / "scratch"), [""]
-    followed = plain.Followed(watched)
+    watched = watch.Watched(Course(tmp_path), tmp_path / "scratch")
 
-    def is_shown(text):
-        followed.show()
-        printed[0] += capsys.readouterr().out
-        return text in printed[0]
+    def found():
+        watched.look()
+        return [one.message for one in watched.check.findings] if watched.check else []
 
-    wait_until(lambda: is_shown("src/a.py:7: In the files.\n"), "what is found first")
-    assert "not yet" not in printed[0]
-    shown.set()
-    wait_until(lambda: is_shown(f"{FIRST}: not yet.\n"), "the verdict")
-    assert "mrp: In a run.\n" in printed[0]
-
-
-def test_without_a_terminal_it_goes_on_to_the_last(tmp_path, capsys, checked):
-    plain.Followed(watch.Watched(Course(tmp_path), tmp_path / "scratch")).follow()
-    printed = capsys.readouterr().out
-    for number, exercise in enumerate(Course(tmp_path).exercises, 1):
-        assert f"Exercise {number} of {COUNT}, {exercise.name}: passed.\n" in printed
-        learned = Course(tmp_path).exercises[number - 1].defect.learned
-        assert f"You've learned: {learned}\n{number} of {COUNT}.\n" in printed
-    assert f"You have finished all {COUNT}. Well done!\n" in printed
-    assert "\n  make new PKG=~" in printed and "\n  make check PKG=~" in printed
+    wait_until(lambda: found() == ["In the files."], "what is found first")
+    assert not watched.check.done
+    known.set()
+    wait_until(lambda: watched.check.done, "the verdict")
+    assert found() == ["In the files.", "In a run."]
 
 
 def test_the_solution_is_a_diff_that_solves_it(tmp_path, monkeypatch):
@@ -263,7 +249,11 @@ def test_the_solution_is_a_diff_that_solves_it(tmp_path, monkeypatch):
 
 @pytest.mark.parametrize(
     ("arguments", "said"),
-    [(["passed.txt"], "passed.txt: File exists."), ([], "the following arguments are required")],
+    [
+        (["passed.txt"], "passed.txt: File exists."),
+        (["mine"], "this needs a terminal. Without one, go step by step: make exercise"),
+        ([], "the following arguments are required"),
+    ],
 )
 def test_what_cannot_be_used_is_an_error_in_a_sentence(tmp_path, capsys, arguments, said):
     (tmp_path / "passed.txt").write_text("")

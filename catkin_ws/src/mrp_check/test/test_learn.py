@@ -1,9 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Runs `make learn` at a terminal and through a pipe, with real checks; and looks at what several
-checks of one package share."""
+"""Runs `make learn` at a terminal, with real checks; and what several checks of a package share."""
 
 import os
-import signal
 
 import check_sets
 import pexpect
@@ -14,7 +12,7 @@ from mrp_check.confined import variables
 from mrp_check.contract import defects
 from mrp_check.learning.exercise import Course
 from mrp_testing import compiler_cache
-from mrp_testing.process import Process, processes_with
+from mrp_testing.process import processes_with
 from mrp_testing.waiting import wait_until, within
 
 pytestmark = [pytest.mark.slow, pytest.mark.usefixtures("open_folders")]
@@ -145,16 +143,6 @@ def test_first_exercise_at_a_terminal(tmp_path, env):
     terminal = Terminal(env, *COMMAND, str(mine))
     terminal.wait_for("Exercise 2 of", "| 1 passed", "Checking: ")
     assert terminal.quit("\x03") == 0
-    assert_nothing_is_left(tmp_path)
-
-
-def test_lines_without_a_terminal_and_the_end_by_a_signal(tmp_path, env):
-    with Process(*COMMAND, str(tmp_path / "mine"), env=env) as program:
-        found = "src/subscriber_py_node.py:"
-        program.wait_for(lambda: any(line.startswith(found) for line in program.lines), found)
-        assert program.stop(signal.SIGINT) == 1
-    assert "# A parenthesis" in program.lines
-    assert "Stopped. Everything it started has ended; your changes are kept." == program.lines[-1]
     assert_nothing_is_left(tmp_path)
 
 

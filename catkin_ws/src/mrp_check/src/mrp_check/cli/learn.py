@@ -53,18 +53,17 @@ def parser():
 
 
 def learn(folder):
-    """Follow the exercises: on the screen of a terminal, or in lines."""
+    """Show and follow the exercises on the screen of a terminal. Raises CannotCheck without one."""
     course = Course(folder)
+    if not is_terminal():
+        raise CannotCheck("this needs a terminal. Without one, go step by step: make exercise")
+    # It needs a package more, which the one-shot form does not.
+    from mrp_check.learning import screen
+
     with scratch_folder() as scratch:
         watched = Watched(course, scratch)
         try:
-            if is_terminal():
-                # It needs a package more, which the one-shot form does not.
-                from mrp_check.learning import screen
-
-                screen.show(watched)
-            else:
-                plain.Followed(watched).follow()
+            screen.show(watched)
         finally:
             watched.stop()
 

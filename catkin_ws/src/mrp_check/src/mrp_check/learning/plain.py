@@ -1,15 +1,14 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The exercises as lines, for `make exercise`, and for `make learn` where there is no terminal."""
+"""The exercises as lines, for `make exercise`."""
 
 from __future__ import annotations
 
 import pathlib
 import sys
-import time
 
 from mrp_check.contract.errors import CannotCheck
 from mrp_check.learning import exercise as exercises
-from mrp_check.learning.watch import INTERVAL, Check, Watched
+from mrp_check.learning.watch import Check
 from mrp_check.report import terminal
 
 PASSED, NOT_YET = 0, 1
@@ -76,44 +75,3 @@ def run_once(folder: pathlib.Path, hint: bool = False, reset: bool = False) -> i
         say(*passed(course, exercise))
         return run_once(folder) if course.open else PASSED
     return PASSED
-
-
-class Followed:
-    """Prints each exercise, what a check of it finds as soon as it is found, and its verdict."""
-
-    def __init__(self, watched: Watched) -> None:
-        self.watched = watched
-        self._check: Check | None = None
-        self._findings: list[str] = []
-        self._ended = True
-
-    def follow(self) -> None:
-        """Do so until the last exercise is passed."""
-        course = self.watched.course
-        while course.open:
-            exercise = self.watched.exercise
-            show_task(exercise, "I'll check it again")
-            while not course.is_passed(exercise):
-                self.show()
-                time.sleep(INTERVAL)
-            say(*passed(course, exercise))
-            if course.open:
-                self.watched.open(course.open[0])
-
-    def show(self) -> None:
-        """Look at the files, and print what is new."""
-        self.watched.look()
-        exercise, check = self.watched.exercise, self.watched.check
-        if check is not self._check:
-            self._check, self._findings, self._ended = check, [], check is None
-            say(*(["", "Checking ..."] if check else []))
-        if check is None or self._ended:
-            return
-        done, lines = check.done, explanation(check)
-        if lines != self._findings:
-            self._findings = lines
-            say(*lines)
-        if done:
-            self._ended = True
-            could_not = f"It couldn't be checked: {check.error}"
-            say("", could_not if check.error else verdict(exercise, check))
