@@ -3,7 +3,6 @@
 
 import json
 import os
-import re
 import shutil
 import subprocess
 
@@ -71,21 +70,13 @@ def test_a_package_without_the_contracts_nodes_may_need_no_contract(tmp_path):
     assert "contract's nodes" not in run(WORKSPACE / "src" / "mrp", "--only", "manifest").stderr
 
 
-def test_timing_shows_when_each_part_began():
-    done = run(WORKSPACE / "src" / "mrp", "--only", "manifest", "--timing")
-    shown = re.findall(r"check: +(\d+\.\d) s  (.+)\n", done.stderr)
-    seconds = [float(passed) for passed, _ in shown]
-    assert [what for _, what in shown] == ["looking at the files", "the end"], done.stderr
-    assert seconds == sorted(seconds)
-
-
 def test_mrp_check_finds_the_package_and_static_only_reads(tmp_path):
     package = shutil.copytree(WORKSPACE / "src" / "mrp", tmp_path / "src" / "mrp")
     node = package / "src" / "publisher_py_node.py"
     node.write_text(node.read_text().replace("def main(", "def main" + 9000 * "x"))
     (package / "launch" / "large.launch").write_text(f"<launch><!-- {1_000_000 * 'x'} --></launch>")
     report = tmp_path / "report.json"
-    asked = (tmp_path, "--static", "--timing", "--json", report)
+    asked = (tmp_path, "--static", "--json", report)
     done = run(*asked, program=CHECK.with_name("mrp-check"))
     data = json.loads(report.read_text())
     found = [(one["id"], one["file"]) for one in data["findings"] if one["severity"] == "error"]

@@ -5,11 +5,10 @@ from __future__ import annotations
 
 import csv
 import dataclasses
-import io
 import pathlib
 import re
 import unicodedata
-from typing import Iterable, Iterator, NoReturn
+from typing import Iterable, Mapping
 
 from mrp_check.contract.errors import CannotCheck
 from mrp_check.contract.schema import near, no_such
@@ -53,6 +52,10 @@ class ByHand:
         return "; ".join(filter(None, parts)) + (f" ({why})" if why else "")
 
 
+class _Wrong(Exception):  # noqa: N818 (a line is)
+    """A line can't be used; a sentence."""
+
+
 def read(
     path: str | pathlib.Path, names: Iterable[str], most: float, late: Late | None
 ) -> dict[str, ByHand]:
@@ -66,16 +69,38 @@ def read(
     """
     known = {_normal(name): name for name in names}
     found: dict[str, ByHand] = {}
-    lines: dict[str, int] = {}
-    for line in _lines(path):
-        student = known.get(_normal(line.cells["student"]))
-        if student is None:
-            name = line.cells["student"]
-            line.fail(f"there's no submission '{name}'." + near(name, known))
-        if student in found:
-            line.fail(f"'{student}' appears twice: see line {lines[student]}.")
-        found[student], lines[student] = line.by_hand(most, late), line.number
+    line = 1
+    try:
+        with open(path, encoding="utf-8-sig", newline="") as file:
+            reader = csv.DictReader(file, strict=True, restval="")
+            _see_columns(reader.fieldnames or [])
+            for row in reader:
+                line = reader.line_num
+                if None in row:
+                    raise _Wrong(f"expected {len(reader.fieldnames or [])} cells; found more.")
+                cells = {column: cell.strip() for column, cell in row.items()}
+                if any(cells.values()):
+                    student = _student(cells["student"], known)
+                    if student in found:
+                        raise _Wrong(f"'{student}' appears twice.")
+                    found[student] = _by_hand(cells, most, late)
+    except OSError as error:
+        raise CannotCheck(f"{path} can't be read: {error.strerror}.") from None
+    except UnicodeDecodeError:
+        raise CannotCheck(f"{path}: expected UTF-8 text, and found other bytes.") from None
+    except csv.Error as error:
+        raise CannotCheck(f"{path}: below line {line}, this isn't valid CSV: {error}.") from None
+    except _Wrong as error:
+        raise CannotCheck(f"{path}:{line}: {error}") from None
     return found
+
+
+def _see_columns(columns: Iterable[str]) -> None:
+    for column in columns:
+        if column not in COLUMNS:
+            raise _Wrong(no_such("column", column, COLUMNS))
+    if "student" not in columns:
+        raise _Wrong(f"expected the columns: {', '.join(COLUMNS)}. 'student' is missing.")
 
 
 def _normal(name: str) -> str:
@@ -83,81 +108,33 @@ def _normal(name: str) -> str:
     return unicodedata.normalize("NFC", name)
 
 
-class _Line:
-    def __init__(self, path: str | pathlib.Path, number: int, cells: dict[str, str]) -> None:
-        self.path, self.number, self.cells = path, number, cells
+def _student(name: str, known: Mapping[str, str]) -> str:
+    if _normal(name) not in known:
+        raise _Wrong(f"there's no submission '{name}'." + near(name, known))
+    return known[_normal(name)]
 
-    def fail(self, sentence: str) -> NoReturn:
-        raise CannotCheck(f"{self.path}:{self.number}: {sentence}")
 
-    def by_hand(self, most: float, late: Late | None) -> ByHand:
-        days = self.value("late_days", _MOST_DAYS) or 0
-        if days % 1:
-            self.fail(f"late_days: expected whole days; found {days:g}.")
-        if days and not late:
-            self.fail(
-                f"late_days is {days:g}, but the contract doesn't say what a day takes off: it has"
-                " no key 'late', such as late: {percent: 10}."
-            )
-        override, reason = self.value("override", most), self.cells.get("reason", "")
-        if override is not None and not reason:
-            self.fail(f"override is {override:g}, but no reason is given.")
-        return ByHand(
-            int(days),
-            late.off(days, most) if late else 0,
-            self.value("maximum", most),
-            override,
-            reason,
-            self.cells.get("by", ""),
-        )
-
-    def value(self, column: str, most: float) -> float | None:
-        """Return the number in a column; None if the cell is empty."""
-        text = self.cells.get(column, "")
+def _by_hand(cells: Mapping[str, str], most: float, late: Late | None) -> ByHand:
+    def number(column: str, most: float) -> float | None:
+        text = cells.get(column, "")
         if not text:
             return None
         value = float(text) if re.fullmatch(r"[0-9]+(\.[0-9]+)?", text) else -1
         if not 0 <= value <= most:
-            self.fail(f"{column}: expected a number from 0 to {most:g}; found '{text}'.")
+            raise _Wrong(f"{column}: expected a number from 0 to {most:g}; found '{text}'.")
         return value
 
-
-def _lines(path: str | pathlib.Path) -> Iterator[_Line]:
-    """Yield each line below the first one, which names the columns."""
-    rows = list(_rows(path))
-    if not rows:
-        raise CannotCheck(f"{path}:1: expected a line with the columns: {', '.join(COLUMNS)}.")
-    start, columns = rows[0]
-    first = _Line(path, start, {})
-    for column in columns:
-        if column not in COLUMNS:
-            first.fail(no_such("column", column, COLUMNS))
-        if columns.count(column) > 1:
-            first.fail(f"the column '{column}' appears twice.")
-    if "student" not in columns:
-        first.fail("expected the column 'student'; it is missing.")
-    for number, cells in rows[1:]:
-        line = _Line(path, number, {**dict.fromkeys(columns, ""), **dict(zip(columns, cells))})
-        if len(cells) > len(columns):
-            line.fail(f"expected {len(columns)} cells, as in the first line; found {len(cells)}.")
-        yield line
-
-
-def _rows(path: str | pathlib.Path) -> Iterator[tuple[int, list[str]]]:
-    """Yield the number of the first line, and the cells, of each row that is not empty."""
-    number, data = 1, b""
-    try:
-        data = pathlib.Path(path).read_bytes()
-        reader = csv.reader(io.StringIO(data.decode("utf-8-sig"), newline=""), strict=True)
-        for row in reader:
-            cells = [cell.strip() for cell in row]
-            if any(cells):
-                yield number, cells
-            number = reader.line_num + 1
-    except OSError as error:
-        raise CannotCheck(f"{path} can't be read: {error.strerror}.") from None
-    except UnicodeDecodeError as error:
-        number = data.count(b"\n", 0, error.start) + 1
-        raise CannotCheck(f"{path}:{number}: expected UTF-8 text, and found other bytes.") from None
-    except csv.Error as error:
-        raise CannotCheck(f"{path}:{number}: this isn't valid CSV: {error}.") from None
+    days, override = number("late_days", _MOST_DAYS) or 0, number("override", most)
+    reason = cells.get("reason", "")
+    if days % 1:
+        raise _Wrong(f"late_days: expected whole days; found {days:g}.")
+    if days and not late:
+        raise _Wrong(
+            f"late_days is {days:g}, but the contract doesn't say what a day takes off: it has no"
+            " key 'late', such as late: {percent: 10}."
+        )
+    if override is not None and not reason:
+        raise _Wrong(f"override is {override:g}, but no reason is given.")
+    off = late.off(days, most) if late else 0
+    maximum = number("maximum", most)
+    return ByHand(int(days), off, maximum, override, reason, cells.get("by", ""))

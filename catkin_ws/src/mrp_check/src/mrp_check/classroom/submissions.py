@@ -12,8 +12,6 @@ from mrp_check.contract.errors import PackageError
 from mrp_check.package.package import BUILT, MAX_TEXT, is_of_tools
 
 _DEEPEST = 10  # folders below a student's own in which the package may be
-_MOST_BESIDE = 100  # folders of one folder that are looked into
-_MOST_WAITING = 1000  # folders that are still to be looked into
 _MOST_ARCHIVES = 10  # in one folder that has no package
 _MOST_NESTED = 3  # archives in archives
 _NAMED = 4  # in a sentence
@@ -120,38 +118,25 @@ def _no_package(name: str, others: list[str]) -> PackageError:
 def _found_in(
     place: pathlib.Path,
 ) -> tuple[list[pathlib.Path], list[pathlib.Path], list[str]]:
-    """Return the folders with a package.xml, the highest first; the archives; and other names.
+    """Return the folders with a package.xml, the archives, and the names of other files.
 
     Links are not followed, and what was built is not looked into.
     """
+    if not place.is_dir():
+        return [], [place], [place.name]
     packages: list[pathlib.Path] = []
-    packed, others = ([], []) if place.is_dir() else ([place], [place.name])
-    look_at = [(place, 0)] if place.is_dir() else []
-    while look_at and len(look_at) <= _MOST_WAITING:
-        here, depth = look_at.pop(0)
-        if (here / "package.xml").is_file():
-            packages.append(here)
-            continue
-        folders, files = _listed(here)
-        if not depth or BUILT.isdisjoint(files):
-            shown = [name for name in files if not _is_hidden(name)]
-            packed += [here / name for name in shown if archive.has_its_name(name)]
-            others += shown
-            if depth < _DEEPEST:
-                look_at += [(here / name, depth + 1) for name in folders[:_MOST_BESIDE]]
+    packed, others = [], []
+    for here, folders, files in os.walk(place):
+        folder, is_built = pathlib.Path(here), not BUILT.isdisjoint(files)
+        if "package.xml" in files:
+            packages.append(folder)
+        if "package.xml" in files or is_built or len(folder.parts) >= len(place.parts) + _DEEPEST:
+            folders.clear()
+        folders[:] = sorted(name for name in folders if not _is_hidden(name))
+        shown = sorted(name for name in files if not _is_hidden(name)) if not is_built else []
+        packed += [folder / name for name in shown if archive.has_its_name(name)]
+        others += shown
     return packages, packed, others
-
-
-def _listed(folder: pathlib.Path) -> tuple[list[str], list[str]]:
-    """Return the names of its folders, but for the hidden ones, and of its files."""
-    try:
-        with os.scandir(folder) as scanned:
-            found = sorted(scanned, key=lambda one: one.name)
-    except OSError:
-        return [], []
-    folders = [entry.name for entry in found if entry.is_dir(follow_symlinks=False)]
-    files = [entry.name for entry in found if entry.is_file(follow_symlinks=False)]
-    return [name for name in folders if not _is_hidden(name)], files
 
 
 def _is_hidden(name: str) -> bool:

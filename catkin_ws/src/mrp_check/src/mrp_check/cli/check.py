@@ -8,7 +8,6 @@ import contextlib
 import pathlib
 import signal
 import sys
-import time
 
 from mrp_check import sandbox
 from mrp_check.classroom import (
@@ -65,7 +64,6 @@ FLAGS = {  # what --help says of each
     "public": "leave the contract's hidden requirements out of the reports",
     "github": "print the findings as annotations of GitHub Actions, too",
     "all": "show notes, what follows from other findings, and every requirement, too",
-    "timing": "show after how many seconds each part of the check begins",
 }
 
 
@@ -254,7 +252,7 @@ def _with_name(file, name):
 
 def run_package(options):
     """Check a package, write its reports, and return its verdict. Raises CannotCheck."""
-    progress = terminal.Progress(sys.stderr, time.monotonic() if options.timing else None)
+    progress = terminal.Progress(sys.stderr)
     contract, advice = None, ""
     try:
         contract = None if options.any else spec.read(spec.find(options.spec), REQUIREMENTS)
@@ -282,8 +280,6 @@ def run_package(options):
                 kept,
                 static=options.static,
             )
-            if options.timing:
-                progress.show("the end")
     except (PackageError, SpecError, CannotCheck) as error:
         report = unchecked(printable(str(error)))
     finally:

@@ -7,7 +7,6 @@ import os
 import re
 import shutil
 import textwrap
-import time
 
 from mrp_check.contract import resources
 from mrp_check.contract.finding import ERROR, NOTE, WARNING, Finding
@@ -32,22 +31,17 @@ _UNFIT = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\ud800-\udfff\ufffe\uffff]")
 
 
 class Progress:
-    """Says what is being done: in one line of a terminal, perhaps with a bar, or line by line.
+    """Says what is being done: in one line of a terminal, perhaps with a bar, or line by line."""
 
-    began: by time.monotonic(); then each line stays, with the seconds that had passed
-    """
-
-    def __init__(self, stream, began=None):
-        self.stream, self.began = stream, began
-        self.terminal = stream.isatty() and began is None
+    def __init__(self, stream):
+        self.stream, self.terminal = stream, stream.isatty()
 
     def show(self, sentence, done=0, of=0):
         """done, of: how many are done of how many, if that is known"""
         if of:
             sentence = f"{self._bar(done, of) if self.terminal else f'{done} of {of}:'} {sentence}"
         start, end = ("\r\x1b[K", "") if self.terminal else ("", "\n")
-        passed = "" if self.began is None else f" {time.monotonic() - self.began:5.1f} s "
-        said = f"check:{passed} {plain(sentence)}"
+        said = f"check: {plain(sentence)}"
         if self.terminal:  # the next one overwrites one line
             said = said[: shutil.get_terminal_size().columns - 1]
         print(f"{start}{said}", end=end, file=self.stream, flush=True)
