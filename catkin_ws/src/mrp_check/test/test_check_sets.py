@@ -140,10 +140,8 @@ WRITTEN = {
     "mrp": "wrong_type",
     "talker_listener_py": "listener_topic",
     "talker_listener_cpp": "talker_rate",
-    "relay": "relay_times_3",
     "own_message": "reading_type",
     "add_two_ints_py": "sum_py_offered_name",
-    "parameter": "parameter_not_set",
 }
 
 

@@ -3,26 +3,147 @@
 
 from __future__ import annotations
 
+import dataclasses
 import re
-import textwrap
-from typing import Any, Callable, Iterator, Sequence
+import statistics
+from typing import Any, Callable, Iterable, Iterator, Mapping, Sequence
 
 import genmsg
 import yaml
 
 from mrp_check.confined.launch_dump import Started
-from mrp_check.confined.places import Kind
-from mrp_check.confined.seen import LaunchResult
+from mrp_check.confined.seen import DirectResult, LaunchResult, Message, Number, Registration, Seen
 from mrp_check.contract.errors import CannotCheck
 from mrp_check.contract.kinds import PACKAGE
 from mrp_check.contract.names import last_part
 from mrp_check.contract.spec import Topic
 from mrp_check.run.any_case import AnyCase
-from mrp_check.run.behaviour import Behaviour, Entry, shaped
+from mrp_check.run.node import FEW
+from mrp_check.run.planning import resolved
+from mrp_check.run.traces import ROS_SERVICES, ROS_TOPICS, ends
 
 _WORD = re.compile(r"[A-Za-z]\w*")  # what a contract can call a node or a topic
-_UINT = re.compile(r"std_msgs/UInt(\d+)")
-_VALUES = re.compile(r"(values: .*)")
+_ANONYMOUS = re.compile(r"_\d+_\d+$")  # how such a name ends
+_NUMBER = re.compile(r"-?\d+(?:\.\d+)?")
+_STEADY = 0.3  # of the middle gap: by less differ most others of a publisher with a period
+_LINES = 3  # at most, that a contract asks of a node
+_EXPRESSION = re.compile(r"[][\\.^$*+?{}|()]")
+
+Entry = dict[str, Any]  # of a contract
+
+
+@dataclasses.dataclass
+class _Run:
+    """A run of a node, among others or by itself.
+
+    path: its full name then; seen: what was seen of all nodes; asked: when they were to end
+    latched: topic -> the nodes that latch it
+    """
+
+    path: str
+    seen: Seen
+    asked: float
+    latched: Mapping[str, Sequence[str]]
+
+    def messages(self, topic: Topic, of_all: bool = False) -> list[Message]:
+        """Return what the node sent on a topic, or what all nodes did."""
+        name = resolved(topic, self.path)
+        sent = [message for message in self.seen.messages if message.topic == name]
+        return [message for message in sent if of_all or message.node == self.path]
+
+    def numbers(self, topic: Topic, of_all: bool = False) -> list[Number]:
+        sent = [(one.fields or {}).get(topic.field) for one in self.messages(topic, of_all)]
+        return [value for value in sent if isinstance(value, (int, float))]
+
+    def lines(self) -> list[str]:
+        """Return what the node logged, each line as an expression with {name} in it."""
+        logs = [log for log in self.seen.logs if log.node == self.path and log.level == "INFO"]
+        texts = [log.text for log in logs if log.time < self.asked and "\n" not in log.text]
+        plain = [_EXPRESSION.sub(r"\\\g<0>", text) for text in texts]
+        return [text.replace(self.path, "{name}") for text in plain]
+
+
+class Node:
+    """What a node did.
+
+    executable: its name
+    launched: its runs beside others; alone: the one by itself, or None
+    ends: whether it ended by itself, with exit code 0
+    """
+
+    def __init__(
+        self,
+        executable: str,
+        launched: Sequence[tuple[str, LaunchResult]],
+        direct: DirectResult | None,
+    ) -> None:
+        self.executable = executable
+        self.launched = [_Run(path, one.seen, one.asked, one.latched) for path, one in launched]
+        self.ends = any(ends(one.until_asked()).get(path) == 0 for path, one in launched)
+        self.alone = None
+        found = direct.nodes.get(executable) if direct else None
+        if direct and found and found.name:
+            asked = found.asked or found.ended_after or 0.0
+            self.alone = _Run(found.name, direct.seen, asked, {})
+            self.ends |= not launched and bool(found.ended_after) and found.code == 0
+        self.runs = [*self.launched, *filter(None, [self.alone])]
+
+    def named(self, records: Callable[[Seen], Iterable[Registration]]) -> list[Topic]:
+        """Return the topics, or services, of some records, as the node asked for them."""
+        run = self.runs[-1]  # by itself, in a namespace: so it shows whether a name follows that
+        found = {one.topic: one.type for one in records(run.seen) if one.node == run.path}
+        group = run.path.rsplit("/", 1)[0] + "/"
+        starts = {"private": f"{run.path}/", "group": group, "global": "/"}
+        named = []
+        for name, kind in found.items():
+            namespace = next(key for key, start in starts.items() if name.startswith(start))
+            topic = Topic(name[len(starts[namespace]) :], kind, namespace=namespace)
+            if name not in ROS_TOPICS and topic.name not in ROS_SERVICES:
+                named.append(topic)
+        return named
+
+    def role(self, topic: Topic) -> Entry:
+        """Return what a contract says of what it publishes by itself on a topic."""
+        said: Entry = {"topic": topic.name}
+        if any(run.path in run.latched.get(resolved(topic, run.path), ()) for run in self.runs):
+            said["latched"] = True
+        if self.alone and not self.alone.messages(topic):
+            return said  # what it publishes depends on what it's sent
+        times = max(([m.time for m in run.messages(topic)] for run in self.runs), key=len)
+        gaps = [b - a for a, b in zip(times, times[1:])]
+        if len(times) >= FEW:
+            middle = statistics.median(gaps)
+            steady = [gap for gap in gaps if abs(gap - middle) < _STEADY * middle]
+            if len(steady) >= 0.7 * len(gaps):
+                said["period"] = float(f"{middle:.2g}")
+                if middle < 0.5:
+                    said["tolerance"] = 0.5  # other programs of the machine change it as much
+        rows = [row for row in (run.numbers(topic) for run in self.runs) if len(row) >= FEW]
+        steps = {b - a for row in rows for a, b in zip(row, row[1:])}
+        numbers = [*{row[0] for row in rows}, *steps]
+        if len(numbers) == 2 and all(one == int(one) for one in numbers) and numbers[1]:
+            said["values"] = {"start": int(numbers[0]), "step": int(numbers[1])}
+        elif steps and min(steps) > 0:
+            said["rises"] = True
+        return said
+
+    def lines(self, topic: Topic | None, of_all: bool) -> list[str]:
+        """Return the lines that it is sure to log: once in each run; or with each number that came
+        on a topic, from it or from all nodes."""
+        logged = [run.lines() for run in self.runs]
+        first = logged[0] if len(logged) > 1 else []
+        once = [line for line in first if all(one.count(line) == 1 for one in logged)]
+        sure = [line for line in dict.fromkeys(once) if not _NUMBER.search(line)]
+        for run, lines in zip(self.launched, logged):
+            known = {float(one) for one in run.numbers(topic, of_all)} if topic else set()
+            said: dict[str, list[float]] = {}
+            for line in lines:
+                numbers = _NUMBER.findall(line.replace("\\", ""))
+                if len(numbers) == 1:
+                    shape = line.replace(numbers[0].replace(".", r"\."), "{value}")
+                    said.setdefault(shape, []).append(float(numbers[0]))
+            sure += [shape for shape, all_ in said.items() if len(all_) >= FEW and {*all_} <= known]
+        return [*dict.fromkeys(sure)][:_LINES]
 
 
 def text(case: AnyCase) -> str:
@@ -35,26 +156,22 @@ class _Writer:
 
     launch: what the launch file starts that starts all the nodes, by name; empty without one
     nodes: name -> what was seen of it
-    topics, services: those of all nodes, by name
-    used: the names of the topics on which something was seen
-    comments: name of a node -> what is left to be edited
+    topics, services, messages: what the contract says of those of all nodes, by name
+    comments: what is left to be edited
     """
 
     def __init__(self, case: AnyCase) -> None:
         self.case, self.package = case, case.package
         self.file, self.launch = self._launch()
         self.nodes = dict(self._nodes())
-        self.used: set[str] = set()
-        self.comments: dict[str, list[str]] = {name: [] for name in self.nodes}
         if not self.nodes:
             raise CannotCheck(
                 f"no contract was written, because no node of {self.package.name} ran."
             )
-        self.topics = self._topics()
-        offered = [one for node in self.nodes.values() for one in node.offers]
-        self.services = {one.name: one for one in offered if _is_word(one.name) and one.type}
-
-    # --- What ran
+        self.topics: dict[str, Entry] = {}
+        self.services: dict[str, Entry] = {}
+        self.messages: dict[str, Entry] = {}
+        self.comments: list[str] = []
 
     def _launch(self) -> tuple[str, dict[str, Started]]:
         """Return (path, name -> node) of the launch file that starts all nodes in one namespace."""
@@ -70,226 +187,123 @@ class _Writer:
                     return one.file, {node.name: node for node in started}
         return "", {}
 
-    def _nodes(self) -> Iterator[tuple[str, Behaviour]]:
-        seen = self.case.observed
+    def _nodes(self) -> Iterator[tuple[str, Node]]:
         wanted: list[tuple[str, Started | None]] = [(one.type, one) for one in self.launch.values()]
-        types = [name for name, _ in wanted]
         for name, started in wanted or [(name, None) for name in self.case.spec.nodes]:
             runs: list[tuple[str, LaunchResult]] = [
                 (path, launch.seen)
-                for launch in seen.launches
+                for launch in self.case.observed.launches
                 for path, executable in launch.nodes.items()
                 if executable == name
                 and (not started or (launch.file, path) == (self.file, started.path))
             ]
             # Of several that one executable makes, the run by itself shows only one.
-            node = Behaviour(name, runs, seen.direct if types.count(name) < 2 else None)
+            is_only = len([one for one, _ in wanted if one == name]) < 2
+            node = Node(name, runs, self.case.observed.direct if is_only else None)
             if node.runs:
-                yield started.name if started else self._name(node), node
-
-    def _name(self, node: Behaviour) -> str:
-        """Return the name that a node gives itself."""
-        name = last_part(node.runs[-1].path)
-        return re.sub(r"(_\d+)+$", "", name) if self._is_anonymous(node) else name
-
-    def _is_anonymous(self, node: Behaviour) -> bool:
-        return any(place.anonymous for place in self.case.facts.of(node.name, Kind.INIT))
-
-    def _topics(self) -> dict[str, Topic]:
-        """Return the topics that a contract can name, each with the field that counts."""
-        found: dict[str, Topic] = {}
-        for node in self.nodes.values():
-            for topic in [*node.publishes, *node.subscribes]:
-                if _is_word(topic.name) and self._is_said(topic.type):
-                    found.setdefault(topic.name, topic)
-        nodes = self.nodes.values()
-        return {
-            name: shaped(topic, [row for node in nodes for row in node.series(topic)])
-            for name, topic in found.items()
-        }
-
-    def _is_said(self, kind: str) -> bool:
-        """Return whether a contract can say a type: one of the package has a file."""
-        package, _, name = kind.partition("/")
-        return kind != "*" and (package != self.package.name or bool(self._file(f"{name}.msg")))
-
-    def _file(self, name: str) -> str | None:
-        return next((path for path in self.package.files if last_part(path) == name), None)
-
-    # --- What a contract says
+                own = last_part(node.runs[-1].path)
+                yield started.name if started else _ANONYMOUS.sub("", own), node
 
     def text(self) -> str:
-        sections: Entry = {"title": self.package.name}
-        nodes = "".join(self._node_text(name, node) for name, node in self.nodes.items())
-        self.topics = {name: one for name, one in self.topics.items() if name in self.used}
-        sections["messages"] = self._messages()
-        sections["topics"] = {name: self._topic(one) for name, one in self.topics.items()}
-        sections["services"] = {name: self._service(o) for name, o in self.services.items()}
-        parts = [_yaml({key: said}) for key, said in sections.items() if said]
-        if self.services:
-            parts.append("    # examples: what it is asked, and what it answers\n")
-        parts.append(f"nodes:\n{textwrap.indent(nodes, '  ')}")
+        for node in self.nodes.values():
+            for service in node.named(lambda seen: seen.services):
+                if _is_word(service.name) and service.type:
+                    self.services[service.name] = self._service(service)
+                    self.comments.append(f"{service.name} needs examples of calls and answers.")
+        nodes = {name: self._node(name, node) for name, node in self.nodes.items()}
+        sections: Entry = {"title": self.package.name, "messages": self.messages}
+        sections.update(topics=self.topics, services=self.services, nodes=nodes)
         if self.launch:
             group = next(iter(self.launch.values())).namespace.strip("/")
-            said = {"file": last_part(self.file), **({"group": group} if group else {})}
-            parts.append(_yaml({"launch": said}))
-        head = f"# What the package {self.package.name} was seen to do, to be edited.\n"
-        return head + "".join(parts)
+            of_group = {"group": group} if group else {}
+            sections["launch"] = {"file": last_part(self.file), **of_group}
+        said = {key: section for key, section in sections.items() if section}
+        head = [f"# What the package {self.package.name} was seen to do, to be edited.\n"]
+        head += [f"# {comment}\n" for comment in self.comments]
+        return "".join(head) + yaml.safe_dump(
+            said, default_flow_style=None, sort_keys=False, width=1000, allow_unicode=True
+        )
+
+    def _node(self, name: str, node: Node) -> Entry:
+        """Return what the contract says of a node; note its topics and comments."""
+        publishes = []
+        for topic in self._known(name, node.named(lambda seen: seen.publications)):
+            if any(run.messages(topic) for run in node.runs):
+                publishes.append(topic)
+            else:
+                self.comments.append(f"{name} published nothing on {topic.name} ({topic.type}).")
+        subscribes = self._known(name, node.named(lambda seen: seen.subscriptions))
+        for topic in (*publishes, *subscribes):
+            self.topics[topic.name] = {"type": self._type(topic.type), **_namespace(topic)}
+        offers, calls = (
+            [service.name for service in services if service.name in self.services]
+            for services in (
+                node.named(lambda seen: seen.services),
+                node.named(lambda seen: seen.lookups),
+            )
+        )
+        said: Entry = {"language": self.case.spec.nodes[node.executable].language}
+        if not self.launch and node.executable not in (name, f"{name}.py"):
+            said["executable"] = node.executable
+        said["anonymous"] = bool(_ANONYMOUS.search(node.runs[-1].path))
+        said["publishes"] = [node.role(topic) for topic in publishes]
+        said["subscribes"] = [{"topic": topic.name} for topic in subscribes]
+        said["offers"], said["calls"] = offers, calls
+        said["ends"] = node.ends
+        heard = next(iter(subscribes), None)
+        topic_of_lines = heard or next(iter(publishes), None)
+        said["prints"] = node.lines(topic_of_lines, of_all=topic_of_lines is heard)
+        return {key: value for key, value in said.items() if value}
+
+    def _known(self, name: str, topics: Iterable[Topic]) -> list[Topic]:
+        """Return the topics that the contract can say; leave a comment on each other one."""
+        known = []
+        for topic in topics:
+            entry = {"type": self._type(topic.type), **_namespace(topic)}
+            is_said = _is_word(topic.name) and entry["type"] not in ("", "*")
+            if is_said and self.topics.get(topic.name, entry) == entry:
+                known.append(topic)
+            else:
+                self.comments.append(f"No contract can name the topic {topic.name} of {name}.")
+        return known
 
     def _type(self, kind: str) -> str:
-        package, _, name = kind.partition("/")
-        return f"{PACKAGE}/{name}" if package == self.package.name else kind
-
-    def _topic(self, topic: Topic) -> Entry:
-        said: Entry = {"type": self._type(topic.type)}
-        if topic.field != Topic.field:
-            said["field"] = topic.field
-        if topic.text:
-            said["text"] = topic.text
-        if topic.namespace != Topic.namespace:
-            said["namespace"] = topic.namespace
-        return said
-
-    def _messages(self) -> dict[str, Entry]:
-        """Return the fields of the package's own messages that its topics have."""
-        found: dict[str, Entry] = {}
-        queue = [topic.type for topic in self.topics.values()]
-        for kind in queue:
-            package, _, name = kind.partition("[")[0].partition("/")
-            if package == self.package.name and name not in found:
-                read = genmsg.msg_loader.load_msg_from_string
-                found[name] = self._fields(read, f"{name}.msg", kind)[0]
-                queue += [str(one) for one in found[name].values()]
-        return found
+        """Return a type as a contract says it, or an empty text if it has no file; note the fields
+        of the package's own messages."""
+        package, _, name = kind.partition("[")[0].partition("/")
+        if package != self.package.name:
+            return kind
+        if not any(last_part(path) == f"{name}.msg" for path in self.package.files):
+            return ""
+        if name not in self.messages:
+            read = genmsg.msg_loader.load_msg_from_string
+            (self.messages[name],) = self._fields(read, f"{name}.msg", kind)
+            for of_field in self.messages[name].values():
+                self._type(str(of_field))
+        return f"{PACKAGE}/{name}"
 
     def _service(self, service: Topic) -> Entry:
-        said: Entry = {"type": self._type(service.type)}
-        if said["type"] != service.type:
-            read = genmsg.msg_loader.load_srv_from_string
-            halves = self._fields(read, f"{last_part(service.type)}.srv", service.type)
-            said.update(zip(("request", "response"), halves))
-        if service.namespace != Topic.namespace:
-            said["namespace"] = service.namespace
-        return said
+        package, _, name = service.type.partition("/")
+        if package != self.package.name:
+            return {"type": service.type, **_namespace(service)}
+        read = genmsg.msg_loader.load_srv_from_string
+        request, response = self._fields(read, f"{name}.srv", service.type)
+        own = {"type": f"{PACKAGE}/{name}", "request": request, "response": response}
+        return {**own, **_namespace(service)}
 
     def _fields(self, read: Callable[..., Any], file: str, kind: str) -> list[Entry]:
         """Return field -> type of a message, or of a service's request and response."""
-        path = self._file(file)
-        assert path, f"{kind} was built, and there is no {file}"
+        path = next(path for path in self.package.files if last_part(path) == file)
         made = read(genmsg.MsgContext.create_default(), self.package.text(path), kind)
         halves = [made.request, made.response] if file.endswith(".srv") else [made]
         return [dict(zip(half.names, half.types)) for half in halves]
 
-    # --- Of a node
 
-    def _node_text(self, name: str, node: Behaviour) -> str:
-        said = {key: value for key, value in self._node(name, node).items() if value}
-        body = "".join(f"# {one}\n" for one in self.comments[name]) + _yaml(said)
-        bits = [_UINT.fullmatch(one.type) for one in node.publishes]
-        if len(bits) == 1 and bits[0]:
-            modulus = 2 ** int(bits[0].group(1))
-            body = _VALUES.sub(rf"\1  # modulus: {modulus}, if it should wrap around", body)
-        return f"{name}:\n{textwrap.indent(body, '  ')}"
-
-    def _node(self, name: str, node: Behaviour) -> Entry:
-        publishes = [self.topics[o.name] for o in node.publishes if self._is_known(name, o)]
-        silent = [one for one in publishes if not any(run.messages(one) for run in node.runs)]
-        publishes = [one for one in publishes if one not in silent]
-        if silent:
-            names = ", ".join(f"{one.name} ({self._type(one.type)})" for one in silent)
-            self.comments[name].append(f"It was sent nothing. It may then publish on {names}.")
-        subscribes = [self.topics[o.name] for o in node.subscribes if self._is_known(name, o)]
-        said: Entry = {"language": self.case.spec.nodes[node.name].language}
-        if not self.launch and node.name not in (name, f"{name}.py"):
-            said["executable"] = node.name
-        said["anonymous"] = self._is_anonymous(node)
-        said["parameters"] = self._parameters(name)
-        self.used.update(one.name for one in [*publishes, *subscribes])
-        times = None
-        if len(publishes) == len(subscribes) == 1:
-            times = node.relayed(subscribes[0], publishes[0])
-        queues = [self._queue(node, Kind.SUBSCRIBER, topic) for topic in subscribes]
-        if times:
-            ends = {"from": subscribes[0].name, "to": publishes[0].name}
-            said["relays"] = {**ends, **queues[0], "times": times}
-        else:
-            said["publishes"] = _listed([*self._publishes(node, publishes)])
-            said["subscribes"] = _listed(
-                [{"topic": one.name, **queue} for one, queue in zip(subscribes, queues)]
-            )
-        said["offers"] = _listed([one.name for one in node.offers if one.name in self.services])
-        said["calls"] = _listed([*self._calls(name, node)])
-        said["ends"] = node.ends
-        heard = next(iter(subscribes), None) if not times else publishes[0]
-        topic = heard or next(iter(publishes), None)
-        said["prints"] = node.lines(topic, of_all=topic is heard)
-        return said
-
-    def _is_known(self, name: str, topic: Topic) -> bool:
-        """Return whether a topic can be said; if not, leave a comment."""
-        known = self.topics.get(topic.name)
-        if known and (known.type, known.namespace) == (topic.type, topic.namespace):
-            return True
-        self.comments[name].append(f"No contract can name its topic {topic.name}.")
-        return False
-
-    def _publishes(self, node: Behaviour, topics: Sequence[Topic]) -> Iterator[Entry]:
-        for topic in topics:
-            queue = self._queue(node, Kind.PUBLISHER, topic)
-            yield {"topic": topic.name, **queue, **node.role(topic)}
-
-    def _queue(self, node: Behaviour, kind: Kind, topic: Topic) -> Entry:
-        """Return the length of a queue, if the sources say it plainly."""
-        places = self.case.facts.of(node.name, kind)
-        of_topic = [
-            place for place in places if last_part(place.text or "").strip("~") == topic.name
-        ]
-        found = {one.queue for one in of_topic or (places if len(places) == 1 else ())}
-        queue = found.pop() if len(found) == 1 else None
-        return {"queue": queue} if isinstance(queue, int) and queue > 0 else {}
-
-    def _calls(self, name: str, node: Behaviour) -> Iterator[str]:
-        for one in node.calls:
-            if one.name in self.services:
-                yield one.name
-            else:
-                self.comments[name].append(
-                    f"It calls {one.name}, a service whose type wasn't seen."
-                )
-
-    def _parameters(self, name: str) -> Entry:
-        """Return the private parameters that the launch file gives a node."""
-        started = self.launch.get(name)
-        files = [launch for launch in self.case.launches if launch.file == self.file]
-        params = files[0].params if started and files else {}
-        start = f"{started.path}/" if started else ""
-        return {
-            key[len(start) :]: value
-            for key, value in params.items()
-            if key.startswith(start) and isinstance(value, (bool, int, float, str))
-        }
+def _namespace(topic: Topic) -> Entry:
+    is_usual = topic.namespace == Topic.namespace
+    return {} if is_usual else {"namespace": topic.namespace}
 
 
 def _is_word(name: str) -> bool:
     """Return whether a contract can use a name."""
     return bool(_WORD.fullmatch(name))
-
-
-def _listed(entries: Sequence[object]) -> object:
-    """Return what stands alone without a list around it."""
-    return entries[0] if len(entries) == 1 else [*entries]
-
-
-def _yaml(said: Entry) -> str:
-    """Return entries as YAML: what has nothing in it but plain values stands in one line."""
-    texts = []
-    for key, value in said.items():
-        is_long = isinstance(value, list) and len(str(value)) > 60
-        flow = False if is_long or not isinstance(value, (dict, list)) else None
-        entry = {key: value}
-        texts.append(
-            yaml.safe_dump(
-                entry, default_flow_style=flow, sort_keys=False, width=1000, allow_unicode=True
-            )
-        )
-    return "".join(texts)
