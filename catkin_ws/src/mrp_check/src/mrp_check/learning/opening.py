@@ -8,7 +8,6 @@ import pathlib
 import shlex
 import shutil
 import subprocess
-import urllib.parse
 
 from mrp_check.contract import resources
 
@@ -51,8 +50,3 @@ def show_page(name: str) -> bool:
     """Open a page in the browser, if there is a desktop; return whether there is one."""
     has_desktop = "DISPLAY" in os.environ or "WAYLAND_DISPLAY" in os.environ
     return has_desktop and start("xdg-open", str(page(name)))
-
-
-def address(path: str) -> str:
-    """Return the address of a file, for a link."""
-    return "file://" + urllib.parse.quote(path, safe="/#")

@@ -73,7 +73,7 @@ class _Screen:
             self.top = max(min(self.top, self.chosen), self.chosen - height + 1)
         self.top = max(0, min(self.top, len(lines) - height))
         shown = lines[self.top : self.top + height]
-        return [fragment for line in shown for fragment in _fragments(*line)]
+        return [(f"class:{style}" if style else "", f" {text}\n") for style, text in shown]
 
     def _lines(self) -> list[views.Line]:
         width = max(20, self.app.output.get_size().columns - 2)
@@ -236,16 +236,3 @@ class _Screen:
                 self.note = "" if check and check.done else self.note
                 self.app.invalidate()
             await asyncio.sleep(INTERVAL)
-
-
-def _fragments(style: str, text: str) -> StyleAndTextTuples:
-    """Return a line for prompt_toolkit; a link in the way in which terminals know it (OSC 8)."""
-    if not style.startswith(views.LINK):
-        return [(f"class:{style}" if style else "", f" {text}\n")]
-    address = style.removeprefix(views.LINK)
-    return [
-        ("[ZeroWidthEscape]", f"\x1b]8;;{address}\x1b\\"),
-        ("class:place", f" {text}"),
-        ("[ZeroWidthEscape]", "\x1b]8;;\x1b\\"),
-        ("", "\n"),
-    ]

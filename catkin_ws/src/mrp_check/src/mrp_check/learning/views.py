@@ -8,13 +8,11 @@ import textwrap
 from typing import Iterator, Sequence, Tuple
 
 from mrp_check.learning import exercise as exercises
-from mrp_check.learning import opening, tool_output
+from mrp_check.learning import tool_output
 from mrp_check.learning.watch import Check, Watched
 from mrp_check.report import terminal
 
-Line = Tuple[str, str]  # its style, or LINK and the address that it leads to; its text
-
-LINK = "link "
+Line = Tuple[str, str]  # its style, its text
 
 STYLES = {
     "bar": "reverse",
@@ -75,7 +73,7 @@ def task(watched: Watched, hint: bool, explains: bool, width: int) -> Iterator[L
         return
     how = "Open this file in another window (o opens it) and save your change. I'll check it."
     yield from _wrapped(how, width)
-    yield from _link(str(exercise.file), width)
+    yield from _wrapped(str(exercise.file), width, "place")
     if hint:
         yield "", ""
         yield from _text(exercise.defect.hint, width, "Hint")
@@ -103,11 +101,7 @@ def _findings(check: Check | None, explains: bool, width: int) -> Iterator[Line]
     if explains:
         yield "title", "What is wrong, explained (e: back)"
         for line in exercises.lines_of(check.findings, check.report):
-            head, separator, path = line.partition("file://")
-            if separator:
-                yield from _link(path, width, head)
-            else:
-                yield from _wrapped(line, width, "" if line.startswith(" ") else "place")
+            yield from _wrapped(line, width, "" if line.startswith(" ") else "place")
         return
     if check.tools:
         yield "title", "What the tools say"
@@ -152,12 +146,6 @@ def _text(text: str, width: int, title: str) -> Iterator[Line]:
     for paragraph in text.strip().split("\n\n"):
         yield "", ""
         yield from _wrapped(" ".join(paragraph.split()), width)
-
-
-def _link(path: str, width: int, head: str = "") -> Iterator[Line]:
-    """Yield a path as a link; head: what stands in front of it."""
-    for _, line in _wrapped(head + path, width):
-        yield LINK + opening.address(path), line
 
 
 def _wrapped(text: str, width: int, style: str = "") -> Iterator[Line]:
