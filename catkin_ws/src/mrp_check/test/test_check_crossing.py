@@ -4,18 +4,13 @@
 A part of what is seen of a node may be missing: no rule of the checker fails because of that.
 """
 
-import types
-
 import check_rules
 import pytest
 from mrp_check.build import compiler
 from mrp_check.code.facts import Facts
 from mrp_check.confined import crossing, plans
-from mrp_check.confined.launch_dump import Started
 from mrp_check.confined.places import Kind, Place
 from mrp_check.confined.seen import Alone, DirectResult, Event
-from mrp_check.package.launch import Launch
-from mrp_check.rules.contract import launch_contract
 from mrp_check.run.observing import Observed
 
 pytestmark = pytest.mark.quick
@@ -61,18 +56,6 @@ def test_publisher_whose_topic_nobody_could_tell(tmp_path):
     case = check_rules.case_of(package, tmp_path / "scratch", facts=Facts(), observed=observed)
     case.close()
     assert case.places.of_topic("odd", Kind.PUBLISHER, "/group/great") == ("src/odd.py", 7)
-
-
-def test_remap_in_a_launch_file_of_another_package_has_no_line(tmp_path):
-    remaps = [("great_topic", "other_topic")]
-    node = Started(
-        "mrp", "a", "publisher_cpp_node", "/mrp/", "screen", remaps, [], "", "", file=None
-    )
-    case = types.SimpleNamespace(
-        package=check_rules.make(tmp_path), spec=check_rules.PUB_SUB, launch=Launch("", [node])
-    )
-    (finding,) = launch_contract.remaps(case)
-    assert (finding.id, finding.file, finding.line) == ("topic", None, None)
 
 
 def test_compilers_error_that_no_place_of_the_package_leads_to(tmp_path):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The launch file does as the contract says: its group, its topics, and where lines come out."""
+"""The launch file does as the contract says: its group, and where lines come out."""
 
 from __future__ import annotations
 
@@ -9,9 +9,7 @@ from typing import Iterator, Sequence
 from mrp_check.confined.launch_dump import Started
 from mrp_check.contract.finding import HABIT, Finding
 from mrp_check.contract.requirements import CONTRACT, Requirement, Rule
-from mrp_check.contract.spec import Spec
-from mrp_check.package.package import Package
-from mrp_check.package.xml_file import Element, elements
+from mrp_check.package.xml_file import Element
 from mrp_check.run import evidence
 from mrp_check.run.case import Case
 
@@ -19,7 +17,6 @@ from mrp_check.run.case import Case
 def _findings(case: Case) -> Iterator[Finding]:
     yield from _group(case)
     yield from _output(case)
-    yield from remaps(case)
 
 
 def _group(case: Case) -> Iterator[Finding]:
@@ -112,43 +109,6 @@ def _output(case: Case) -> Iterator[Finding]:
             )
 
 
-def remaps(case: Case) -> Iterator[Finding]:
-    for node in case.launch.of_spec(case.spec) if case.launch else ():
-        yield from _remaps_of(case.package, case.spec, node)
-
-
-def _remaps_of(package: Package, spec: Spec, node: Started) -> Iterator[Finding]:
-    wanted = spec.nodes[node.name]
-    for topic in dict.fromkeys([*wanted.publishing, *wanted.subscribing]):
-        base = node.namespace.rstrip("/") + "/"
-        own = {topic.name, base + topic.name}
-        for old, new in node.remaps:
-            if old in own and new not in own:
-                yield Finding(
-                    "topic",
-                    f"The launch file renames the topic {old} of {node.name} to {new}, so the"
-                    " nodes don't meet there.",
-                    node.file,
-                    remap_line(package, node, old, new),
-                    node=node.name,
-                    expected=f"the topic {topic.name}",
-                    seen=f"{old} renamed to {new}",
-                    fix="Remove the <remap>.",
-                )
-
-
-def remap_line(package: Package, node: Started, old: str, new: str) -> int | None:
-    """Return the line of the <remap> that renames `old` to `new`."""
-    # A file of another package has no lines that could be named.
-    for element in elements(package.bytes(node.file)) if node.file else ():
-        if element.tag == "remap" and old.endswith(
-            element.attributes.get("from", "?").lstrip("~/")
-        ):
-            if new.endswith(element.attributes.get("to", "?").lstrip("~/")):
-                return element.line
-    return node.line
-
-
 RULE = Rule(
     stage="files",
     needs=("launch",),
@@ -161,6 +121,5 @@ RULE = Rule(
             "The nodes' lines appear on the screen", "launching", evidence.launch
         ),
     },
-    also=("topic",),
     only=CONTRACT,
 )
