@@ -3,10 +3,10 @@
 
 from __future__ import annotations
 
-from typing import Collection, Iterator
+from typing import Iterator
 
 from mrp_check.code.source_node import SourceNode, each_node
-from mrp_check.confined.places import Kind, Place
+from mrp_check.confined.places import Kind
 from mrp_check.contract.finding import HABIT, READ, Finding
 from mrp_check.contract.requirements import CONTRACT, Rule
 
@@ -17,7 +17,17 @@ def _of(node: SourceNode) -> Iterator[Finding]:
         return
     modulus = values.modulus
     used = {name for p in node.places(Kind.DATA) for name in p.names}
-    yield from _resets(node, used, abs(values.step), modulus)
+    for place in node.places(Kind.RESET):
+        # Within the last two steps of the range, starting over does no harm.
+        if place.text in used and place.limit < modulus - 2 * abs(values.step):
+            yield node.finding(
+                "wrap",
+                f"The counter {place.text} starts over at {place.value} when it reaches"
+                f" {place.limit}, though the message can hold up to {modulus - 1}.",
+                place,
+                expected=f"the next value up to {modulus - 1}",
+                fix="Remove the limit: a uint32_t starts over at 0 by itself.",
+            )
     said = set()
     for place in node.places(Kind.STEP):
         kind, bits = place.type, place.bits
@@ -38,34 +48,15 @@ def _of(node: SourceNode) -> Iterator[Finding]:
             )
         else:
             why = f"what happens past {2**enough - 1} is undefined in C++."
+        declared = [one for one in node.places(Kind.COUNTER) if one.text == place.text]
         yield node.finding(
             "wrap",
             f"The counter {place.text} is a {kind}: {why}",
-            _declared(node, place),
+            declared[0] if declared else place,
             certainty=READ if floating or bits < 32 else HABIT,
             expected="uint32_t",
             fix=f"Make {place.text} a uint32_t.",
         )
-
-
-def _resets(node: SourceNode, used: Collection[str], step: int, modulus: int) -> Iterator[Finding]:
-    for place in node.places(Kind.RESET):
-        limit, value = place.limit, place.value
-        # Within the last two steps of the range, starting over does no harm.
-        if place.text in used and limit < modulus - 2 * step:
-            yield node.finding(
-                "wrap",
-                f"The counter {place.text} starts over at {value} when it reaches {limit}, though"
-                f" the message can hold up to {modulus - 1}.",
-                place,
-                expected=f"the next value up to {modulus - 1}",
-                fix="Remove the limit: a uint32_t starts over at 0 by itself.",
-            )
-
-
-def _declared(node: SourceNode, place: Place) -> Place:
-    same = [p for p in node.places(Kind.COUNTER) if p.text == place.text]
-    return same[0] if same else place
 
 
 RULE = Rule("static", ("facts",), each_node(_of), also=("wrap",), only=CONTRACT)

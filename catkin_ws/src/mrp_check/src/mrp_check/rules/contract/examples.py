@@ -20,12 +20,8 @@ from mrp_check.run.words import fields_text
 
 
 def _findings(case: Case) -> Iterator[Finding]:
-    yield from _in_launch_file(case)
-    yield from each_node(_of)(case)
-
-
-def _in_launch_file(case: Case) -> Iterator[Finding]:
-    """Yield a Finding for each parameter that the launch file should set, and does not."""
+    """Yield a Finding for each parameter that the launch file should set, and does not; and for
+    the first example of each node that does not come out as the contract says."""
     for node in case.nodes.values():
         for name, value in node.wanted.parameters.items() if node.started else ():
             given = case.launch.params if case.launch else {}
@@ -44,6 +40,7 @@ def _in_launch_file(case: Case) -> Iterator[Finding]:
                 expected=f'<param name="{name}" value="{value}"/> inside the <node>',
                 seen=shown,
             )
+    yield from each_node(_of)(case)
 
 
 def _of(node: Node) -> Iterator[Finding]:

@@ -16,7 +16,18 @@ from mrp_check.run.case import Case
 
 def _findings(case: Case) -> Iterator[Finding]:
     yield from _group(case)
-    yield from _output(case)
+    for node in case.launch.of_spec(case.spec) if case.launch else ():
+        if node.output != "screen":
+            yield Finding(
+                "launch-output",
+                f'What {node.name} prints goes to a log file: its <node> has no output="screen".',
+                node.file,
+                node.line,
+                node=node.name,
+                expected='output="screen"',
+                seen=f'output="{node.output}"',
+                fix='Add output="screen".',
+            )
 
 
 def _group(case: Case) -> Iterator[Finding]:
@@ -92,21 +103,6 @@ def _line(nodes: Sequence[Started], elements: Sequence[Element], has_groups: boo
     if has_groups or len(nodes) == 1:
         return line
     return next(e.line for tag in ("group", "launch") for e in elements if e.tag == tag)
-
-
-def _output(case: Case) -> Iterator[Finding]:
-    for node in case.launch.of_spec(case.spec) if case.launch else ():
-        if node.output != "screen":
-            yield Finding(
-                "launch-output",
-                f'What {node.name} prints goes to a log file: its <node> has no output="screen".',
-                node.file,
-                node.line,
-                node=node.name,
-                expected='output="screen"',
-                seen=f'output="{node.output}"',
-                fix='Add output="screen".',
-            )
 
 
 RULE = Rule(

@@ -5,9 +5,7 @@ from __future__ import annotations
 
 from typing import Iterator
 
-from mrp_check.code.source_node import SourceNode
-from mrp_check.contract import spec as specs
-from mrp_check.contract.finding import Finding, Line
+from mrp_check.contract.finding import Finding
 from mrp_check.contract.requirements import CONTRACT, Rule
 from mrp_check.run.case import Case
 
@@ -16,33 +14,25 @@ def findings(case: Case) -> Iterator[Finding]:
     for node in case.coded:
         other = node.mistaken_for
         if other and node.mistaken_in(other) == "targets":
-            yield _target(node, other)
+            target, own = node.model.executables()[node.executable], node.own_source()
+            yield node.finding(
+                "targets",
+                f"The target {target.name} is built from {node.main}, the source of {other.name},"
+                f" so {node.name} is a second {other.name}.",
+                (target.file, target.line),
+                expected=f"add_executable({target.name} {own or 'ITS OWN SOURCE'})",
+                fix=f"Write {own} for {node.main}." if own else "Name its own source.",
+            )
         elif other and node.started and node.started.file:
-            yield _launch(node, other, (node.started.file, node.started.line or 1))
-
-
-def _target(node: SourceNode, other: specs.NodeSpec) -> Finding:
-    target, own = node.model.executables()[node.executable], node.own_source()
-    return node.finding(
-        "targets",
-        f"The target {target.name} is built from {node.main}, the source of {other.name}, so"
-        f" {node.name} is a second {other.name}.",
-        (target.file, target.line),
-        expected=f"add_executable({target.name} {own or 'ITS OWN SOURCE'})",
-        fix=f"Write {own} for {node.main}." if own else "Name its own source.",
-    )
-
-
-def _launch(node: SourceNode, other: specs.NodeSpec, place: Line) -> Finding:
-    return node.finding(
-        "launch-nodes",
-        f"The launch file starts {node.executable} under the name {node.name}; it is the"
-        f" executable of {other.name}.",
-        place,
-        expected=f"the executable of {node.name}",
-        seen=f'type="{node.executable}"',
-        fix="Name the node's own executable as its type.",
-    )
+            yield node.finding(
+                "launch-nodes",
+                f"The launch file starts {node.executable} under the name {node.name}; it is the"
+                f" executable of {other.name}.",
+                (node.started.file, node.started.line or 1),
+                expected=f"the executable of {node.name}",
+                seen=f'type="{node.executable}"',
+                fix="Name the node's own executable as its type.",
+            )
 
 
 RULE = Rule("static", ("facts",), findings, also=("targets", "launch-nodes"), only=CONTRACT)

@@ -8,9 +8,9 @@ from typing import Iterator, Sequence
 from mrp_check.confined.places import Kind
 from mrp_check.confined.plans import TOLD
 from mrp_check.confined.seen import Message, Number
-from mrp_check.contract.finding import HINT, Finding, Where
+from mrp_check.contract.finding import HINT, Finding
 from mrp_check.contract.requirements import CONTRACT, Requirement, Rule
-from mrp_check.contract.spec import Publishes, Topic, Values
+from mrp_check.contract.spec import Publishes, Values
 from mrp_check.run import evidence
 from mrp_check.run.case import Case
 from mrp_check.run.node import Node, each_node
@@ -26,8 +26,12 @@ def _of(node: Node) -> Iterator[Finding]:
     messages = node.published()
     topic = resolved(role.topic, node.path)
     if topic in node.topics(Kind.PUBLISHER) and not messages and node.wanted.of_itself:
-        silent = _silent_seconds(node)
-        waits = _long_period(node, role)
+        advertised = max([one.time for one in node.seen.publications] or [0])
+        silent = max(node.asked - advertised, 0)
+        periods = [place.period for place in node.places.facts.of(node.name, Kind.TIMER)]
+        numbers = [period for period in periods if isinstance(period, (int, float))]
+        # Of a timer that is far too slow.
+        waits = next((one for one in numbers if one > 3 * (role.period or one)), None)
         if node.is_unheard(topic) or silent * (1 - node.waited) < 6 * (role.period or 0.5):
             return  # the machine was too busy to tell
         if node.published(alone=True):
@@ -41,7 +45,13 @@ def _of(node: Node) -> Iterator[Finding]:
             seen="no message",
         )
     for text in node.wrong_texts()[:1]:
-        yield _other_text(node, text, role.topic)
+        yield node.finding(
+            "values",
+            f"{node.name} publishes “{text}”, where the contract says “{role.topic.text}”.",
+            node.places.of_text(node.name, text) or node.places.of(node.name, Kind.PUBLISH),
+            expected=f"{role.topic.text}, with a number for {{value}}",
+            seen=text,
+        )
     # A mistake shows in both runs, or only in the longer one.
     found = (_wrong_numbers(node, role, messages) for messages in node.runs())
     yield from next(filter(None, found), [])
@@ -56,17 +66,6 @@ def _wrong_numbers(node: Node, role: Publishes, messages: Sequence[Message]) -> 
     return wrong + ([*_not_rising(node, numbers, _rule_text(role))] if role.rises else [])
 
 
-def _other_text(node: Node, said: str, topic: Topic) -> Finding:
-    """Return the Finding about a message that says something else than the contract's text."""
-    return node.finding(
-        "values",
-        f"{node.name} publishes “{said}”, where the contract says “{topic.text}”.",
-        node.places.of_text(node.name, said) or node.places.of(node.name, Kind.PUBLISH),
-        expected=f"{topic.text}, with a number for {{value}}",
-        seen=said,
-    )
-
-
 def _not_rising(node: Node, values: Sequence[Number], expected: str) -> Iterator[Finding]:
     wrong = next(((a, b) for a, b in zip(values, values[1:]) if b <= a), None)
     if wrong:
@@ -77,18 +76,6 @@ def _not_rising(node: Node, values: Sequence[Number], expected: str) -> Iterator
             expected=expected,
             seen=few(values),
         )
-
-
-def _silent_seconds(node: Node) -> float:
-    last = max([p.time for p in node.seen.publications] or [0])
-    return max(node.asked - last, 0)
-
-
-def _long_period(node: Node, role: Publishes) -> float | None:
-    """Return the period of a timer of the node that is far too long, or None."""
-    periods = [p.period for p in node.places.facts.of(node.name, Kind.TIMER)]
-    numbers = [p for p in periods if isinstance(p, (int, float))]
-    return next((p for p in numbers if p > 3 * (role.period or p)), None)
 
 
 def _value_findings(
@@ -112,21 +99,15 @@ def _value_findings(
             place = skips and node.places.condition_of_publish(node.name) or file_line
         yield node.finding("values", said, place, expected=expected, seen=shown)
     elif values[0] != rule.start:
+        facts = node.places.facts
+        places = facts.of(node.name, Kind.COUNTER) or facts.of(node.name, Kind.STEP)
         yield node.finding(
             "values",
             f"{node.name} begins with {values[0]}, not with {rule.start}: it publishes {shown}.",
-            _start_place(node, publish),
+            (places[0].file, places[0].line) if places else publish,
             expected=expected,
             seen=shown,
         )
-
-
-def _start_place(node: Node, publish: Where) -> Where:
-    """Return the place at which the counter gets its first value."""
-    places = node.places.facts.of(node.name, Kind.COUNTER) or node.places.facts.of(
-        node.name, Kind.STEP
-    )
-    return (places[0].file, places[0].line) if places else publish
 
 
 def _relayed(node: Node) -> Iterator[Finding]:
@@ -210,8 +191,9 @@ def _at_the_end(
     if not after:
         return
     if after[0] not in (last, rule.after(last)):
-        # What was set had no effect, or it wraps round before its end.
-        if _continues(after, rule):
+        # What was set had no effect: the values go on from where they were. Or it wraps too early.
+        is_near_start = after[0] < rule.start + _FEW_STEPS * abs(rule.step)
+        if is_near_start and (after[0] - rule.start) % rule.step == 0:
             yield _unchecked(node, last, expected, "couldn't be set")
         else:
             yield _wrap_finding(node, rule, after, expected)
@@ -244,12 +226,6 @@ def _wrap_finding(node: Node, rule: Values, after: Sequence[Number], expected: s
         expected=expected,
         seen=shown,
     )
-
-
-def _continues(after: Sequence[Number], rule: Values) -> bool:
-    """Return whether the values simply go on from where they were before."""
-    near = after[0] < rule.start + _FEW_STEPS * abs(rule.step)
-    return near and (after[0] - rule.start) % rule.step == 0
 
 
 def _findings(case: Case) -> Iterator[Finding]:
