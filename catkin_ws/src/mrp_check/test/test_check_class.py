@@ -11,7 +11,6 @@ import threading
 import pytest
 from check_rules import ASKED, Tags, hand_in
 from mrp_check.classroom import class_table, classroom
-from mrp_check.cli import check as check_command
 from mrp_check.contract import errors, spec
 from mrp_check.contract.verdict import unchecked
 from mrp_check.package import package
@@ -81,27 +80,6 @@ def test_each_folder_is_a_submission(tmp_path):
         "berta: findings",
     ]
     assert [begun, *(part for _, *part in ended)] == [[0, 2], [1, 2], [2, 2]]
-
-
-@pytest.mark.parametrize("jobs", [1, 3])
-def test_jobs_says_how_many_are_checked_at_a_time(tmp_path, jobs):
-    """Each check waits until there are so many, and none is one too many."""
-    for name in ("anna", "berta", "carl"):
-        hand_in(tmp_path / "class", name)
-    together, present = threading.Barrier(jobs, timeout=DEADLINE), []
-
-    class Together(Room):
-        def report_of(self, one, name):
-            present.append(name)
-            assert len(present) <= jobs
-            together.wait()
-            present.remove(name)
-            return super().report_of(one, name)
-
-    options = check_command.parser().parse_args(["--class", "class", "--jobs", str(jobs)])
-    assert set(Together(tmp_path / "class", jobs=options.jobs).verdicts().values()) == {
-        check.FINDINGS
-    }
 
 
 def test_progress_says_what_runs_and_how_long_it_takes(tmp_path):

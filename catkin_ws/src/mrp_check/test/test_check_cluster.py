@@ -213,48 +213,31 @@ def test_a_signal_ends_what_runs_on_the_workers(tmp_path, second):
     assert said.splitlines()[-1] == "check: stopped early; everything it started has ended, too."
 
 
-@pytest.mark.parametrize("what", ["another", "none"])
-def test_a_worker_with_another_checker_refuses(tmp_path, what):
+def test_a_worker_with_another_checker_refuses(tmp_path):
     hand_in(tmp_path / "class", "anna")
     own = tmp_path / "mrp_check"
-    if what == "another":
-        for name in ("src", "templates", "schema", "contracts"):
-            shutil.copytree(resources.folder(name), own / name)
-        with open(own / "src" / "mrp_check" / "check.py", "a") as file:
-            file.write("# another\n")
+    for name in ("src", "templates", "schema", "contracts"):
+        shutil.copytree(resources.folder(name), own / name)
+    with open(own / "src" / "mrp_check" / "check.py", "a") as file:
+        file.write("# another\n")
     env = {"PYTHONPATH": str(own / "src")}
     with cluster(tmp_path, workers=1, **env) as (_, address, _):
         code, said, rows = checked(tmp_path / "class", "--scheduler", address)
     assert (code, rows) == (2, [])
-    expected = {
-        "another": "The worker at tcp://.* has another version of the checker. Install the one of"
-        " this machine there, and start the worker again.",
-        "none": f"The scheduler at {address} or a worker of it can't be used: expected machines"
-        " with the checker,.*No module named 'mrp_check'.*",
-    }
-    assert re.fullmatch(f"check: {expected[what]}", said.splitlines()[-1])
+    expected = (
+        "The worker at tcp://.* has another version of the checker. Install the one of this"
+        " machine there, and start the worker again."
+    )
+    assert re.fullmatch(f"check: {expected}", said.splitlines()[-1])
 
 
-@pytest.mark.parametrize(
-    ("address", "says"),
-    [
-        ("tcp://127.0.0.1:1", "OSError: Timed out"),
-        ("nowhere", "ValueError: missing port"),
-        ("tls://127.0.0.1:1", "TypeError: TLS expects"),
-    ],
-)
-def test_an_address_without_a_scheduler(tmp_path, monkeypatch, address, says):
+def test_an_address_without_a_scheduler_or_a_worker(tmp_path, monkeypatch):
     monkeypatch.setenv("DASK_DISTRIBUTED__COMM__TIMEOUTS__CONNECT", "1s")
     hand_in(tmp_path / "class", "anna")
-    code, said, _ = checked(tmp_path / "class", "--scheduler", address)
-    expected = f"check: There's no Dask scheduler at {address}: expected one that dask-scheduler"
+    code, said, _ = checked(tmp_path / "class", "--scheduler", "tcp://127.0.0.1:1")
+    expected = "check: There's no Dask scheduler at tcp://127.0.0.1:1: expected one that"
     assert (code, said.count("\n")) == (2, 1)
-    assert said.startswith(f"{expected} has started. It says: {says}")
-
-
-def test_a_scheduler_without_a_worker(tmp_path, monkeypatch):
-    monkeypatch.setenv("DASK_DISTRIBUTED__COMM__TIMEOUTS__CONNECT", "1s")
-    hand_in(tmp_path / "class", "anna")
+    assert said.startswith(f"{expected} dask-scheduler has started. It says: OSError: Timed out")
     with cluster(tmp_path, workers=0) as (_, address, _):
         code, said, _ = checked(tmp_path / "class", "--scheduler", address)
     assert (code, said) == (2, f"{NO_WORKER.format(address)}\n")

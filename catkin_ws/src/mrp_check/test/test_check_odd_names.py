@@ -48,16 +48,6 @@ def test_a_report_takes_any_name_and_says_how_the_package_ran(option, tmp_path):
 
 
 @pytest.mark.quick
-@pytest.mark.parametrize("option", command.OF_CLASS)
-def test_a_class_s_table_takes_any_name(option, tmp_path):
-    path = tmp_path / option
-    one = dataclasses.replace(OF_CLASS, name=f"{ODD}_12_assignsubmission_file_")
-    command.write(path, command.OF_CLASS[option][1], [one], CONTRACT, tmp_path)
-    written = path.read_text(encoding="utf-8")
-    assert "gr" in written and REPORT.isolation in written
-
-
-@pytest.mark.quick
 def test_annotations_and_mail_take_any_name():
     for written in (github.text(REPORT), mail.text(OF_CLASS, CONTRACT)):
         assert REPORT.isolation in written

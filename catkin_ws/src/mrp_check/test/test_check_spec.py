@@ -6,7 +6,7 @@ import re
 
 import pytest
 from mrp_check import rules
-from mrp_check.contract import lines, resources, spec
+from mrp_check.contract import resources, spec
 from mrp_check.contract.errors import SpecError
 from mrp_check.contract.requirements import STAGES
 from mrp_check.rules import REQUIREMENTS
@@ -36,30 +36,6 @@ def test_our_specs_can_be_read():
         assert contract.nodes and bool(contract.topics) != bool(contract.services)
         has_launch = name not in others | wiki
         assert bool(contract.launch.file) == contract.asks("launch-file") == has_launch
-
-
-def test_values_wrap_round():
-    values = spec.read(spec.find("pub_sub")).nodes["publisher_cpp_node"].publishes.values
-    assert values.after(2**32 - 2) == 0
-    assert spec.Values(1, 2).after(2**32 - 1) == 2**32 + 1
-
-
-def test_relay_doubles():
-    relays = spec.read(spec.find("relay")).nodes["relay_node"].relays
-    assert (relays.of(3), relays.of(2**31)) == (6, 0)
-
-
-def test_line_pattern():
-    line = r"\[A\] {name} has {value}"
-    match = lines.pattern(line, "/mrp/a").fullmatch("[A] /mrp/a has 12")
-    assert match.group("value") == "12"
-    assert not lines.pattern(line, "/mrp/a").fullmatch("[A] /mrp/b has 12")
-
-
-def test_a_text_says_a_number():
-    topic = spec.Topic("a", "std_msgs/String", text="a (b) {value}.")
-    said = ("a (b) 12.", "a (b) -1.5.", "a (b) 12", "a b 12.", "a (b) {value}.", 3)
-    assert [topic.value_in(one) for one in said] == [12, -1.5, None, None, None, 3]
 
 
 def test_each_key_says_what_it_is():

@@ -96,15 +96,3 @@ def test_a_signal_ends_all(tmp_path, monkeypatch, seconds, what, number):
     assert "Traceback" not in errors
     assert [path for folder in scratch.iterdir() for path in folder.iterdir()] == []
     assert not processes_with(seconds)
-
-
-def test_a_name_that_is_no_text_is_shown(tmp_path):
-    """Bytes that are no UTF-8, and what would clear the screen."""
-    (tmp_path / "class" / os.fsdecode(b"z\xff\x1b[2J")).mkdir(parents=True)
-    tables = tmp_path / "table.csv", tmp_path / "table.html"
-    options = ("--csv", tables[0], "--html", tables[1])
-    with command("--class", tmp_path / "class", *options) as checker:
-        output, said = checker.communicate()
-    assert checker.returncode == 1, said
-    for text in (output, said, *(table.read_text() for table in tables)):
-        assert "z%FF\ufffd[2J" in text
