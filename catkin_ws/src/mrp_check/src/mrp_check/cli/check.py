@@ -101,7 +101,16 @@ def parser(contract="pub_sub"):
         parser.add_argument(f"--{option}", metavar="FILE", help=text)
     for flag, text in FLAGS.items():
         parser.add_argument(f"--{flag.replace('_', '-')}", action="store_true", help=text)
-    _add_of_class(parser)
+    set_ = "with --class: take late days, maxima and overrides of students' points from this CSV"
+    parser.add_argument("--by-hand", metavar="FILE", help=set_)
+    number = (
+        f"with --class: run N checks in parallel, 1 to {classroom.MOST_JOBS} (default:"
+        f" {classroom.JOBS}; with --scheduler, as many as its workers have threads)"
+    )
+    jobs = range(1, classroom.MOST_JOBS + 1)
+    parser.add_argument("--jobs", type=int, choices=jobs, metavar="N", help=number)
+    where = "with --class: check on the workers of the Dask scheduler at ADDRESS"
+    parser.add_argument("--scheduler", metavar="ADDRESS", help=where)
     seconds = "stop the check of a package after S seconds (default: %(default)s)"
     parser.add_argument("--timeout", type=_seconds, default=600, metavar="S", help=seconds)
     parser.add_argument(
@@ -113,19 +122,6 @@ def parser(contract="pub_sub"):
         help="check only these requirements",
     )
     return parser
-
-
-def _add_of_class(parser):
-    set_ = "with --class: take late days, maxima and overrides of students' points from this CSV"
-    parser.add_argument("--by-hand", metavar="FILE", help=set_)
-    number = (
-        f"with --class: run N checks in parallel, 1 to {classroom.MOST_JOBS} (default:"
-        f" {classroom.JOBS}; with --scheduler, as many as its workers have threads)"
-    )
-    jobs = range(1, classroom.MOST_JOBS + 1)
-    parser.add_argument("--jobs", type=int, choices=jobs, metavar="N", help=number)
-    where = "with --class: check on the workers of the Dask scheduler at ADDRESS"
-    parser.add_argument("--scheduler", metavar="ADDRESS", help=where)
 
 
 def _seconds(text):
@@ -238,16 +234,13 @@ def run_packages(options):
     verdicts = []
     for number, one in enumerate(paths):
         print("\n" * bool(number) + f"{terminal.plain(str(one))}:")
-        files = {name: getattr(options, name) for name in OF_PACKAGE}
-        named = {name: _with_name(file, one.name) for name, file in files.items() if file}
+        named = {}  # the reports' files, with the package's name in theirs
+        for name in OF_PACKAGE:
+            if file := getattr(options, name):
+                file = pathlib.Path(file)
+                named[name] = file.with_name(f"{file.stem}-{printable(one.name)}{file.suffix}")
         verdicts.append(run_package(argparse.Namespace(**{**vars(options), **named, "path": one})))
     return max(verdicts, key=(MET, UNCHECKED, FINDINGS).index)
-
-
-def _with_name(file, name):
-    """Return a file's path with a package's name in it."""
-    path = pathlib.Path(file)
-    return str(path.with_name(f"{path.stem}-{printable(name)}{path.suffix}"))
 
 
 def run_package(options):

@@ -176,20 +176,15 @@ class RunningNode:
         pending = self.plan.paced[max(len(self.sent) - len(self.plan.values), 0) :]
         if self.publisher is None or not self.sent or not pending:
             return
-        if self._has_answered() or is_over(time.monotonic() - self.sent_at, _PACE):
-            self._send_one(self.publisher, pending[0])
-
-    def _has_answered(self) -> bool:
-        """Return whether the node has logged, or relayed, the last message that it was sent."""
-        if self.plan.relays:
-            return self.observer.most_of(self.name() or "") >= len(self.sent)
-        return self._has_logged(self.sent[-1])
-
-    def _has_logged(self, value: Optional[int]) -> bool:
-        number = re.compile(rf"(?<!\d){value}(?!\d)")
         name = self.name()
-        recent = [log for log in self.observer.seen.logs[-_RECENT:] if log.node == name]
-        return any(number.search(log.text) for log in recent)
+        if self.plan.relays:
+            has_answered = self.observer.most_of(name or "") >= len(self.sent)
+        else:
+            number = re.compile(rf"(?<!\d){self.sent[-1]}(?!\d)")
+            recent = [log for log in self.observer.seen.logs[-_RECENT:] if log.node == name]
+            has_answered = any(number.search(log.text) for log in recent)
+        if has_answered or is_over(time.monotonic() - self.sent_at, _PACE):
+            self._send_one(self.publisher, pending[0])
 
     # --- Whether it is waited for
 

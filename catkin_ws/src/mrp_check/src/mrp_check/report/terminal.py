@@ -38,20 +38,20 @@ class Progress:
 
     def show(self, sentence, done=0, of=0):
         """done, of: how many are done of how many, if that is known"""
-        if of:
-            sentence = f"{self._bar(done, of) if self.terminal else f'{done} of {of}:'} {sentence}"
+        if of and self.terminal:
+            # Only a class needs it.
+            from tqdm import tqdm
+
+            plain_only = "utf" not in (self.stream.encoding or "").lower()
+            bar = tqdm.format_meter(done, of, 0, bar_format=_BAR, ascii=plain_only)
+            sentence = f"{bar} {sentence}"
+        elif of:
+            sentence = f"{done} of {of}: {sentence}"
         start, end = ("\r\x1b[K", "") if self.terminal else ("", "\n")
         said = f"check: {plain(sentence)}"
         if self.terminal:  # the next one overwrites one line
             said = said[: shutil.get_terminal_size().columns - 1]
         print(f"{start}{said}", end=end, file=self.stream, flush=True)
-
-    def _bar(self, done, of):
-        # Only a class needs it.
-        from tqdm import tqdm
-
-        plain_only = "utf" not in (self.stream.encoding or "").lower()
-        return tqdm.format_meter(done, of, 0, bar_format=_BAR, ascii=plain_only)
 
     def clear(self):
         if self.terminal:

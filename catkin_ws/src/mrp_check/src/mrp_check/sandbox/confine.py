@@ -161,8 +161,12 @@ def _watched(box: Sequence[str], task: warden.Task, mark: str | None) -> Result:
             reader.read(_GRACE, flood=False)
     finally:
         _RUNNING.discard(stdin)
-        stdin.close()
-        _end(watcher)
+        stdin.close()  # which makes the watcher end
+        try:
+            watcher.wait(_GRACE)
+        except subprocess.TimeoutExpired:
+            os.killpg(watcher.pid, signal.SIGKILL)
+            watcher.wait()
         _kill_marked(mark)
         for pipe in pipes.values():
             pipe.close()
@@ -222,34 +226,19 @@ def _result(reader: _Reader, flood: bool) -> Result:
     )
 
 
-def _end(watcher: subprocess.Popen[bytes]) -> None:
-    """Wait until the watcher has ended, which the end of its standard input makes it do."""
-    try:
-        watcher.wait(_GRACE)
-    except subprocess.TimeoutExpired:
-        os.killpg(watcher.pid, signal.SIGKILL)
-        watcher.wait()
-
-
 def _kill_marked(mark: str | None) -> None:
     """Kill what bears a run's mark: after its watcher was killed, the only thing to know it by.
 
     mark: None where they could not have killed it
     """
-    while mark:
-        found = [process for process in psutil.process_iter() if _has_mark(process, mark)]
-        for process in found:
+    found = bool(mark)
+    while found:
+        found = False
+        for process in psutil.process_iter():
             with contextlib.suppress(psutil.Error):
-                process.kill()
-        if not found:
-            return
-
-
-def _has_mark(process: psutil.Process, mark: str) -> bool:
-    try:
-        return process.environ().get(variables.MARK) == mark
-    except psutil.Error:
-        return False
+                if process.environ().get(variables.MARK) == mark:
+                    found = True
+                    process.kill()
 
 
 class _Reader:
@@ -284,19 +273,16 @@ class _Reader:
                         del self._open[key.data]
                         if key.data == "report":
                             self.on_report()
-                    self._take(key.data, data)
+                    self._seen[key.data] += len(data)
+                    kept = self._kept[key.data]
+                    room = self.limit - len(kept)
+                    kept += data[: max(0, room)]
+                    self.cut = self.cut or len(data) > room
                     if flood and self._seen[key.data] > _FLOOD * self.limit:
                         return True
                 if time.monotonic() > deadline:
                     return False
         return False
-
-    def _take(self, name: str, data: bytes) -> None:
-        self._seen[name] += len(data)
-        kept = self._kept[name]
-        room = self.limit - len(kept)
-        kept += data[: max(0, room)]
-        self.cut = self.cut or len(data) > room
 
 
 def remove(folder: str | os.PathLike[str]) -> None:

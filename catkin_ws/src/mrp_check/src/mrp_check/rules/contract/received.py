@@ -50,7 +50,7 @@ def _of(node: Node) -> Iterator[Finding]:
     elif not set(lost) & set(PACED):
         yield _short_queue(node, role, lost, heard & set(BURST))
     else:
-        yield _gaps(node, sent, lost, heard, _logged_place(node, logs, pattern))
+        yield _gaps(node, sent, heard, _logged_place(node, logs, pattern))
 
 
 def _values(logs: Sequence[Log], pattern: re.Pattern[str]) -> list[int]:
@@ -72,32 +72,17 @@ def _short_queue(
     )
 
 
-def _gaps(
-    node: Node, sent: Sequence[int], lost: Sequence[int], heard: Collection[int], place: Where
-) -> Finding:
+def _gaps(node: Node, sent: Sequence[int], heard: Collection[int], place: Where) -> Finding:
     sleep = node.places.sleep_beside(node.name, Kind.LOG)
     kept = ", ".join(str(value) for value in sent if value in heard)
     why = " While its callback sleeps, more arrives than its queue holds." if sleep else ""
     return node.finding(
         "callbacks" if sleep else "received",
-        f"{node.name} was sent {', '.join(map(str, sent))}, but logs only {kept}."
-        + (why or _whose(node, lost, heard)),
+        f"{node.name} was sent {', '.join(map(str, sent))}, but logs only {kept}." + why,
         sleep or place,
         expected="each value that arrives",
         seen=kept,
     )
-
-
-def _whose(node: Node, lost: Sequence[int], heard: Collection[int]) -> str:
-    """Say whose values all that were lost could be, and none of the others."""
-    for other in node.spec.nodes.values():
-        rule = other.publishes.values if other.publishes else None
-        if rule and other.publishing == node.wanted.subscribing and abs(rule.step) > 1:
-            own = [(value - rule.start) % rule.step == 0 for value in lost]
-            others = [(value - rule.start) % rule.step == 0 for value in heard]
-            if all(own) and not any(others):
-                return f" So it leaves out what comes from {other.name}."
-    return ""
 
 
 def _repeated_finding(
