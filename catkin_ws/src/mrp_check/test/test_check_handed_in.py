@@ -11,6 +11,7 @@ import handed_in
 import pytest
 from check_rules import MANIFEST, hand_in
 from handed_in import FILES, below, entry, tar, zip_
+from mrp_check import sandbox
 from mrp_check.classroom import archive
 from mrp_check.cli import check as check_command
 from mrp_check.contract.finding import HINT
@@ -37,10 +38,11 @@ class Reader(Room):
 
 
 @pytest.fixture
-def uploads(tmp_path, monkeypatch):
+def uploads(tmp_path, monkeypatch, open_folders):
     """The class's folder. In the end it is as it was, and nothing is left in the scratch folder."""
     scratch = tmp_path / "scratch"
-    scratch.mkdir()
+    scratch.mkdir(mode=0o711)
+    sandbox.code()  # where it is copied, the copy stays
     monkeypatch.setattr(tempfile, "tempdir", str(scratch))
     (tmp_path / "class").mkdir()
     return tmp_path / "class"
@@ -136,7 +138,6 @@ REFUSED = {
 
 
 @pytest.mark.parametrize("name", REFUSED)
-@pytest.mark.usefixtures("open_folders")
 def test_what_is_refused_is_named(uploads, monkeypatch, name):
     monkeypatch.setattr("mrp_check.classroom.archive._MOST_UNPACKED", 20_000_000)
     make, says = REFUSED[name]
