@@ -22,13 +22,12 @@ import fractions
 import functools
 import importlib.abc
 import importlib.util
-import itertools
 import json
 import os
 import signal
 import sys
 import types
-from typing import Any, Callable, Dict, Iterator, List, Optional, Set, Tuple
+from typing import Any, Callable, Dict, Iterator, List, NamedTuple, Optional, Tuple
 
 _HOOK = json.loads(os.environ.get("MRP_CHECK_HOOK", "{}"))
 _SOURCES = os.path.realpath(_HOOK.get("sources", "/nowhere")) + "/"
@@ -37,8 +36,7 @@ _WRAP = _HOOK.get("wrap")
 _LOOK = 3  # messages after which the counter should be known
 _GIVE_UP = 8
 _FRAMES = 8
-# In these, no counter is looked for.
-_SKIP = (str, bytes, types.ModuleType, types.FunctionType, types.BuiltinFunctionType)
+_DEEPEST = 2  # attributes of attributes in which a counter is looked for
 
 
 def _tell(event: str, **what: object) -> None:
@@ -124,7 +122,9 @@ def _watch_publish(rospy: Any, tell_once: Callable[..., None]) -> None:
         if wrap:
             try:
                 message = rospy.msg.args_kwds_to_message(self.data_class, arguments, keywords)
-                value = _number(_field(message, _WRAP["field"]))
+                for name in _WRAP["field"].split("."):
+                    message = getattr(message, name)
+                value = message if type(message) is int else None
             except Exception:
                 pass  # original() fails on it, too
         try:
@@ -139,12 +139,6 @@ def _watch_publish(rospy: Any, tell_once: Callable[..., None]) -> None:
 
     publish.__doc__ = original.__doc__
     rospy.Publisher.publish = publish
-
-
-def _field(message: Any, path: str) -> Any:
-    for name in path.split("."):
-        message = getattr(message, name)
-    return message
 
 
 def _tell_exits() -> None:
@@ -189,9 +183,10 @@ Key = Tuple[object, ...]  # of a slot
 class _Wrap:
     """Finds what follows the published values, sets it, and tells what is published then.
 
-    Everything that holds a whole number and that the publishing code can see is compared with the
-    published values: what is an affine function of them (as x = 2 * value + 1), at three messages,
-    follows them. All that follows is set; so it does not matter which of it is only a copy.
+    Each whole number that the publishing code can see in a variable, in an attribute of an object
+    of its own, or in a message that it keeps, is compared with the published values: what is an
+    affine function of them (as x = 2 * value + 1), at three messages, follows them. All that
+    follows is set; so it does not matter which of it is only a copy.
     """
 
     def __init__(self, rule: Dict[str, int]) -> None:
@@ -227,7 +222,11 @@ class _Wrap:
                 continue
             # As if the last value but one had just been published.
             number = relation(self.last - self.step)
-            if number is not None and slot.set(number):
+            if number is not None:
+                try:
+                    slot.put(number)
+                except Exception:  # the node's own, such as of a property
+                    continue
                 names.append(slot.name)
         if names:
             self.after = 0
@@ -258,130 +257,54 @@ def _relation(pairs: List[Tuple[int, Optional[int]]]) -> Optional[Callable[[int]
     return number_for
 
 
-class _Slot:
-    """Something that holds a whole number.
+class _Slot(NamedTuple):
+    """Something that holds a whole number: key is the same at each message, put() sets it."""
 
-    key: the same at each message
-    """
-
-    def __init__(self, key: Key, name: str, held: Any, put: Callable[[Any], object]) -> None:
-        self.key, self.name = key, name
-        self._held, self._put = held, put
-        self.value = _number(held)
-
-    def set(self, number: int) -> bool:
-        held = self._held
-        try:
-            if isinstance(held, itertools.count):
-                self._put(itertools.count(number, *held.__reduce__()[1][1:]))
-            else:
-                self._put(type(held)(number))
-            return True
-        except Exception:
-            return False
+    key: Key
+    name: str
+    value: int
+    put: Callable[[int], object]
 
 
-def _number(held: Any) -> Optional[int]:
-    """Return the whole number that something is, or None if it is none."""
-    if isinstance(held, bool):
-        return None
-    if isinstance(held, int):
-        return held
-    if isinstance(held, float) and held.is_integer():
-        return int(held)
-    if isinstance(held, itertools.count):
-        return _number(held.__reduce__()[1][0])
-    if type(held).__module__ == "numpy" and hasattr(held, "__index__"):
-        return int(held)
-    if isinstance(held, ctypes._SimpleCData) and isinstance(held.value, int):
-        return held.value
-    return None
-
-
-def _slots(frames: List[types.FrameType]) -> Iterator["_Slot"]:
-    seen: Set[int] = set()
+def _slots(frames: List[types.FrameType]) -> Iterator[_Slot]:
     for depth, frame in enumerate(frames):
-        variables = frame.f_locals
-        if variables is frame.f_globals:
-            continue
+        if frame.f_locals is not frame.f_globals:
+            for name, held in list(frame.f_locals.items()):
+                put = functools.partial(_put_local, frame, name)
+                yield from _slots_of(held, (depth, frame.f_code.co_name, name), name, put)
+    for variables in {id(frame.f_globals): frame.f_globals for frame in frames}.values():
         for name, held in list(variables.items()):
-            put = _local_setter(frame, name)
-            key = ("local", depth, frame.f_code.co_name, name)
-            yield from _slots_of(held, key, name, put, seen, 0)
-    for frame in frames:
-        if id(frame.f_globals) in seen:
-            continue
-        seen.add(id(frame.f_globals))
-        for name, held in list(frame.f_globals.items()):
-            if not name.startswith("__"):
-                put = functools.partial(frame.f_globals.__setitem__, name)
-                yield from _slots_of(held, ("global", name), name, put, seen, 0)
+            put = functools.partial(variables.__setitem__, name)
+            yield from _slots_of(held, ("global", name), name, put)
 
 
 def _slots_of(
-    held: Any, key: Key, name: str, put: Callable[[Any], object], seen: Set[int], depth: int
-) -> Iterator["_Slot"]:
-    if _number(held) is not None:
-        # A C number is changed in its place: others may hold the same one.
-        is_c = isinstance(held, ctypes._SimpleCData)
-        put_in = (lambda one: setattr(held, "value", one.value)) if is_c else put
-        yield _Slot(key, name, held, put_in)
-        return
-    if depth > 3 or id(held) in seen or held is None or isinstance(held, _SKIP):
-        return
-    is_array = type(held).__module__ == "numpy" and getattr(held, "ndim", 0) == 1
-    if isinstance(held, (list, dict)) or is_array:
-        if len(held) <= 20:
-            seen.add(id(held))
-            items = list(held.items() if isinstance(held, dict) else enumerate(held))
-            for index, one in items:
-                setter = functools.partial(held.__setitem__, index)
-                yield from _slots_of(one, (*key, index), name, setter, seen, depth + 1)
-        return
-    names = list(getattr(held, "__dict__", None) or ()) if _is_of_package(held) else []
-    if isinstance(held, type):
-        names = [n for n in names if not n.startswith("__")]
-    elif _is_of_package(held):
-        # Not what is computed at each look, such as a property.
-        of_class = vars(type(held)).items()
-        names += [n for n, v in of_class if not n.startswith("__") and not hasattr(v, "__get__")]
-        names += list(getattr(type(held), "__slots__", ()))
-    elif hasattr(held, "_md5sum"):  # a message that is kept, and published again and again
-        names = list(held.__slots__)
-    seen.add(id(held))
-    for attribute in names:
-        try:
-            one = getattr(held, attribute)
-        except Exception:
-            continue
-        # An attribute of the class is set there: all its objects share it.
-        owner = held if isinstance(held, type) or attribute in _own_names(held) else type(held)
-        setter = functools.partial(setattr, owner, attribute)
-        yield from _slots_of(one, (*key, attribute), attribute, setter, seen, depth + 1)
+    held: Any, key: Key, name: str, put: Callable[[int], object], depth: int = 0
+) -> Iterator[_Slot]:
+    if type(held) is int:
+        yield _Slot(key, name, held, put)
+    elif depth < _DEEPEST and (_is_of_package(held) or hasattr(held, "_md5sum")):
+        slots = getattr(type(held), "__slots__", ())
+        for attribute in [*getattr(held, "__dict__", ()), *slots]:
+            setter = functools.partial(setattr, held, attribute)
+            one = getattr(held, attribute, None)
+            yield from _slots_of(one, (*key, attribute), attribute, setter, depth + 1)
 
 
-def _own_names(held: Any) -> Set[str]:
-    return set(getattr(held, "__dict__", ())) | set(getattr(held, "__slots__", ()))
-
-
-def _is_of_package(held: Any) -> bool:
-    """Return whether something is a class of the package's own code, or an object of one."""
-    kind = held if isinstance(held, type) else type(held)
-    module = sys.modules.get(kind.__module__)
+def _is_of_package(held: object) -> bool:
+    """Return whether something is an object of a class of the package's own code."""
+    module = sys.modules.get(type(held).__module__)
     path = os.path.realpath(getattr(module, "__file__", None) or "")
     # What catkin's relay runs calls itself __main__, but lies elsewhere.
-    return path.startswith(_SOURCES) or kind.__module__ in ("__main__", "builtins.__main__")
+    return path.startswith(_SOURCES) or type(held).__module__ in ("__main__", "builtins.__main__")
 
 
-def _local_setter(frame: types.FrameType, name: str) -> Callable[[Any], None]:
-    def put(value: Any) -> None:
-        frame.f_locals[name] = value
-        if sys.version_info < (3, 13):
-            to_fast = ctypes.pythonapi.PyFrame_LocalsToFast
-            to_fast.argtypes = [ctypes.py_object, ctypes.c_int]
-            to_fast(frame, 0)
-
-    return put
+def _put_local(frame: types.FrameType, name: str, value: int) -> None:
+    frame.f_locals[name] = value
+    if sys.version_info < (3, 13):
+        to_fast = ctypes.pythonapi.PyFrame_LocalsToFast
+        to_fast.argtypes = [ctypes.py_object, ctypes.c_int]
+        to_fast(frame, 0)
 
 
 if _HOOK:
