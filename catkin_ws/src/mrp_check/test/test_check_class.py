@@ -5,8 +5,6 @@ import csv
 import dataclasses
 import os
 import pathlib
-import re
-import threading
 
 import pytest
 from check_rules import ASKED, Tags, hand_in
@@ -16,7 +14,6 @@ from mrp_check.contract.verdict import unchecked
 from mrp_check.package import package
 from mrp_check.report import json_
 from mrp_check.verdict import check
-from mrp_testing.waiting import DEADLINE
 
 pytestmark = pytest.mark.quick
 
@@ -75,37 +72,11 @@ def test_each_folder_is_a_submission(tmp_path):
     room = Room(tmp_path / "class")
     assert room.verdicts() == {"anna": check.FINDINGS, "berta": check.FINDINGS}
     (_, *begun), *ended = room.said
-    assert sorted(line.split(";")[0] for line, _, _ in ended) == [
+    assert sorted(line for line, _, _ in ended) == [
         "anna: findings",
         "berta: findings",
     ]
     assert [begun, *(part for _, *part in ended)] == [[0, 2], [1, 2], [2, 2]]
-
-
-def test_progress_says_what_runs_and_how_long_it_takes(tmp_path):
-    """The check of anna ends while that of berta runs."""
-    for name in ("anna", "berta"):
-        hand_in(tmp_path / "class", name)
-    begun, ended, said = threading.Event(), threading.Event(), []
-
-    def progress(*line):
-        said.append(line)
-        if len(said) > 1:
-            ended.set()
-
-    class OneByOne(Room):
-        def report_of(self, one, name):
-            if name == "berta":
-                begun.set()
-            assert (begun if name == "anna" else ended).wait(DEADLINE)
-            return super().report_of(one, name)
-
-    OneByOne(tmp_path / "class", progress=progress).check()
-    first, (line, *part), last = said
-    assert first == (f"at most {classroom.JOBS} at a time", 0, 2)
-    assert re.fullmatch(r"anna: findings; about \d+ min left; now: berta", line)
-    assert (part, last) == ([1, 2], ("berta: findings", 2, 2))
-    assert classroom.minutes_left(seconds=90, ended=3, left=5) == 3
 
 
 def two_packages(folder):

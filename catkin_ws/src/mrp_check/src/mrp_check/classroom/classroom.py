@@ -11,10 +11,8 @@ from __future__ import annotations
 
 import concurrent.futures
 import hashlib
-import math
 import os
 import pathlib
-import time
 import uuid
 
 from mrp_check.classroom import marking, submissions
@@ -32,7 +30,6 @@ MOST_JOBS = 64
 # One more than there are processors: a check waits at times, as for a node's next message.
 JOBS = min(len(os.sched_getaffinity(0)) + 1, MOST_JOBS)
 _CHUNK = 2**20  # bytes that are read at once
-_MOST_NAMED = 4  # in the sentence on the progress
 
 
 def quiet(sentence, done, of):
@@ -61,7 +58,7 @@ class Classroom:
         self._machines, self._id = marking, uuid.uuid4().hex
         path = pathlib.Path(folder).resolve()
         self.results = path.with_name(path.name + ".checked")
-        self._common, self._begun, self._now, self._ended = {}, 0.0, [], 0
+        self._common = {}
 
     def check(self, cluster=None):
         """Check all that must be; return a Submission of each, in the order of their names.
@@ -78,13 +75,14 @@ class Classroom:
             "contract": hashlib.sha256(contract.encode()).hexdigest(),
             "checker": marking.checker(),
         }
-        self._begun = time.monotonic()
         self.progress(f"at most {jobs} at a time", 0, len(self.entries))
         with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
             futures = [pool.submit(self._checked, entry) for entry in self.entries]
             try:
                 for number, future in enumerate(concurrent.futures.as_completed(futures), 1):
-                    self._say(number, future.result())
+                    one = future.result()
+                    said = f"{one.name}: {one.report['verdict']}{', as before' * one.kept}"
+                    self.progress(said, number, len(self.entries))
             except BaseException:  # such as Ctrl-C, or a cluster that is gone
                 for future in futures:
                     future.cancel()
@@ -92,17 +90,6 @@ class Classroom:
                 self._machines.stop(self._id)
                 raise
         return [future.result() for future in futures]
-
-    def _say(self, number, one):
-        kept = ", as before" if one.kept else ""
-        said = [f"{one.name}: {one.report['verdict']}{kept}"]
-        left = len(self.entries) - number
-        if left and self._ended:
-            minutes = minutes_left(time.monotonic() - self._begun, self._ended, left)
-            said.append(f"about {minutes} min left")
-        if self._now:
-            said.append(f"now: {', '.join(self._now[:_MOST_NAMED])}")
-        self.progress("; ".join(said), number, len(self.entries))
 
     def _checked(self, entry):
         """Return a Submission, whatever happens: what is wrong with one stops no other."""
@@ -127,12 +114,7 @@ class Classroom:
             if kept and kept.get("depends_on") == depends_on:
                 return Submission(name, kept["report"], True, depends_on)
             package = package or self._package(entry, scratch)
-            self._now.append(name)
-            try:
-                report = self.report_of(package, name)
-            finally:
-                self._now.remove(name)
-                self._ended += 1
+            report = self.report_of(package, name)
         if report["verdict"] != UNCHECKED:
             json_.keep(file, {"depends_on": depends_on, "report": report})
         return Submission(name, report, depends_on=depends_on)
@@ -176,8 +158,3 @@ class Classroom:
         report, page = self._machines.mark(job)
         json_.keep_text(self.results / f"{name}.html", page)
         return report
-
-
-def minutes_left(seconds, ended, left):
-    """Return how long the rest takes, at most, if so many checks ended in so many seconds."""
-    return math.ceil(seconds / ended * left / 60)

@@ -7,6 +7,7 @@ import os
 import re
 import shutil
 import textwrap
+import time
 
 from mrp_check.contract import resources
 from mrp_check.contract.finding import ERROR, NOTE, WARNING, Finding
@@ -24,7 +25,7 @@ _COLOURS = {
     NOTE: "36",
 }
 _WIDTH = 100  # characters
-_BAR = "|{bar:20}| {n}/{total}"  # for tqdm
+_BAR = "|{bar:20}| {n}/{total}, {remaining} left"  # for tqdm
 
 # A package's output and file names must not steer a terminal, and must fit into UTF-8 and XML.
 _UNFIT = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\ud800-\udfff\ufffe\uffff]")
@@ -34,7 +35,7 @@ class Progress:
     """Says what is being done: in one line of a terminal, perhaps with a bar, or line by line."""
 
     def __init__(self, stream):
-        self.stream, self.terminal = stream, stream.isatty()
+        self.stream, self.terminal, self.began = stream, stream.isatty(), time.monotonic()
 
     def show(self, sentence, done=0, of=0):
         """done, of: how many are done of how many, if that is known"""
@@ -43,7 +44,8 @@ class Progress:
             from tqdm import tqdm
 
             plain_only = "utf" not in (self.stream.encoding or "").lower()
-            bar = tqdm.format_meter(done, of, 0, bar_format=_BAR, ascii=plain_only)
+            passed = time.monotonic() - self.began
+            bar = tqdm.format_meter(done, of, passed, bar_format=_BAR, ascii=plain_only)
             sentence = f"{bar} {sentence}"
         elif of:
             sentence = f"{done} of {of}: {sentence}"
