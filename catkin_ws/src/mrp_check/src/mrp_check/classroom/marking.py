@@ -100,7 +100,9 @@ def mark(job: Job) -> tuple[dict, str]:
         env = {**os.environ, "TMPDIR": str(scratch)}
         env["PYTHONPATH"] = os.pathsep.join([str(_HERE.parent), env.get("PYTHONPATH", "")])
         # There, all checks share ROS's headers as clang has read them: see cpp_headers.py.
-        env.setdefault("XDG_CACHE_HOME", os.path.expanduser("~/.cache"))
+        home = os.path.expanduser("~")
+        if os.path.isabs(home):
+            env.setdefault("XDG_CACHE_HOME", os.path.join(home, ".cache"))
         code, said = _run(job, command, env)
         found = json_.kept(report)
         if not found:
