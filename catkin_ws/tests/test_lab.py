@@ -2,6 +2,7 @@
 """Runs `make labs` and `make lab`: every lab shows what labs.yaml says."""
 
 import re
+from xml.etree import ElementTree
 
 import pytest
 import yaml
@@ -56,6 +57,23 @@ def test_entry_has_patterns_to_look_for_and_a_sum(name):
         for key in {"look", "wait", "never"} & set(step):
             for pattern in [step[key]] if isinstance(step[key], str) else step[key]:
                 re.compile(pattern)
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize("path", sorted(FOLDER.glob("launch/*")), ids=lambda path: path.stem)
+def test_launch_file_misspells_no_parameter(path):
+    """A node ignores a parameter that it doesn't know: so it must ask for each that is set."""
+    root = ElementTree.parse(path)
+    programs = {node.get("type").removesuffix("$(arg ending)") for node in root.iter("node")}
+    sources = "".join(
+        source.read_text()
+        for source in (*FOLDER.glob("src/*"), *FOLDER.glob("idioms/*"))
+        if {source.name, source.stem} & programs
+    )
+    for param in root.iter("param"):
+        name = param.get("name").removeprefix("~")
+        relative = name.startswith("/") or param.get("name") == "robot_name"
+        assert relative or re.search(rf'"~?{name}"', sources), name
 
 
 @pytest.mark.quick

@@ -1,113 +1,35 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The publisher of the labs that no idiom can show: bursts, large messages, any type, any timer.
-// Its private parameters, in a lab's launch file, say what it publishes, and how.
+// The publisher of the labs: it counts. Its private parameters, in a lab's launch file, make it
+// latched, or make it publish in bursts, large messages, or only when subscribers are there.
 
-#include <unistd.h>
-#include <clocale>
-#include <cstdint>
+#include <algorithm>
 #include <cstdio>
-#include <fstream>
-#include <memory>
 #include <string>
-#include <thread>
-#include <vector>
 
-#include <mrp_labs/message_text.h>
-#include <mrp_labs/parameters.h>
-#include <mrp_labs/start.h>
 #include <ros/ros.h>
+#include <std_msgs/String.h>
+#include <std_msgs/UInt32.h>
 
+#include "asked_name.h"
+
+// Message: std_msgs::UInt32, or std_msgs::String for a size in bytes.
 template <class Message>
 class LabPublisher
 {
 public:
-  explicit LabPublisher(mrp_labs::Parameters& parameters)
-      : topic_(parameters.get<std::string>("topic", "great_topic")),
-        queue_size_(parameters.get("queue_size", 10)),
-        latch_(parameters.get("latch", false)),
-        timer_type_(parameters.choice("timer", {"ros", "wall", "steady", "rate", "sleep"})),
-        period_(parameters.get("period", 0.5)),
-        work_(parameters.get("work", 0.0)),
-        burst_(parameters.get("burst", 1)),
-        first_burst_(parameters.get("first_burst", burst_)),
-        count_(parameters.get("count", 0)),
-        start_(parameters.get("start", 1)),
-        step_(parameters.get("step", 1)),
-        values_(parameters.texts("values")),
-        size_(parameters.get("size", 0)),
-        wait_for_subscribers_(parameters.get("wait_for_subscribers", 0)),
-        show_memory_(parameters.get("show_memory", false)),
-        show_namespaces_(parameters.get("show_namespaces", false)),
-        shown_type_(parameters.get("show_type", false) ? type() + " " : "")
+  LabPublisher()
   {
-    parameters.noOthers();
-    for (const std::string& value : values_)
-    {
-      message(value);  // an error, if the text does not fit the type
-    }
-  }
-
-  ~LabPublisher()
-  {
-    if (loop_.joinable())
-    {
-      loop_.join();
-    }
-  }
-
-  void start()
-  {
-    if (show_namespaces_)
-    {
-      mrp_labs::printNamespaces();
-    }
-
-    const mrp_labs::Name name(topic_);
-    ros::NodeHandle nh(name.handle);
-    publisher_ = nh.advertise<Message>(name.text, queue_size_, latch_);
-    ROS_INFO_STREAM(name_ << " publishes " << type() << " on " << publisher_.getTopic()
-                          << name.asked());
-
-    if (timer_type_ == "ros")
-    {
-      timer_ = nh_.createTimer(ros::Duration(period_), [this](const auto&) { timerCallback(); });
-    }
-    else if (timer_type_ == "wall")
-    {
-      const ros::WallTimerCallback callback = [this](const auto&) { timerCallback(); };
-      wall_timer_ = nh_.createWallTimer(ros::WallDuration(period_), callback);
-    }
-    else if (timer_type_ == "steady")
-    {
-      const ros::SteadyTimerCallback callback = [this](const auto&) { timerCallback(); };
-      steady_timer_ = nh_.createSteadyTimer(ros::WallDuration(period_), callback);
-    }
-    else
-    {
-      loop_ = std::thread([this] { loop(); });
-    }
+    AskedName name(private_nh_.param<std::string>("topic", "great_topic"));
+    publisher_ = name.nh.advertise<Message>(name.text, private_nh_.param("queue_size", 10),
+                                            private_nh_.param("latch", false));
+    ROS_INFO_STREAM(name_ << " publishes " << ros::message_traits::datatype<Message>() << " on "
+                          << publisher_.getTopic() << name.asked());
+    timer_ = nh_.createTimer(ros::Duration(private_nh_.param("period", 0.5)),
+                             &LabPublisher::timerCallback, this);
   }
 
 private:
-  // In place of a timer.
-  void loop()
-  {
-    ros::Rate rate(1 / period_);
-    while (ros::ok())
-    {
-      timerCallback();
-      if (timer_type_ == "rate")
-      {
-        rate.sleep();
-      }
-      else
-      {
-        ros::Duration(period_).sleep();
-      }
-    }
-  }
-
-  void timerCallback()
+  void timerCallback(const ros::TimerEvent&)
   {
     if (static_cast<int>(publisher_.getNumSubscribers()) < wait_for_subscribers_)
     {
@@ -115,86 +37,63 @@ private:
     }
     wait_for_subscribers_ = 0;
 
-    const int64_t first = sent_;
-    const int burst = sent_ == 0 ? first_burst_ : burst_;
-    for (int i = 0; i < burst && (count_ == 0 || sent_ < count_); ++i)
+    int burst = sent_ == 0 ? first_burst_ : burst_;
+    if (count_ > 0)
     {
-      publisher_.publish(message(valueText(sent_)));
-      ++sent_;
+      burst = std::min(burst, count_ - sent_);
     }
-    if (sent_ == first)
+    if (burst == 0)
     {
       return;
     }
-    std::string line = name_ + " published " + shown_type_ + valueText(first);
-    if (sent_ - first > 1)
+    std::string line = name_ + " published " + std::to_string(value());
+    for (int i = 0; i < burst; ++i)
     {
-      line += " to " + valueText(sent_ - 1);
+      publish();
     }
-    if (show_memory_)
+    if (burst > 1)
     {
-      line += ", memory: " + std::to_string(megabytes()) + " MB";
+      line += " to " + std::to_string(value() - step_);
     }
     ROS_INFO_STREAM(line);
-    mrp_labs::work(work_);
   }
 
-  // The text of the message with that index: the values in turn; or start, start + step, ...
-  std::string valueText(int64_t index) const
+  int value() const
   {
-    return values_.empty() ? std::to_string(start_ + index * step_)
-                           : values_[index % values_.size()];
+    return start_ + sent_ * step_;
   }
 
-  Message message(const std::string& text) const
+  void publish()
   {
     Message msg;
-    mrp_labs::fromText(text, msg);
-    mrp_labs::padTo(size_, msg);
-    return msg;
+    fill(msg);
+    publisher_.publish(msg);
+    ++sent_;
   }
 
-  static std::string type()
+  void fill(std_msgs::UInt32& msg) const
   {
-    return ros::message_traits::datatype<Message>();
+    msg.data = value();
   }
 
-  // What this process takes of the machine's memory (resident set: see proc(5)).
-  static int megabytes()
+  void fill(std_msgs::String& msg) const
   {
-    int64_t total_pages = 0;
-    int64_t resident_pages = 0;
-    std::ifstream("/proc/self/statm") >> total_pages >> resident_pages;
-    return static_cast<int>(resident_pages * sysconf(_SC_PAGESIZE) / 1000000);
+    msg.data = std::to_string(value());
+    msg.data.resize(size_, ' ');
   }
 
-  ros::NodeHandle nh_;
+  ros::NodeHandle nh_, private_nh_{"~"};
   const std::string name_ = ros::this_node::getName();
-
-  const std::string topic_;
-  const int queue_size_;  // 0: unlimited
-  const bool latch_;
-  const std::string timer_type_;
-  const double period_;  // seconds
-  const double work_;    // seconds that each turn takes, by the ROS clock
-  const int burst_;      // messages in each period
-  const int first_burst_;
-  const int count_;  // messages in all, 0: no end
-  const int start_;
-  const int step_;
-  const std::vector<std::string> values_;
-  const int size_;  // bytes, to which a String is filled up
-  int wait_for_subscribers_;
-  const bool show_memory_;
-  const bool show_namespaces_;
-  const std::string shown_type_;
-
-  int64_t sent_ = 0;
+  const int start_ = private_nh_.param("start", 1);
+  const int step_ = private_nh_.param("step", 1);
+  const int count_ = private_nh_.param("count", 0);  // messages in all, 0: no end
+  const int burst_ = private_nh_.param("burst", 1);  // messages in each period
+  const int first_burst_ = private_nh_.param("first_burst", burst_);
+  const int size_ = private_nh_.param("size", 0);  // bytes
+  int wait_for_subscribers_ = private_nh_.param("wait_for_subscribers", 0);
+  int sent_ = 0;
   ros::Publisher publisher_;
   ros::Timer timer_;
-  ros::WallTimer wall_timer_;
-  ros::SteadyTimer steady_timer_;
-  std::thread loop_;
 };
 
 int main(int argc, char* argv[])
@@ -202,32 +101,16 @@ int main(int argc, char* argv[])
   // Print each line at once, also into a pipe, and in one piece, also if others write there, too.
   setvbuf(stdout, nullptr, _IOLBF, BUFSIZ);
   setvbuf(stderr, nullptr, _IOLBF, BUFSIZ);
-  setlocale(LC_CTYPE, "C.UTF-8");  // print UTF-8, which roscpp otherwise shows as "?"
   ros::init(argc, argv, "lab_publisher_cpp_node");
-  ros::NodeHandle nh;
-
-  try
+  if (ros::param::param("~size", 0) > 0)
   {
-    mrp_labs::Parameters parameters;
-    std::vector<std::shared_ptr<void>> publishers;
-    for (mrp_labs::Parameters& of_topic : parameters.ofEachTopic())
-    {
-      const std::string type = of_topic.choice("type", mrp_labs::MessageTypes::names());
-      mrp_labs::MessageTypes::call(
-          type,
-          [&](auto message)
-          {
-            const auto publisher = std::make_shared<LabPublisher<decltype(message)>>(of_topic);
-            publishers.push_back(publisher);
-            publisher->start();
-          });
-    }
+    LabPublisher<std_msgs::String> node;
     ros::spin();
   }
-  catch (const std::exception& error)
+  else
   {
-    ROS_FATAL_STREAM(ros::this_node::getName() << ": " << error.what());
-    return 1;
+    LabPublisher<std_msgs::UInt32> node;
+    ros::spin();
   }
   return 0;
 }

@@ -3,52 +3,71 @@
 // thread. Its private parameters make it late, slow, or ready for another type.
 
 #include <unistd.h>
-#include <clocale>
 #include <cstdio>
-#include <memory>
 #include <string>
-#include <vector>
 
-#include <mrp_labs/message_text.h>
-#include <mrp_labs/parameters.h>
-#include <mrp_labs/start.h>
 #include <ros/ros.h>
+#include <std_msgs/Int32.h>
+#include <std_msgs/String.h>
+#include <std_msgs/UInt32.h>
+
+#include "asked_name.h"
+
+template <class Number>
+std::string shown(const Number& msg)
+{
+  return std::to_string(msg.data);
+}
+
+// The spaces that make a message large are shown by its size.
+std::string shown(const std_msgs::String& msg)
+{
+  const std::string text = msg.data.substr(0, msg.data.find(' '));
+  return "\"" + text + "\" (" + std::to_string(msg.data.size()) + " bytes)";
+}
 
 template <class Message>
 class LabSubscriber
 {
 public:
-  explicit LabSubscriber(mrp_labs::Parameters& parameters)
-      : topic_(parameters.get<std::string>("topic", "great_topic")),
-        other_topic_(parameters.get<std::string>("other_topic", "")),
-        queue_size_(parameters.get("queue_size", 10)),
-        callback_duration_(parameters.get("callback_duration", 0.0)),
-        concurrent_(parameters.get("concurrent", false)),
-        wait_for_publishers_(parameters.get("wait_for_publishers", 0)),
-        delay_(parameters.get("delay", 0.0)),
-        show_thread_(parameters.get("show_thread", false)),
-        show_namespaces_(parameters.get("show_namespaces", false)),
-        shown_type_(parameters.get("show_type", false) ? type() + " " : "")
+  LabSubscriber()
   {
-    parameters.noOthers();
-  }
-
-  void start()
-  {
-    while (ros::ok() && wait_for_publishers_ > 0 && publishers() < wait_for_publishers_)
+    while (ros::ok() && publishers() < late_for_)
     {
       ros::WallDuration(0.1).sleep();
     }
-    mrp_labs::wait(delay_);
-    if (show_namespaces_)
-    {
-      mrp_labs::printNamespaces();
-    }
-
+    ros::WallDuration(late_for_ > 0 ? 3.0 : 0.0).sleep();
     subscriber_ = subscribe(topic_);
     if (!other_topic_.empty())
     {
       other_subscriber_ = subscribe(other_topic_);
+    }
+  }
+
+  void spin()
+  {
+    const std::string spinner = private_nh_.param<std::string>("spinner", "spin");
+    if (spinner == "multi-threaded")
+    {
+      ros::MultiThreadedSpinner(2).spin();
+    }
+    else if (spinner == "async")
+    {
+      ros::AsyncSpinner async_spinner(2);
+      async_spinner.start();
+      ros::waitForShutdown();
+    }
+    else if (spinner == "once")
+    {
+      while (ros::ok())
+      {
+        ros::spinOnce();
+        ros::Duration(private_nh_.param("spin_period", 0.1)).sleep();
+      }
+    }
+    else
+    {
+      ros::spin();
     }
   }
 
@@ -58,16 +77,12 @@ private:
   {
     XmlRpc::XmlRpcValue response;
     XmlRpc::XmlRpcValue state;
-    if (!ros::master::execute("getSystemState", name_, response, state, true))
+    ros::master::execute("getSystemState", name_, response, state, true);
+    for (int i = 0; ros::ok() && i < state[0].size(); ++i)  // a topic and a list of nodes each
     {
-      return 0;  // Ctrl-C has ended the node meanwhile
-    }
-    XmlRpc::XmlRpcValue& topics = state[0];  // of publishers: a name and a list of nodes each
-    for (int i = 0; i < topics.size(); ++i)
-    {
-      if (std::string(topics[i][0]) == ros::names::resolve(topic_))
+      if (state[0][i][0] == XmlRpc::XmlRpcValue(ros::names::resolve(topic_)))
       {
-        return topics[i][1].size();
+        return state[0][i][1].size();
       }
     }
     return 0;
@@ -75,22 +90,22 @@ private:
 
   ros::Subscriber subscribe(const std::string& topic)
   {
-    const mrp_labs::Name name(topic);
-    ros::NodeHandle nh(name.handle);
+    AskedName name(topic);
     ros::SubscribeOptions options;
     options.initByFullCallbackType<const ros::MessageEvent<Message const>&>(
-        name.text, queue_size_, [this](const auto& event) { subscriberCallback(event); });
-    options.allow_concurrent_callbacks = concurrent_;
-    ros::Subscriber subscriber = nh.subscribe(options);
-    ROS_INFO_STREAM(name_ << " subscribes to " << subscriber.getTopic() << ", expects " << type()
-                          << name.asked());
+        name.text, private_nh_.param("queue_size", 10),
+        [this](const auto& event) { subscriberCallback(event); });
+    options.allow_concurrent_callbacks = private_nh_.param("concurrent", false);
+    ros::Subscriber subscriber = name.nh.subscribe(options);
+    ROS_INFO_STREAM(name_ << " subscribes to " << subscriber.getTopic() << ", expects "
+                          << ros::message_traits::datatype<Message>() << name.asked());
     return subscriber;
   }
 
   // The event is the message and what is known about it, such as the name of its publisher.
   void subscriberCallback(const ros::MessageEvent<Message const>& event)
   {
-    const std::string value = shown_type_ + mrp_labs::toText(*event.getConstMessage());
+    const std::string value = shown(*event.getConstMessage());
     const std::string where = show_thread_ ? " in thread " + std::to_string(gettid()) : "";
     ROS_INFO_STREAM(name_ << " received " << value << " from " << event.getPublisherName()
                           << where);
@@ -104,27 +119,14 @@ private:
     }
   }
 
-  static std::string type()
-  {
-    return ros::message_traits::datatype<Message>();
-  }
-
-  ros::NodeHandle nh_;
+  ros::NodeHandle nh_, private_nh_{"~"};
   const std::string name_ = ros::this_node::getName();
-
-  const std::string topic_;
-  const std::string other_topic_;
-  const int queue_size_;            // 0: unlimited
-  const double callback_duration_;  // seconds
-  const bool concurrent_;           // may several threads be in the callback at once?
-  const int wait_for_publishers_;
-  const double delay_;  // seconds from then on before it subscribes
-  const bool show_thread_;
-  const bool show_namespaces_;
-  const std::string shown_type_;
-
-  ros::Subscriber subscriber_;
-  ros::Subscriber other_subscriber_;
+  const std::string topic_ = private_nh_.param<std::string>("topic", "great_topic");
+  const std::string other_topic_ = private_nh_.param<std::string>("other_topic", "");
+  const int late_for_ = private_nh_.param("late_for", 0);  // publishers, which come 3 s before it
+  const double callback_duration_ = private_nh_.param("callback_duration", 0.0);  // seconds
+  const bool show_thread_ = private_nh_.param("show_thread", false);
+  ros::Subscriber subscriber_, other_subscriber_;
 };
 
 int main(int argc, char* argv[])
@@ -132,57 +134,19 @@ int main(int argc, char* argv[])
   // Print each line at once, also into a pipe, and in one piece, also if others write there, too.
   setvbuf(stdout, nullptr, _IOLBF, BUFSIZ);
   setvbuf(stderr, nullptr, _IOLBF, BUFSIZ);
-  setlocale(LC_CTYPE, "C.UTF-8");  // print UTF-8, which roscpp otherwise shows as "?"
   ros::init(argc, argv, "lab_subscriber_cpp_node");
-  ros::NodeHandle nh;
-
-  try
+  const std::string type = ros::param::param<std::string>("~type", "std_msgs/UInt32");
+  if (type == "std_msgs/Int32")
   {
-    mrp_labs::Parameters parameters;
-    const std::string spinner =
-        parameters.choice("spinner", {"spin", "multi-threaded", "async", "once"});
-    const int threads = parameters.get("threads", 2);
-    const ros::Duration spin_period(parameters.get("spin_period", 0.1));
-    std::vector<std::shared_ptr<void>> subscribers;
-    for (mrp_labs::Parameters& of_topic : parameters.ofEachTopic())
-    {
-      const std::string type = of_topic.choice("type", mrp_labs::MessageTypes::names());
-      mrp_labs::MessageTypes::call(
-          type,
-          [&](auto message)
-          {
-            const auto subscriber = std::make_shared<LabSubscriber<decltype(message)>>(of_topic);
-            subscribers.push_back(subscriber);
-            subscriber->start();
-          });
-    }
-    if (spinner == "multi-threaded")
-    {
-      ros::MultiThreadedSpinner(threads).spin();
-    }
-    else if (spinner == "async")
-    {
-      ros::AsyncSpinner async_spinner(threads);
-      async_spinner.start();
-      ros::waitForShutdown();
-    }
-    else if (spinner == "once")
-    {
-      while (ros::ok())
-      {
-        ros::spinOnce();
-        spin_period.sleep();
-      }
-    }
-    else
-    {
-      ros::spin();
-    }
+    LabSubscriber<std_msgs::Int32>().spin();
   }
-  catch (const std::exception& error)
+  else if (type == "std_msgs/String")
   {
-    ROS_FATAL_STREAM(ros::this_node::getName() << ": " << error.what());
-    return 1;
+    LabSubscriber<std_msgs::String>().spin();
+  }
+  else
+  {
+    LabSubscriber<std_msgs::UInt32>().spin();
   }
   return 0;
 }

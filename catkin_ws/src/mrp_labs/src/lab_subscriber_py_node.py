@@ -1,9 +1,7 @@
 #!/usr/bin/env python
 # SPDX-License-Identifier: BSD-3-Clause
 """The subscriber of the labs: prints what it receives, from whom and, if asked, in which thread.
-
-Its private parameters make it late, slow, or ready for another type.
-"""
+Its private parameters make it late, slow, or ready for another type."""
 
 import sys
 import threading
@@ -11,40 +9,30 @@ import time
 
 import rosgraph
 import rospy
-from mrp_labs.message_text import MESSAGE_TYPES, to_text
-from mrp_labs.parameters import Parameters
-from mrp_labs.start import print_namespaces, wait
+from std_msgs.msg import Int32, String, UInt32
+
+TYPES = {type_._type: type_ for type_ in (Int32, String, UInt32)}
+
+
+def shown(msg):
+    # The spaces that make a message large are shown by its size.
+    is_text = isinstance(msg.data, str)
+    return f'"{msg.data.rstrip()}" ({len(msg.data)} bytes)' if is_text else str(msg.data)
 
 
 class LabSubscriber:
-    def __init__(self, parameters):
-        self.type = parameters.choice("type", list(MESSAGE_TYPES))
-        self.topic = parameters.get("topic", "great_topic")
-        self.other_topic = parameters.get("other_topic", "")
-        self.queue_size = parameters.number_or_none("queue_size", 10)
-        self.buff_size = parameters.get("buff_size", 65536)  # bytes
-        self.callback_duration = parameters.get("callback_duration", 0.0)
-        self.wait_for_publishers = parameters.get("wait_for_publishers", 0)
-        self.delay = parameters.get("delay", 0.0)  # seconds from then on before it subscribes
-        self.show_thread = parameters.get("show_thread", False)
-        self.show_namespaces = parameters.get("show_namespaces", False)
-        self.shown_type = self.type + " " if parameters.get("show_type", False) else ""
-        parameters.no_others()
-
-    def start(self):
-        while (
-            not rospy.is_shutdown()
-            and self.wait_for_publishers > 0
-            and self.publishers() < self.wait_for_publishers
-        ):
+    def __init__(self):
+        self.topic = rospy.get_param("~topic", "great_topic")
+        self.callback_duration = rospy.get_param("~callback_duration", 0.0)  # seconds
+        self.show_thread = rospy.get_param("~show_thread", False)
+        late_for = rospy.get_param("~late_for", 0)  # publishers, which come 3 s before it
+        while not rospy.is_shutdown() and self.publishers() < late_for:
             time.sleep(0.1)
-        wait(self.delay)
-        if self.show_namespaces:
-            print_namespaces()
-
+        time.sleep(3.0 if late_for else 0.0)
         self.subscriber = self.subscribe(self.topic)
-        if self.other_topic:
-            self.other_subscriber = self.subscribe(self.other_topic)
+        other_topic = rospy.get_param("~other_topic", "")
+        if other_topic:
+            self.other_subscriber = self.subscribe(other_topic)
 
     def publishers(self):
         """Return how many publishers of the topic the master knows. Without a subscription, nobody
@@ -53,42 +41,36 @@ class LabSubscriber:
         return len(dict(publishers).get(rospy.resolve_name(self.topic), []))
 
     def subscribe(self, topic):
+        type_ = rospy.get_param("~type", "std_msgs/UInt32")
+        queue_size = rospy.get_param("~queue_size", 10)
         subscriber = rospy.Subscriber(
             topic,
-            MESSAGE_TYPES[self.type],
+            TYPES[type_],
             self.subscriber_callback,
-            queue_size=self.queue_size,
-            buff_size=self.buff_size,
+            queue_size=None if queue_size == "none" else queue_size,
+            buff_size=rospy.get_param("~buff_size", 65536),  # bytes
         )
         rospy.loginfo(
-            f"{rospy.get_name()} subscribes to {subscriber.resolved_name}, expects {self.type}"
+            f"{rospy.get_name()} subscribes to {subscriber.resolved_name}, expects {type_}"
             f' (asked for "{topic}")'
         )
         return subscriber
 
     def subscriber_callback(self, msg):
-        value = self.shown_type + to_text(msg)
         where = f" in thread {threading.get_native_id()}" if self.show_thread else ""
         # The header of the connection says who is at its other end.
         publisher = msg._connection_header["callerid"]
-        rospy.loginfo(f"{rospy.get_name()} received {value} from {publisher}{where}")
+        rospy.loginfo(f"{rospy.get_name()} received {shown(msg)} from {publisher}{where}")
         if self.callback_duration > 0:
             time.sleep(self.callback_duration)
             if self.show_thread:
-                rospy.loginfo(f"{rospy.get_name()} finished {value}{where}")
+                rospy.loginfo(f"{rospy.get_name()} finished {shown(msg)}{where}")
 
 
 def main():
     sys.stdout.reconfigure(line_buffering=True)  # print each line at once, also into a pipe
     rospy.init_node("lab_subscriber_py_node")
-
-    try:
-        subscribers = [LabSubscriber(parameters) for parameters in Parameters().of_each_topic()]
-        for subscriber in subscribers:
-            subscriber.start()
-    except (ValueError, rospy.ROSException) as error:
-        rospy.logfatal(f"{rospy.get_name()}: {error}")
-        sys.exit(1)
+    node = LabSubscriber()
     rospy.spin()
 
 

@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Fills a publisher's queue: 5 drops the oldest message, 0 grows, None waits."""
 
-import re
 import unittest
 
 import rostest
@@ -52,15 +51,6 @@ class TestPublisherQueue(unittest.TestCase):
     def check_unlimited(self, lab, language):
         numbers = self.numbers(lab, "publisher_queue_unlimited", language)
         self.assertEqual(numbers, list(range(1, COUNT + 1)), language)
-
-        lines = lab.logged(f"/publisher_queue_unlimited/publisher_{language}")
-        published = re.findall(r"published (\d+) to (\d+), memory: (\d+) MB", "\n".join(lines))
-        self.assertEqual(
-            [(first, last) for first, last, _ in published],
-            [("1", "5"), ("6", "10"), ("11", "15"), ("16", "20")],
-        )
-        memory = [int(megabytes) for _, _, megabytes in published]
-        self.assertGreater(memory[-1] - memory[0], QUEUE * MEGABYTES, f"{language}: {memory}")
 
     def check_none(self, lab):
         numbers = self.numbers(lab, "publisher_queue_none", "py")

@@ -4,13 +4,16 @@
 
 import contextlib
 import gc
+import io
 import sys
 import textwrap
 import unittest
 import weakref
 
+import genpy
 import rospy
 import rostest
+from mrp_labs.msg import Count
 from mrp_testing import log_line
 from mrp_testing.graph import Graph
 from mrp_testing.lab import PACKAGE
@@ -18,7 +21,7 @@ from mrp_testing.nodes import program
 from mrp_testing.process import LIVE, Process
 from mrp_testing.waiting import wait_until, within
 from rosgraph_msgs.msg import Log
-from std_msgs.msg import UInt8MultiArray, UInt32
+from std_msgs.msg import Char, UInt8MultiArray, UInt32
 
 LONG_SLEEP = 0.5  # seconds: much longer than what is asked for, 1 ms
 SUBSCRIBER, PUBLISHER = "/of_subscriber", "/of_publisher"
@@ -161,6 +164,38 @@ class TestRospy(unittest.TestCase):
         self.assertIsInstance(arrays[0].data, bytes)
         self.assertEqual(arrays[0].data, b"\x01\x02\xff")
         self.assertEqual(arrays[0].data[2], 255)
+
+    def test_char_is_a_number_py(self):
+        Char(255).serialize(io.BytesIO())
+        for wrong in (256, -1, "a"):
+            with self.assertRaises(genpy.SerializationError):
+                Char(wrong).serialize(io.BytesIO())
+
+    def headers_on(self, topic):
+        """Return a list, to which each header is added that somebody publishes on a topic."""
+        headers = []
+        subscriber = rospy.Subscriber(topic, Count, lambda msg: headers.append(msg.header))
+        self.addCleanup(subscriber.unregister)
+        return headers
+
+    def test_seq_is_overwritten_and_stamp_is_not_py(self):
+        headers = self.headers_on("/stamped")
+        publisher = self.publisher("/stamped", Count)
+        for _ in range(3):
+            msg = Count()
+            msg.header.seq = 77
+            publisher.publish(msg)
+        wait_until(lambda: len(headers) == 3, lambda: f"three, not {headers}")
+        self.assertEqual([header.seq for header in headers], [1, 2, 3])
+        self.assertEqual([header.stamp for header in headers], [rospy.Time(0)] * 3)
+
+    def test_seq_is_counted_and_stamp_is_what_was_set_cpp(self):
+        headers = self.headers_on("/count")
+        with Process(program(PACKAGE, "stamped_talker"), extra_env=LIVE):
+            wait_until(lambda: len(headers) >= 3, lambda: f"three, not {headers}")
+        numbers = [header.seq for header in headers]
+        self.assertEqual(numbers, list(range(numbers[0], numbers[0] + len(numbers))))
+        self.assertNotIn(rospy.Time(0), [header.stamp for header in headers])
 
     def test_debug_is_not_shown_unless_asked_for_py(self):
         self.assertNotIn("debug", levels(ended(LOG_BY_DEFAULT).lines))

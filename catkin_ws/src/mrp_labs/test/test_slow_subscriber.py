@@ -1,16 +1,16 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Publishes to a fast and a slow subscriber, with a queue for each and without queues."""
+"""Publishes to a fast and a slow subscriber: with a queue for each, or no limit, or no queue."""
 
 import contextlib
 import os
+import pathlib
 import re
 import signal
 import unittest
 
 import rospy
 import rostest
-from mrp_labs.message_text import to_text
 from mrp_testing.clock import TurnedClock
 from mrp_testing.lab import PACKAGE
 from mrp_testing.nodes import connections_of, program
@@ -38,9 +38,8 @@ class TestSlowSubscriber(unittest.TestCase):
         rospy.init_node("test_slow_subscriber")
 
     def start(self, executable, name, *parameters):
-        type_, topic = "_type:=std_msgs/String", f"_topic:=/{self.topic}"
-        name = f"__name:={self.topic}_{name}"
-        process = Process(program(PACKAGE, executable), name, type_, topic, *parameters)
+        names = (f"__name:={self.topic}_{name}", f"_topic:=/{self.topic}")
+        process = Process(program(PACKAGE, executable), *names, *parameters)
         return self.stack.enter_context(process)
 
     @contextlib.contextmanager
@@ -55,17 +54,17 @@ class TestSlowSubscriber(unittest.TestCase):
             values = {"size": f"{MEGABYTES}000000", "count": COUNT, "queue_size": queue_size}
             values.update(period=PERIOD, wait_for_subscribers=2)
             options = [f"_{name}:={value}" for name, value in values.items()]
-            publisher = self.start(executable, "fair", *options)
-            self.slow = self.start("lab_subscriber_py_node.py", "slow")
+            self.fair = self.start(executable, "fair", *options)
+            self.slow = self.start("lab_subscriber_py_node.py", "slow", "_type:=std_msgs/String")
             fair, slow, this = f"/{self.topic}_fair", f"/{self.topic}_slow", rospy.get_name()
-            publisher.wait_for(lambda: connected(fair, self.topic) >= {slow, this}, "the topic")
-            self.clock.begin(publisher, 2, TURN, lambda: self.numbers)
+            self.fair.wait_for(lambda: connected(fair, self.topic) >= {slow, this}, "the topic")
+            self.clock.begin(self.fair, 2, TURN, lambda: self.numbers)
             os.kill(self.slow.pid, signal.SIGSTOP)
             self.stack.callback(os.kill, self.slow.pid, signal.SIGCONT)
             yield
 
     def receive(self, msg):
-        self.numbers.append(int(to_text(msg).split('"')[1]))
+        self.numbers.append(int(msg.data))
 
     def more(self):
         """Let the publisher publish once more; return whether its number comes."""
@@ -105,6 +104,20 @@ class TestSlowSubscriber(unittest.TestCase):
     def test_slow_subscriber_does_not_hold_up_the_other_py(self):
         self.check_only_the_slow_one_loses("lab_publisher_py_node.py")
 
+    def check_unlimited(self, executable):
+        with self.publisher(executable, 0):
+            self.receive_all()
+            # Most of them wait for the slow one, in the publisher's memory.
+            self.assertGreater(megabytes(self.fair.pid), COUNT // 2 * MEGABYTES)
+            os.kill(self.slow.pid, signal.SIGCONT)
+            self.assertEqual(self.received_by_slow(), list(range(1, COUNT + 1)))
+
+    def test_queue_without_a_limit_takes_memory_and_drops_nothing_cpp(self):
+        self.check_unlimited("lab_publisher_cpp_node")
+
+    def test_queue_without_a_limit_takes_memory_and_drops_nothing_py(self):
+        self.check_unlimited("lab_publisher_py_node.py")
+
     def test_without_a_queue_the_slow_subscriber_holds_up_the_other_py(self):
         with self.publisher("lab_publisher_py_node.py", "none"):
             while self.more() or self.more():
@@ -114,6 +127,12 @@ class TestSlowSubscriber(unittest.TestCase):
             self.receive_all()
             self.assertEqual(self.received_by_slow(), list(range(1, COUNT + 1)))
             self.assertEqual(self.numbers, list(range(1, COUNT + 1)))
+
+
+def megabytes(pid):
+    """Return what a process takes of the machine's memory (resident set: see proc(5))."""
+    resident_pages = int(pathlib.Path(f"/proc/{pid}/statm").read_text().split()[1])
+    return resident_pages * os.sysconf("SC_PAGESIZE") // 1000000
 
 
 def connected(node, topic):
