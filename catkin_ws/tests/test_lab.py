@@ -80,7 +80,7 @@ def test_launch_file_misspells_no_parameter(path):
 @pytest.mark.parametrize(
     ("name", "found"),
     [
-        ("lach", "there's no lab 'lach'. The closest: latch, latch_end."),
+        ("lach", "there's no lab 'lach'. The closest: latch."),
         ("", "NAME is missing."),
         ("../x", "there's no lab '../x'."),
     ],

@@ -255,7 +255,7 @@ def test_results_of_rostest_and_pytest(results):
             <testcase classname="test_broken" name="test_broken_variant_fails[e06]"><failure/>
             </testcase>
             <testcase classname="test_lab" name="test_lab_shows_its_claim[latch]"/>
-            <testcase classname="test_lab" name="test_lab_shows_its_claim[latch_end]"><failure/>
+            <testcase classname="test_lab" name="test_lab_shows_its_claim[latch_restart]"><failure/>
             </testcase>
             <testcase classname="a.test_a" name="test_b[1]"/>
             <testcase classname="a.test_a" name="test_b[2]"><skipped/></testcase>""",
@@ -271,7 +271,7 @@ def test_results_of_rostest_and_pytest(results):
         "broken/e05": "passed",
         "broken/e06": "failed",
         "lab/latch": "passed",
-        "lab/latch_end": "failed",
+        "lab/latch_restart": "failed",
         "workspace/test_a/test_b": "skipped",
         "docker/test_run/test_c": "passed",
     }

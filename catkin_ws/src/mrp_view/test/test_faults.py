@@ -99,7 +99,7 @@ class TestFaults(unittest.TestCase):
 
     def test_private_names_are_islands(self):
         with Viewer() as viewer, Client(viewer.address) as page:
-            with Lab("namespaces_private.launch"):
+            with Lab("namespaces.launch", "topic:=~great_topic"):
                 page.wait_for(
                     lambda: sum("4 islands" in finding["text"] for finding in page.findings) == 2,
                     "four islands in each group",
