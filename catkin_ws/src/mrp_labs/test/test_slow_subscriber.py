@@ -108,7 +108,7 @@ class TestSlowSubscriber(unittest.TestCase):
     def check_unlimited(self, executable):
         with self.publisher(executable, 0):
             self.receive_all()
-            # Most of them wait in the publisher's memory. With a queue of 5, it grows by about 40 MB.
+            # Most of them wait in the publisher's memory. A queue of 5 makes it grow by 40 MB.
             grown = megabytes(self.fair.pid) - self.before
             self.assertGreater(grown, 12 * MEGABYTES)
             os.kill(self.slow.pid, signal.SIGCONT)
