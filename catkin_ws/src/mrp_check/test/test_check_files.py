@@ -309,18 +309,10 @@ def test_a_package_that_is_not_here_is_named_as_debian_has_it(
 
 
 @pytest.mark.parametrize(
-    ("name", "url", "found"),
-    [
-        ("turtlesim", "", [3]),
-        ("turtlesim", "<url>http://www.ros.org/turtlesim</url>", []),
-        ("turtlesim", "<url>http://www.ros.org/wiki/turtlesim</url>", []),
-        *[("our_turtle", "", []), ("Some_pkg", "", [3]), ("2_pkg", "", [3]), ("some-pkg2", "", [])],
-    ],
-    ids=range(7),
+    ("name", "found"), [("our_turtle", []), ("Some_pkg", [3]), ("2_pkg", [3]), ("some-pkg2", [])]
 )
-def test_a_package_has_a_usual_name_of_its_own(name, url, found, tmp_path, capfd):
-    text = MANIFEST.replace("some_pkg", name).replace("</package>", f"{url}</package>")
-    cmake_text = CMAKE.replace("some_pkg", name)
+def test_a_package_has_a_usual_name(name, found, tmp_path, capfd):
+    text, cmake_text = (one.replace("some_pkg", name) for one in (MANIFEST, CMAKE))
     package = check_rules.make(tmp_path, package_DOT_xml=text, CMakeLists_DOT_txt=cmake_text)
     assert [one.line for one in file_findings(package_name, package, spec=SPEC)] == found
     assert capfd.readouterr() == ("", "")  # catkin_pkg prints its warnings, unless asked not to
@@ -515,20 +507,5 @@ def test_catkin_simple_finds_what_package_xml_names(name, number, tmp_path):
 def test_a_name_that_ros_warns_of(name, found, tmp_path):
     package = check_rules.make(tmp_path / "some_pkg", src__odd_DOT_py=SCRIPT.format("python"))
     node = Started("some_pkg", "odd.py", name, "/", "", [], [], "", "", "launch/a.launch", 2)
-    launch = Launch("", nodes=[node], files=[], file="launch/a.launch")
-    assert told(of_any(launch_nodes, package, launch=launch), "warning") == found
-
-
-@pytest.mark.parametrize(
-    ("package_name", "program", "found"),
-    [
-        ("some", "od", [("package-name", 2)]),
-        ("some", "other", []),
-        ("other", "od", []),
-    ],
-)
-def test_a_launch_file_of_before_the_package_was_renamed(package_name, program, found, tmp_path):
-    package = check_rules.make(tmp_path / "some_pkg", src__odd_DOT_py=SCRIPT.format("python"))
-    node = Started(package_name, program, "a", "/", "", [], [], "", "", "launch/a.launch", 2)
     launch = Launch("", nodes=[node], files=[], file="launch/a.launch")
     assert told(of_any(launch_nodes, package, launch=launch), "warning") == found

@@ -8,7 +8,6 @@ from mrp_check.code import python_read
 from mrp_check.contract.finding import CERTAIN
 from mrp_check.package.cmake import parsed
 from mrp_check.rules.code import (
-    arguments,
     callbacks,
     goals,
     ignored,
@@ -49,19 +48,10 @@ def test_tabs_among_spaces(tmp_path):
     package = check_rules.make(tmp_path / "some_pkg", src__a_DOT_py=lines)
     _, finding = python_read.read(package, "src/a.py")
     assert finding.line == 3 and "Lines with tabs: 2." in finding.message
-    # Behind them it reads on, with as many spaces for a tab as the author saw.
-    source, further = python_read.further(package, "src/a.py")
-    assert source is not None and [one.line for one in further] == [5]
 
 
 WAITS = "c.wait_for_server(rospy.Duration(5))"
 RESULT = "c.wait_for_result(rospy.Duration(5))"
-HEAR = "def hear(m):\n    "
-HEARD = "rospy.Subscriber('a', String, hear)"
-TWIST = "from geometry_msgs.msg import Twist\nt = Twist()\n"
-SERVES = "import time\ns = actionlib.SimpleActionServer('a', A, f, False)"
-EMPTY = "from std_srvs.srv import Empty, EmptyResponse\n"
-OFFER = "rospy.Service('a', Empty, f)"
 OF_TWO = """class A:
     def __init__(self):
         self.s = rospy.Subscriber('a', String, self.hear)
@@ -78,29 +68,15 @@ rospy.Subscriber('b', String, a.see)
 @pytest.mark.parametrize(
     ("rule", "lines", "found"),
     [
-        (arguments, "a = sys.argv[1]", [4]),
-        (arguments, "if len(sys.argv) > 1:\n    a = sys.argv[1]", []),
-        (arguments, "try:\n    a = sys.argv[1]\nexcept IndexError:\n    a = 1", []),
-        (arguments, "a = sys.argv[0]", []),
         (not_called, f"def ask():\n    rospy.wait_for_service('a')\n{START}\nask()", []),
         (not_called, f"def ask():\n    return 1\n{START}", []),
         (not_called, f"def f():\n    {START}\nif __name__ == '__main__':\n    f()", []),
         (not_called, f"def ask():\n    rospy.spin()\n{START}\nrospy.spin()", []),
-        (rospy_calls, "rospy.loginfo('a', 1)", [4]),
-        (rospy_calls, "rospy.logwarn('%s %d%%', 'a')", [4]),
-        (rospy_calls, "rospy.loginfo('%s %5.2f%%', 'a', 1)", []),
-        (rospy_calls, "rospy.loginfo('100%')", []),
-        (rospy_calls, "rospy.loginfo('%(a)s', {'a': 1})", []),
-        (rospy_calls, "rospy.loginfo_throttle(1, '%*d', 9, 1)", []),
-        (rospy_calls, "rospy.loginfo_throttle(1, 'a', 1)", [4]),
-        (typed, "a = input()\nb = a * 0.5", [4]),
-        (typed, "a = input()\nb = a * 2", []),
         (typed, "if sys.argv[1] > 3:\n    pass", [4]),
         (goals, f"{WORK}rospy.sleep(1)\n{SERVER}", [5]),
         (goals, f"{WORK}rospy.sleep(s.is_preempt_requested())\n{SERVER}", []),
         (goals, f"{WORK}print(i)\n{SERVER}", []),
         (goals, f"def work(goal):\n    rospy.sleep(0.1)\n{SERVER}", []),
-        (goals, "s = actionlib.SimpleActionServer('a', A, work)", [4]),
         (goals, "s = actionlib.SimpleActionServer('a', A, work, False)\ns.start()", []),
         (goals, f"{SERVER.replace(', work', '')}", []),
         (ignored, WAITS, [4]),
@@ -108,33 +84,14 @@ rospy.Subscriber('b', String, a.see)
         (ignored, f"if not {WAITS}:\n    sys.exit(1)", []),
         (ignored, RESULT, [4]),
         (ignored, f"{RESULT}\nc.get_state()", []),
-        (arguments, "n = len(sys.argv)\ntry:\n    int(sys.argv[1])\nexcept ValueError: a()", []),
-        (arguments, "try:\n    a = int(input())\nexcept ValueError: b()", []),
         (callbacks, OF_TWO.format("", "see"), [6]),
         (callbacks, OF_TWO.format("self.b = 2; ", "see"), []),
         (callbacks, OF_TWO.format("", "look"), []),
-        (rospy_calls, f"{HEAR}rospy.loginfo('%.2f', m)\n{HEARD}", [5]),
-        (rospy_calls, f"{HEAR}rospy.loginfo('%s', m)\n{HEARD}", []),
-        (rospy_calls, f"{HEAR}m = m.data; rospy.loginfo('%d', m)\n{HEARD}", []),
-        (rospy_calls, f"{HEAR}rospy.loginfo('%d', m)", []),
-        (typed, f"{TWIST}t.linear.x += input()", [6]),
-        (typed, f"{TWIST}t.linear.x = input()", [6]),
-        (typed, f"{TWIST}t.linear.x = float(input())", []),
-        (typed, f"{TWIST}t.frame += input()", []),
-        (typed, "n = 0\nn += input()", [5]),
-        (typed, "n = ''\nn += input()", []),
-        (typed, "a = input()\nn = a * 2\nwhile n < 3:\n    pass", [4]),
-        (arguments, "a = rospy.myargv()[-1]", []),
-        (arguments, "import other as sys\na = sys.argv[1]", []),
-        (goals, f"{SERVES}", [5]),
-        (goals, f"{SERVES}\ns.start()", []),
-        (responses, f"{EMPTY}def f(r):\n    return EmptyResponse\n{OFFER}", [6]),
-        (responses, f"{EMPTY}def f(r):\n    return EmptyResponse()\n{OFFER}", []),
         (python_names, "import numpy as np\na = np.int(3)", [5]),
         (python_names, "import numpy as np\na = np.int64(3), np.linalg.norm", []),
         (python_names, "import time\na = time.clock()", [5]),
     ],
-    ids=range(55),
+    ids=range(22),
 )
 def test_what_beginners_write(rule, lines, found, tmp_path):
     assert lines_of(rule, case(tmp_path, "py", lines)) == found
@@ -181,30 +138,20 @@ def test_what_answers_a_service_returns_a_response(body, severities, tmp_path):
     assert [one.severity for one in found if one.id == "callbacks"] == severities
 
 
-MOVE = "def move(far):\n    gone = 0\n    while gone < far:\n        gone += 0.1\n"
-
-
 @pytest.mark.parametrize(
     ("code", "found"),
     [
         ("far = input()\nwhile 0 < far:\n    pass", [("error", 1)]),
         ("print(1 / input())", [("error", 1)]),
-        ("print(-input())", [("error", 1)]),
-        ("a = input()\nprint(abs(a))\nprint(abs(a))", [("error", 1)]),
         ("rospy.Rate(input())", [("error", 1)]),
-        (f"{MOVE}move(input())", [("error", 5)]),
         ("a = input()\nif a == 1:\n    pass", [("warning", 1)]),
-        (f"{MOVE}move(input())\nmove(1)", []),
-        (f"{MOVE}move(float(input()))", []),
         ("a = input()\nif a == '1':\n    pass", []),
         ("a = input()\na = int(a)\nprint(a - 1)", []),
         ("print(input() + 'a', input() * 2)", []),
         ("print('%s' % input())", []),
         ("try:\n    print(1 - input())\nexcept TypeError:\n    pass", []),
-        ("def input():\n    return 1\nprint(1 - input())", []),
-        ("if input() < input():\n    pass", []),
     ],
-    ids=range(16),
+    ids=range(9),
 )
 def test_what_is_typed_is_a_text(code, found, tmp_path):
     said = check_rules.python_findings(tmp_path, f"import rospy\n{code}\n")
@@ -284,20 +231,5 @@ MADE = "self.publisher = rospy.Publisher('a', String, queue_size=1)"
 def test_what_a_callback_uses_is_there_before_it_can_be_called(changed, found, tmp_path):
     parts = {"bases": "", "own": "count = 0", "first": HEARS, "second": MADE}
     text = OF_CLASS.format(**{**parts, "use": "self.publisher.publish('x')", **changed})
-    seen = check_rules.python_findings(tmp_path, text)
-    assert told(seen, "warning") == found
-
-
-@pytest.mark.parametrize(
-    ("order", "found"), [("sp", [("callbacks", 9)]), ("ps", [])], ids=["early", "late"]
-)
-def test_what_a_function_uses_is_there_before_it_can_be_called(order, found, tmp_path):
-    parts = {
-        "s": "rospy.Subscriber('b', String, hear)\n",
-        "p": "p = rospy.Publisher('a', String, queue_size=1)\n",
-    }
-    head = "import rospy\nfrom std_msgs.msg import String\n\n\ndef hear(message):\n"
-    main = "".join(parts[one] for one in order)
-    text = f"{head}    p.publish('x')\n\nrospy.init_node('a')\n{main}rospy.spin()\n"
     seen = check_rules.python_findings(tmp_path, text)
     assert told(seen, "warning") == found

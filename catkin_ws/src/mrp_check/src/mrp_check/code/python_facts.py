@@ -7,8 +7,7 @@ import ast
 import re
 from typing import Any, Callable, Iterable, Iterator, Sequence, Union
 
-from mrp_check.code.python_source import Source
-from mrp_check.code.python_text import GAP, UNKNOWN
+from mrp_check.code.python_source import GAP, UNKNOWN, Source
 from mrp_check.confined.places import Kind, Place
 
 Definition = Union[ast.FunctionDef, ast.ClassDef]
@@ -203,19 +202,6 @@ class _Node:
             return 1 / rate if isinstance(rate, (int, float)) and rate else 0
         return value if isinstance(value, (int, float)) else 0
 
-    def item(self, node: ast.Subscript) -> Iterator[Place]:
-        """Look for sys.argv[1] where nobody counts the arguments."""
-        number, source = self.source.value(node.slice), self.source
-        if source.dotted(node.value) != "sys.argv" or not isinstance(node.ctx, ast.Load):
-            return
-        if not isinstance(number, int) or number < 1 or source.is_guarded(node, "IndexError"):
-            return
-        calls = [*source.nodes(ast.Call)]
-        counted = (one for one in calls if getattr(one.func, "id", "") == "len" and one.args)
-        is_counted = any("argv" in ast.dump(one.args[0]) for one in counted)
-        if not is_counted and "rospy.myargv" not in {source.dotted(one.func) for one in calls}:
-            yield self.place(Kind.ARGUMENT, value=number)
-
     def statement(self, node: ast.Expr) -> Iterator[Place]:
         """Look for a call that waits for something, and whose result nobody looks at."""
         call = node.value
@@ -223,7 +209,8 @@ class _Node:
         asks = {one.attr for one in self.source.nodes(ast.Attribute)}
         is_seen = name == "wait_for_result" and "get_state" in asks
         if isinstance(call, ast.Call) and name in _FAIL and not is_seen:
-            yield self.place(Kind.IGNORED, name, value=int(bool(call.args or call.keywords)))
+            if call.args or call.keywords:  # without a limit, it only fails on Ctrl-C
+                yield self.place(Kind.IGNORED, name)
 
     def keyboard(self) -> Iterator[Place]:
         """Look at input(): after rospy.init_node(), Ctrl-C does not end it."""
@@ -327,7 +314,6 @@ _LOOKS: Sequence[tuple[Any, Callable[[_Node, Any], Iterable[Place]]]] = (
     (ast.AugAssign, _Node.changed),
     (ast.Assign, _Node.assigned),
     ((ast.While, ast.For), _Node.loop),
-    (ast.Subscript, _Node.item),
     (ast.Expr, _Node.statement),
     ((ast.FunctionDef, ast.ClassDef), _Node.definition),
 )

@@ -3,16 +3,14 @@
 
 from __future__ import annotations
 
-import ast
 import functools
 import importlib
 import importlib.util
-import inspect
 import pathlib
 import subprocess
 import sys
 import types
-from typing import Any, Callable
+from typing import Any
 
 from mrp_check.code import uses
 from mrp_check.contract.resources import SHARES
@@ -91,27 +89,3 @@ def resolve(name: str) -> tuple[Any, str | None]:
             return found, part
         found = getattr(found, part)
     return found, None
-
-
-def cannot_bind(function: Callable[..., object], call: ast.Call) -> str | None:
-    """Return why a function cannot be called with a call's arguments, or None."""
-    if any(isinstance(a, ast.Starred) for a in call.args) or any(
-        k.arg is None for k in call.keywords
-    ):
-        return None
-    try:
-        signature = inspect.signature(function)
-    except (TypeError, ValueError):
-        return None
-    try:
-        signature.bind(*call.args, **{one.arg: one.value for one in call.keywords if one.arg})
-    except TypeError as error:
-        return str(error)
-    return None
-
-
-def signature(function: Callable[..., object]) -> str:
-    try:
-        return str(inspect.signature(function))
-    except (TypeError, ValueError):
-        return "(...)"

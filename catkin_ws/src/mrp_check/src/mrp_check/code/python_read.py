@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import ast
 import re
-from typing import Callable, Sequence
+from typing import Sequence
 
 from mrp_check.code.python_source import Source
 from mrp_check.contract.finding import Finding
@@ -44,39 +44,8 @@ _PRINT = re.compile(r"(^[ \t]*|^[^'\"#\n]*[:;][ \t]+)print[ \t]+(?![=(])([^\n]*)
 _EXCEPT = re.compile(
     r"^([ \t]*except[ \t]+(?:[\w.]+|\([^()]*\)))[ \t]*,[ \t]*(\w+)[ \t]*:", re.MULTILINE
 )
-_EQUAL = re.compile(r"^([ \t]*(?:if|elif|while)\b[^=\n]*[^=!<>\n])=(?!=)", re.MULTILINE)
-_NO_COMMENT = re.compile(r"(?:[^'\"#]|'(?:[^'\\]|\\.)*'|\"(?:[^\"\\]|\\.)*\")*")
-# What Python says -> how the same is written in Python 3, in as many lines.
-_IN_PYTHON3: Sequence[tuple[str, Callable[[str], str]]] = (
-    (r"call to 'print'", lambda text: _PRINT.sub(_printed, text)),
-    (r"multiple exception types|^invalid syntax$", lambda text: _EXCEPT.sub(r"\1 as \2:", text)),
-    (r"Maybe you meant '=='", lambda text: _EQUAL.sub(r"\1==", text)),
-    (r"inconsistent use of tabs|unindent does not match", lambda text: _untabbed(text)),
-)
 # What Python says -> what stands in each line of the kind.
 _OF_PYTHON2 = (("call to 'print'", _PRINT), ("multiple exception types", _EXCEPT))
-
-
-def _printed(statement: re.Match[str]) -> str:
-    before, rest = statement.groups()
-    code = _NO_COMMENT.match(rest)
-    end = code.end() if code else len(rest)
-    return f"{before}print({rest[:end].rstrip()})  {rest[end:]}"
-
-
-def _untabbed(text: str) -> str:
-    """Return a text with spaces for its tabs, as many as let Python read most of it."""
-    return max((text.expandtabs(size) for size in (8, 4)), key=_lines_read)
-
-
-def _lines_read(text: str) -> float:
-    try:
-        compile(text, "", "exec", ast.PyCF_ONLY_AST)
-    except SyntaxError as error:
-        return error.lineno or 0
-    except (ValueError, RecursionError, MemoryError):
-        return 0
-    return float("inf")
 
 
 def _tabs(lines: Sequence[str]) -> str:
@@ -106,27 +75,6 @@ def _source(file: str, text: str) -> Source:
             place = (file, handler.lineno, handler.col_offset + 1, line)
             raise SyntaxError("multiple exception types must be parenthesized", place)
     return source
-
-
-def further(package: Package, file: str) -> tuple[Source | None, list[Finding]]:
-    """Return (the Source, what else Python says) of a file that Python cannot read, as if what
-    Python says of each of its lines had been corrected; None if only its author can do that."""
-    text, said = package.text(file), ""
-    problems: list[Finding] = []
-    while True:
-        try:
-            return _source(file, text), problems
-        except SyntaxError as error:
-            before, said = said, error.msg or "invalid syntax"
-            correct = next((one for shape, one in _IN_PYTHON3 if re.search(shape, said)), str)
-            corrected = correct(text)
-            if corrected == text:
-                return None, problems
-            if before not in ("", said):
-                problems.append(_syntax(package, file, error))
-            text = corrected
-        except (ValueError, RecursionError, MemoryError):
-            return None, problems
 
 
 def read(package: Package, file: str) -> tuple[Source | None, Finding | None]:

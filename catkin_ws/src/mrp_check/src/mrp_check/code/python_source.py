@@ -11,9 +11,10 @@ import warnings
 from typing import Any, Callable, Iterable, Iterator, Optional, Tuple, TypeVar, Union
 
 from mrp_check.code import uses
-from mrp_check.code.python_text import GAP, UNKNOWN, braces, percent
 from mrp_check.contract.finding import Finding
 
+UNKNOWN = object()  # a value that the source does not say plainly
+GAP = "{}"  # what stands in a text for a part that the source does not say plainly
 _MAX_TEXT = 10_000  # characters
 _NANOSECONDS = 1e9  # of a second
 # What is counted with: numbers below the first; of powers, no larger base, and no more bits.
@@ -324,8 +325,6 @@ class Source:
 
     def _binary(self, node: ast.BinOp, depth: int) -> object:
         left, right = self.value(node.left, depth), self.value(node.right, depth)
-        if isinstance(node.op, ast.Mod) and isinstance(left, str):
-            return percent(left, self._items(node.right, depth))
         if isinstance(node.op, ast.Add) and (isinstance(left, str) or isinstance(right, str)):
             text = "".join(part if isinstance(part, str) else GAP for part in (left, right))
             return text if len(text) < _MAX_TEXT else UNKNOWN
@@ -342,10 +341,6 @@ class Source:
         except (ArithmeticError, TypeError):
             return UNKNOWN
 
-    def _items(self, node: ast.expr, depth: int) -> list[object]:
-        nodes = node.elts if isinstance(node, ast.Tuple) else [node]
-        return [self.value(one, depth) for one in nodes]
-
     def _call(self, node: ast.Call, depth: int) -> object:
         name = self.dotted(node.func)
         if name in ("rospy.resolve_name", "rospy.names.resolve_name") and node.args:
@@ -356,16 +351,4 @@ class Source:
             if node.keywords or not parts or len(numbers) < len(parts):
                 return UNKNOWN
             return numbers[0] + (numbers[1] / _NANOSECONDS if len(numbers) > 1 else 0)
-        if isinstance(node.func, ast.Attribute) and node.func.attr == "format":
-            text = self.value(node.func.value, depth)
-            if isinstance(text, str) and not node.keywords:
-                return braces(text, [self.value(argument, depth) for argument in node.args])
-        if isinstance(node.func, ast.Name) and node.func.id == "str" and len(node.args) == 1:
-            value = self.value(node.args[0], depth)
-            return str(value) if isinstance(value, (str, int)) else UNKNOWN
-        if isinstance(node.func, ast.Attribute) and node.func.attr == "join" and node.args:
-            between = self.value(node.func.value, depth)
-            if isinstance(between, str) and isinstance(node.args[0], (ast.List, ast.Tuple)):
-                parts = [self.value(one, depth) for one in node.args[0].elts]
-                return between.join(p if isinstance(p, str) else GAP for p in parts)
         return UNKNOWN

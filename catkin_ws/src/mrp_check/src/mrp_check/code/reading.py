@@ -28,9 +28,7 @@ def read(reader: CppReader, spec: Spec, model: Model, launch: Launch | None) -> 
         if source is None:
             facts.unread.add(file)
             if problem and _is_code(package, file):
-                source, more = python_read.further(package, file)
-                facts.problems += [problem, *more]
-                facts.python.update({file: source} if source else {})
+                facts.problems.append(problem)
             continue
         facts.python[file] = source
         facts.places += python_facts.places(source)

@@ -22,8 +22,6 @@ _HEADERS = {"ros/package.h": "roslib", "ros/package.hpp": "roslib"}
 _INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*[<"]([\w./+-]+)[>"]', re.MULTILINE)
 _IMPORT = re.compile(r"^[ \t]*(?:from|import)[ \t]+([A-Za-z_][\w.]*)", re.MULTILINE)
 _LAUNCHED = re.compile(r'\bpkg\s*=\s*"([A-Za-z]\w*)"|\$\(find\s+([A-Za-z]\w*)\s*\)')
-# What package.xml and CMakeLists.txt say to people alone.
-_WORDS = re.compile(r"<!--.*?-->|<(description|url)\b.*?</\1>|#[^\n]*", re.DOTALL)
 _XML_COMMENT = re.compile(r"<!--.*?-->", re.DOTALL)
 _PYTHON_COMMENT = re.compile(r"^[ \t]*#[^\n]*", re.MULTILINE)
 # The tokens of C++ in which others may seem to begin: a comment, a raw text, a text, a character.
@@ -68,25 +66,6 @@ def made(package: Package) -> set[str]:
     return {name for path in package.of_kind(*DEFINITIONS) for name in generated(path)}
 
 
-def is_old_name(package: Package, owner: str, name: str) -> bool:
-    """Return whether a package that nothing here names can only be this one: what is taken of it
-    is made of a definition of this package's own."""
-    if name not in made(package):
-        return False
-    is_other = owner == package.name or exists(owner) or is_called_so(package, owner)
-    files = [file for file in ("package.xml", "CMakeLists.txt") if file in package.files]
-    texts = (_WORDS.sub("", package.text(file)) for file in files)
-    is_named = any(re.search(rf"\b{re.escape(owner)}\b", text) for text in texts)
-    return not is_other and not is_named
-
-
-def renamed(package: Package, header: str) -> str | None:
-    """Return what a header is called that is included by an old name of the package, or None."""
-    file = last_part(header)
-    is_old = is_old_name(package, package_of_header(header), file.partition(".")[0])
-    return f"{package.name}/{file}" if is_old else None
-
-
 class Use(typing.NamedTuple):
     file: str
     line: int
@@ -117,11 +96,6 @@ def _guesses(name: str, language: str) -> list[str]:
         return [f"ros-{plain}" if language == "msg" else name]
     library = _LIBRARIES.get(name, f"lib{plain}-dev")
     return [library, f"ros-{plain}", python, plain] if language == "cpp" else [python]
-
-
-def exists(name: str) -> bool:
-    """Return whether this machine or Debian has a ROS package of that name."""
-    return is_installed(name) or bool(debian_packages() & {*_guesses(name, "cpp")})
 
 
 def absent(name: str, language: str) -> str:

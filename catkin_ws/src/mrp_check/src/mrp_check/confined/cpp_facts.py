@@ -307,7 +307,6 @@ _LOOKS = {
     **dict.fromkeys(("WHILE_STMT", "DO_STMT", "FOR_STMT"), _Source.look_at_loop),
     "RETURN_STMT": _Source.look_at_return,
     "STRING_LITERAL": _Source.look_at_text,
-    "ARRAY_SUBSCRIPT_EXPR": _Source.look_at_item,
     **dict.fromkeys(("FUNCTION_DECL", "CXX_METHOD"), _Source.look_at_function),
 }
 # (scopes or None for any, names) of a call, what it is, and what looks at it

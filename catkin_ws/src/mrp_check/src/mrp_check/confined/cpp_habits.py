@@ -8,7 +8,7 @@ import re
 from typing import Iterable, Sequence
 
 from mrp_check.confined.cpp_expressions import Cursor, Unit
-from mrp_check.confined.places import Kind, Plain
+from mrp_check.confined.places import Kind
 
 HOME = re.compile(r"/(?:home|Users)/(?![A-Z_]+/)[\w.-]+/[^\s\"'<>;:]*")
 SLEEPS = {"sleep", "usleep", "nanosleep", "sleep_for", "sleep_until"}
@@ -34,10 +34,7 @@ class Habits(Unit):
         name = next((value for value in values if isinstance(value, str)), None)
         if name is None and kind not in (Kind.WAITS, Kind.CALLS):
             return
-        at_once: Plain = None
-        if kind is Kind.SERVES:
-            at_once = any(self.value(argument) is True for argument in arguments[1:])
-        self.add(call, kind, name, type=self.of_type(call, arguments), oneshot=at_once)
+        self.add(call, kind, name, type=self.of_type(call, arguments))
         if kind is Kind.WAITS and name:
             self.add(call, Kind.ASKS, name)
 
@@ -63,28 +60,6 @@ class Habits(Unit):
         if path:
             self.add(literal, Kind.PATH, path[0])
 
-    def look_at_item(self, item: Cursor) -> None:
-        """Look for argv[1] in a main() that does not look at argc."""
-        of, index = [*item.get_children(), None, None][:2]
-        main = self.function(item)
-        number = self.value(index)
-        if main is None or main.spelling != "main" or not isinstance(number, int) or number < 1:
-            return
-        parameters = [*main.get_arguments()]
-        if len(parameters) < 2 or of is None or not self.names(self.peel(of), parameters[1]):
-            return
-        if not any(self.is_counted(node, parameters) for node in main.walk_preorder()):
-            self.add(item, Kind.ARGUMENT, value=number)
-
-    def is_counted(self, cursor: Cursor, parameters: Sequence[Cursor]) -> bool:
-        """Return whether argc is named there, but for ros::init(), or argv is asked for."""
-        if cursor.kind == self.kinds.IF_STMT:
-            asked = next(cursor.get_children(), cursor)
-            return any(self.names(node, parameters[1]) for node in asked.walk_preorder())
-        is_named = cursor.kind == self.kinds.DECL_REF_EXPR and self.names(cursor, parameters[0])
-        around = (one for one in self.above(cursor) if one.kind == self.kinds.CALL_EXPR)
-        return is_named and not any(one.spelling == "init" for one in around)
-
     def look_at_ignored(self, kind: Kind, call: Cursor, arguments: Sequence[Cursor]) -> None:
         """Note a call whose result nobody looks at; of waitForResult(), the state says it, too."""
         wrapping = (self.kinds.UNEXPOSED_EXPR, self.kinds.PAREN_EXPR)
@@ -96,7 +71,8 @@ class Habits(Unit):
                 argument for argument in arguments if next(argument.get_tokens(), None) is not None
             ]
             least = 1 if call.spelling == "waitForService" else 0
-            self.add(call, kind, call.spelling, value=int(len(given) > least))
+            if len(given) > least:  # without a limit, it only fails on Ctrl-C
+                self.add(call, kind, call.spelling)
 
     def look_at_keyboard(self, cursor: Cursor) -> None:
         """Note std::cin >> and getline(std::cin), after ros::init(): before, Ctrl-C ends it."""

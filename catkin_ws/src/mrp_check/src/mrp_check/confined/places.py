@@ -44,7 +44,6 @@ class Kind(enum.Enum):
     KILLS = "kills"  # a process
     COUNTS = "counts"  # the arguments
     # What may go wrong:
-    ARGUMENT = "argument"  # of the command line, which nobody has counted
     BLOCKS = "blocks"  # a subscriber's callback sleeps
     GOAL_LOOP = "goal loop"  # of an action's server, which does not ask whether it is cancelled
     IGNORED = "ignored"  # what a call returns that can fail
@@ -70,14 +69,13 @@ class Place:
         for it
     queue, queue_line: its length, and where that stands
     period: seconds of a timer, or of all turns of a loop that does not ask whether the node is to
-        end; oneshot: whether a timer fires once, or a server starts when it is made
+        end; oneshot: whether a timer fires once
     anonymous: whether a node asks for such a name
     offset: where it stands in its file, in characters
     type, bits: of a counter; type: of a service or an action, its last part
     names: of the variables that a message's field is set from
-    limit, value: a counter that has come to the limit is given the value; which argument of the
-        command line; whether a call that is waited for has a limit, or a loop ends on Ctrl-C; the
-        exit code that is returned
+    limit, value: a counter that has come to the limit is given the value; whether a loop ends
+        on Ctrl-C; the exit code that is returned
     latch: whether a publisher latches, or may
     name, function: of a handle's variable, and the function that it stands in
     holds: the types of the handles in it

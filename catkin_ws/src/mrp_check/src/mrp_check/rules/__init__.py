@@ -10,7 +10,6 @@ from __future__ import annotations
 
 from mrp_check.contract.requirements import ANY
 from mrp_check.rules.code import (
-    arguments,
     callbacks,
     goals,
     homes,
@@ -98,7 +97,6 @@ _FILES = (
     queue,
     counter,
     homes,
-    arguments,
     same_name,
     goals,
     ignored,

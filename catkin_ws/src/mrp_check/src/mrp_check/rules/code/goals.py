@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""An action server looks whether its goal has been cancelled, and starts when it is ready.
+"""An action server is started, and looks whether its goal has been cancelled.
 
-https://wiki.ros.org/actionlib/DetailedDescription; both libraries warn of auto_start themselves.
+https://wiki.ros.org/actionlib/DetailedDescription; of auto_start=True, both libraries warn.
 """
 
 from __future__ import annotations
@@ -18,10 +18,6 @@ from mrp_check.run.case import Case
 
 _ASKS = {"is_preempt_requested", "set_preempted"}
 _LASTING = {"sleep", "publish_feedback"}
-_EARLY = (
-    "The action server starts as soon as it's created, so a goal may come too early.",
-    "Give it {0}, and call start() once everything else is set up.",
-)
 _NEVER = (
     "The action server is created with auto_start=False, but nothing calls its start(), so no"
     " goal ever reaches it.",
@@ -36,11 +32,6 @@ _CANCELLED = (
 def _findings(case: Case) -> Iterator[Finding]:
     for node, files in case.facts.sources.items():
         found = [
-            (p.file, p.line, _EARLY, "false as the last argument")
-            for p in case.facts.of(node, Kind.SERVES)
-            if p.oneshot is True
-        ]
-        found += [
             (p.file, p.line, _CANCELLED, "isPreemptRequested()")
             for p in case.facts.of(node, Kind.GOAL_LOOP)
         ]
@@ -64,9 +55,7 @@ def _in_python(source: Source, named: set[str]) -> Iterator[tuple[int, tuple[str
         if source.dotted(call.func) != "actionlib.SimpleActionServer":
             continue
         at_once = argument(call, 3, "auto_start")
-        if at_once is None or source.value(at_once) is True:
-            yield call.lineno, _EARLY, "auto_start=False"
-        elif source.value(at_once) is False and "start" not in named:
+        if at_once and source.value(at_once) is False and "start" not in named:
             yield call.lineno, _NEVER, "start(), once everything else is set up"
         work = source.definition(argument(call, 2, "execute_cb"))
         if isinstance(work, ast.FunctionDef) and not _ASKS & named:

@@ -10,7 +10,7 @@ from __future__ import annotations
 from typing import Iterator
 
 from mrp_check.confined.places import Kind
-from mrp_check.contract.finding import HABIT, HINT, Finding
+from mrp_check.contract.finding import HABIT, Finding
 from mrp_check.contract.requirements import ANY, Rule
 from mrp_check.run.case import Case
 
@@ -20,7 +20,7 @@ def _findings(case: Case) -> Iterator[Finding]:
         first = {place.text: place for place in case.facts.of(node, Kind.IGNORED)[::-1]}
         for name, place in first.items():
             is_python = case.package.kind(place.file) == "python"
-            when = "when time runs out, or on Ctrl-C" if place.value else "on Ctrl-C"
+            when = "when time runs out, or on Ctrl-C"
             if name == "call":
                 when = "if nobody offers the service, or if it fails"
             yield Finding(
@@ -29,7 +29,7 @@ def _findings(case: Case) -> Iterator[Finding]:
                 " had been answered.",
                 place.file,
                 place.line,
-                HABIT if place.value else HINT,
+                HABIT,
                 expected=f"if not ...{name}(...):" if is_python else f"if (!...{name}(...))",
                 seen=case.package.line(place.file, place.line),
                 fix="Check what it returns. If it's false, say what's missing, and leave.",

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import ast
-import re
 from typing import Iterator
 
 from mrp_check.code.python_facts import argument
@@ -24,19 +23,6 @@ class Responses(PythonRule):
                     yield from self._of(handler)
 
     def _of(self, handler: ast.FunctionDef) -> Iterator[Finding]:
-        for node in ast.walk(handler):
-            name = self.source.dotted(node.value) if isinstance(node, ast.Return) else None
-            if isinstance(node, ast.Return) and re.search(r"\.srv\.\w+Response$", name or ""):
-                text = self.written(node.value) if node.value else ""
-                yield self.finding(
-                    "callbacks",
-                    f"{handler.name}() returns the class {text} instead of an object of it, so"
-                    " every service call fails.",
-                    node,
-                    expected=f"return {text}(...)",
-                    fix=f"Write {text}() with parentheses.",
-                )
-                return
         if not falls_through(handler.body):
             return
         name, last = handler.name, handler.body[-1]

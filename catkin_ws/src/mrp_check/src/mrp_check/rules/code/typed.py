@@ -7,7 +7,6 @@ In Python 2, input() made a number of it. https://docs.python.org/3/whatsnew/3.0
 from __future__ import annotations
 
 import ast
-import re
 from typing import Iterator
 
 from mrp_check.code.python_rule import PythonRule, of_sources
@@ -20,7 +19,6 @@ _EQUALITIES = (ast.Eq, ast.NotEq)
 _NUMERIC = (ast.Sub, ast.Div, ast.FloorDiv, ast.Pow)
 _OF_NUMBERS = {"abs", "range", "round", "rospy.Duration", "rospy.Rate", "rospy.sleep"}
 _NUMBER = (int, float)
-_FIELD_OF_NUMBERS = re.compile(r"u?int\d+|float\d+")
 
 
 class Typed(PythonRule):
@@ -46,15 +44,8 @@ class Typed(PythonRule):
                 fix=f"Write float(...) around {self.written(call)}; or int(...) for whole numbers.",
             )
 
-    def _uses(self) -> Iterator[tuple[ast.expr | ast.stmt, ast.expr, str]]:
+    def _uses(self) -> Iterator[tuple[ast.expr, ast.expr, str]]:
         """Yield what needs a number: all of it, the part that is one, and what it does with it."""
-        for more in self.source.nodes(ast.AugAssign):
-            is_plus = isinstance(more.op, ast.Add) and self._is_counted(more.target)
-            if is_plus or isinstance(more.op, _NUMERIC):
-                yield more, more.value, "computes with it"
-        for given in self.source.nodes(ast.Assign):
-            if self._of_message(given.targets[0]):
-                yield given, given.value, "assigns it to a message's field, which is a number"
         for node in self.source.nodes(ast.expr):
             if isinstance(node, ast.Compare) and isinstance(node.ops[0], _ORDERS + _EQUALITIES):
                 for one, other in (pair := (node.left, node.comparators[0])), pair[::-1]:
@@ -63,12 +54,6 @@ class Typed(PythonRule):
             elif isinstance(node, ast.BinOp) and isinstance(node.op, _NUMERIC):
                 yield node, node.left, "computes with it"
                 yield node, node.right, "computes with it"
-            elif isinstance(node, ast.BinOp) and isinstance(node.op, ast.Mult):
-                for one, other in (pair := (node.left, node.right)), pair[::-1]:
-                    if isinstance(self.source.value(other), float):
-                        yield node, one, "computes with it"
-            elif isinstance(node, ast.UnaryOp) and isinstance(node.op, (ast.USub, ast.UAdd)):
-                yield node, node.operand, "computes with it"
             elif isinstance(node, ast.Call) and len(node.args) == 1:
                 name = self.source.dotted(node.func) or getattr(node.func, "id", "")
                 if name in _OF_NUMBERS and not self.source.definition(node.func):
@@ -83,52 +68,8 @@ class Typed(PythonRule):
             is_own = "input" in self.source.imports or self.source.definition(node.func)
             is_input = isinstance(node.func, ast.Name) and node.func.id == "input"
             return node if is_input and not is_own else None
-        if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Mult):
-            # A text times a whole number is the text, several times.
-            times = isinstance(self.source.value(node.right), int)
-            return self.typed(node.left, depth + 1) if times and depth < 5 else None
-        key = self.source.key(node) if isinstance(node, (ast.Name, ast.Attribute)) else None
-        stored = self.source.stored(key)
-        if key and stored == [None] and depth < 2:
-            given = self._given(key[0], key[1])
-            return self.typed(given, depth + 1) if given else None
         value = self.source.only(node)
         return self.typed(value, depth + 1) if value and depth < 5 else None
-
-    def _given(self, function: ast.AST | None, name: str) -> ast.expr | None:
-        """Return what a parameter of a function is in its only call, by its place."""
-        if not isinstance(function, ast.FunctionDef):
-            return None
-        names = [one.arg for one in function.args.args if one.arg != "self"]
-        calls = [c for c in self.source.nodes(ast.Call) if self._calls(c, function)]
-        if len(calls) != 1 or name not in names or names.index(name) >= len(calls[0].args):
-            return None
-        return calls[0].args[names.index(name)]
-
-    def _calls(self, call: ast.Call, function: ast.FunctionDef) -> bool:
-        named = getattr(call.func, "id", None) or getattr(call.func, "attr", None)
-        return named == function.name
-
-    def _is_counted(self, target: ast.expr) -> bool:
-        """Return whether what is added to is a number."""
-        stored = [one for one in self.source.stored(self.source.key(target)) if one is not None]
-        values = [self.source.value(one) for one in stored]
-        is_number = all(isinstance(value, _NUMBER) for value in values) and bool(values)
-        return is_number or self._of_message(target)
-
-    def _of_message(self, target: ast.expr) -> bool:
-        """Return whether something is a number of one of ROS's own messages."""
-        names = []
-        while isinstance(target, ast.Attribute) and getattr(target.value, "id", "") != "self":
-            names.append(target.attr)
-            target = target.value
-        made = [one for one in self.source.stored(self.source.key(target)) if one is not None]
-        call = made[0] if len(made) == 1 else None
-        class_ = self.message_class(call.func) if isinstance(call, ast.Call) else None
-        for name in reversed(names[1:]):
-            class_ = type(getattr(class_(), name, None)) if class_ else None
-        types = dict(zip(getattr(class_, "__slots__", []), getattr(class_, "_slot_types", [])))
-        return bool(names) and bool(_FIELD_OF_NUMBERS.fullmatch(types.get(names[0], "")))
 
     def _is_number(self, node: ast.expr) -> bool:
         """Return whether an expression is a number, as far as the source says it plainly."""

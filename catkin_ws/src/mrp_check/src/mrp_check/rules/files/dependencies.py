@@ -238,7 +238,7 @@ def _used(case: Case) -> Iterator[tuple[str, int, str]]:
         for header, line in () if uses.is_test(file) else uses.includes(package, file):
             if header.partition("/")[0] in _LIBRARIES:
                 yield file, line, header.partition("/")[0]
-    paths, made = [f"/{path}" for path in package.of_kind("python")], uses.made(package)
+    paths = [f"/{path}" for path in package.of_kind("python")]
     for file in package.of_kind("python"):
         if uses.is_test(file) or file in ("setup.py", "doc/conf.py"):
             continue
@@ -249,9 +249,7 @@ def _used(case: Case) -> Iterator[tuple[str, int, str]]:
                 top in uses.STANDARD | _BROUGHT or is_ros(top) or uses.is_called_so(package, top)
             )
             is_package = module.endswith((".msg", ".srv"))
-            # Of its own definitions, the name is an old one: another rule says so.
-            is_old = is_package and any(one in package.line(file, line) for one in made)
-            if not is_own and not is_others and not is_old and top != package.name:
+            if not is_own and not is_others and top != package.name:
                 if uses.is_of_debian(top) or is_package:
                     yield file, line, module
 

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 import os
 import re
 from typing import Iterator
@@ -40,7 +39,6 @@ def _findings(case: Case) -> Iterator[Finding]:
             yield finding
     if not case.spec.is_contract:
         yield from _illegal(launch)
-        yield from _elsewhere(case, launch)
 
 
 def _illegal(launch: Launch) -> Iterator[Finding]:
@@ -58,21 +56,6 @@ def _illegal(launch: Launch) -> Iterator[Finding]:
                 seen=f'name="{node.name}"',
                 fix=f'Write name="{legal}".',
             )
-
-
-def _elsewhere(case: Case, launch: Launch) -> Iterator[Finding]:
-    """Yield a note for each package that the launch file starts nodes of, and each program that it
-    starts them by, that is not here; and a warning where this package has such a node."""
-    own = _executables(case.package, case.model)
-    for node in launch.nodes:
-        is_ros = node.package == case.package.name or uses.is_called_so(case.package, node.package)
-        # Both names are those of before the package was renamed.
-        is_old = case.package.name.startswith(node.package) and any(
-            one.startswith(node.type) for one in own
-        )
-        if (node.type in own or is_old) and not is_ros:
-            found = _other_package(case.package, case.model, node, None)
-            yield dataclasses.replace(found, certainty=HABIT)
 
 
 def _missing(package: Package, launch: Launch, name: str, spare: list[Started]) -> Finding:

@@ -7,7 +7,6 @@ import collections
 import re
 from typing import Iterator
 
-from mrp_check.code import uses
 from mrp_check.contract.finding import HABIT, Finding
 from mrp_check.contract.requirements import Requirement, Rule
 from mrp_check.package.package import Package
@@ -24,7 +23,6 @@ def _findings(case: Case) -> Iterator[Finding]:
     if not case.spec.is_contract:
         yield from _unusual(package)
         yield from _within(package)
-        yield from _of_ros(package)
     if case.manifest[0] is None or case.model.project is None:
         return
     project, call = case.model.project
@@ -88,25 +86,6 @@ def _unusual(package: Package) -> Iterator[Finding]:
         seen=package.line("package.xml", line),
         fix="Rename the package, if nobody uses it yet.",
     )
-
-
-def _of_ros(package: Package) -> Iterator[Finding]:
-    """Yield a warning if the package is called like one of ROS's own, and is another one: that has
-    its page in its package.xml."""
-    name, text = package.name, package.text("package.xml")
-    if uses.is_of_ros(name) and not re.search(rf"ros\.org/(wiki/)?{name}", text):
-        line = package.find_line("package.xml", "<name", 1)
-        yield Finding(
-            "package-name",
-            f"ROS already has a package {name}. In this workspace, and in shells that source it,"
-            " that one can't be found anymore.",
-            "package.xml",
-            line,
-            HABIT,
-            expected="a name of its own",
-            seen=package.line("package.xml", line),
-            fix=f"Rename the package, such as my_{name}.",
-        )
 
 
 RULE = Rule(

@@ -7,6 +7,7 @@ imported. https://pylint.readthedocs.io/en/stable/user_guide/messages/messages_o
 
 from __future__ import annotations
 
+import ast
 import json
 from concurrent.futures import Future
 from typing import Iterator
@@ -56,24 +57,9 @@ _TABLE = {
         "A function is compared here instead of what it returns: its parentheses are missing.",
         "Call the function.",
     ),
-    "dangerous-default-value": Row(
-        "All calls of this function share one default value: what one puts in, the next one finds.",
-        "Write None, and create the value in the function.",
-        HINT,
-    ),
     "function-redefined": Row(
         "This name was defined before: Python forgets the first definition.",
         "Give one of the two another name.",
-    ),
-    "global-variable-undefined": Row(
-        "`global` names a variable that the module doesn't have before this function has run.",
-        "Give it a first value at the top of the file.",
-        HINT,
-    ),
-    "inconsistent-return-statements": Row(
-        "Some paths through this function return a value, and others return None.",
-        "Return a value on each path.",
-        HINT,
     ),
     "modified-iterating-list": Row(
         "This list is changed while a loop goes over it: the loop skips items.",
@@ -129,11 +115,6 @@ _TABLE = {
         "Give each name its value.",
         READ,
     ),
-    "unused-wildcard-import": Row(
-        "This imports all names of a module, and hides others of the same name.",
-        "Import the names that you use.",
-        HINT,
-    ),
     "used-before-assignment": _NO_VALUE,
     "using-constant-test": Row(
         "This condition never changes. Often the parentheses of a call are missing.",
@@ -171,18 +152,21 @@ def _findings(case: Case) -> Iterator[Finding]:
         said = json.loads(done.output)
     except ValueError:
         raise CannotCheck(f"pylint failed: {done.errors.strip()[-300:]}") from None
+    own = {node.name for source in read.values() for node in source.nodes(ast.ClassDef)}
     for one in said:
         row = _TABLE.get(one["symbol"])
         file = next((f for f, path in zip(files, paths) if path.endswith(one["path"])), None)
-        if row and file and _is_sure(one) and one["line"] not in read[file].told:
+        if row and file and _is_sure(one, own) and one["line"] not in read[file].told:
             name = f"pylint calls {one['symbol']}"
             yield row.finding("pylint", package, file, one["line"], name, one["message"])
 
 
-def _is_sure(said: dict[str, str]) -> bool:
+def _is_sure(said: dict[str, str], own: set[str]) -> bool:
+    """own: the package's own classes"""
     if said["symbol"] != "no-member":
         return True
-    return said["message"].startswith(tuple(f"Instance of '{name}'" for name in _CLASSES))
+    known = _CLASSES | own
+    return said["message"].startswith(tuple(f"Instance of '{name}'" for name in known))
 
 
 RULE = Rule(
