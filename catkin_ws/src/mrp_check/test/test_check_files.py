@@ -10,16 +10,13 @@ import pytest
 from check_rules import CMAKE, MANIFEST, NODE, file_findings, told
 from mrp_check import releases
 from mrp_check.code import executables, uses
-from mrp_check.confined.launch_dump import Started
 from mrp_check.contract.finding import ERROR, NOTE, WARNING
 from mrp_check.package import cmake
 from mrp_check.package import manifest as manifests
 from mrp_check.package.cmake import Model, parsed
-from mrp_check.package.launch import Launch
 from mrp_check.rules.files import cmake as cmake_rule
 from mrp_check.rules.files import (
     dependencies,
-    launch_nodes,
     manifest,
     messages,
     package_name,
@@ -501,11 +498,3 @@ def test_catkin_simple_finds_what_package_xml_names(name, number, tmp_path):
     package = check_rules.make(tmp_path / "some_pkg", CMakeLists_DOT_txt=text, **source)
     found = [one for one in of_any(dependencies, package) if "find_package" in one.message]
     assert len(found) == number
-
-
-@pytest.mark.parametrize(("name", "found"), [("a_1", []), ("a.py", [("launch-nodes", 2)])])
-def test_a_name_that_ros_warns_of(name, found, tmp_path):
-    package = check_rules.make(tmp_path / "some_pkg", src__odd_DOT_py=SCRIPT.format("python"))
-    node = Started("some_pkg", "odd.py", name, "/", "", [], [], "", "", "launch/a.launch", 2)
-    launch = Launch("", nodes=[node], files=[], file="launch/a.launch")
-    assert told(of_any(launch_nodes, package, launch=launch), "warning") == found

@@ -74,11 +74,11 @@ BROKEN = {
     "own_group": (PUBLISHER_PY, f'{PUBLISHER_PY} ns="more"', [("launch-group", 5)], "/mrp/more"),
     "unknown_attribute": (
         *(PUBLISHER_PY, f'{PUBLISHER_PY} ouput="log"'),
-        *([("launch-file", 5)], 'output="..."'),
+        *([("launch-file", 5)], "Write output for ouput"),
     ),
     "element_elsewhere": (
         *(NODES[1], NODES[1].replace("/>", '><arg name="a" value="1"/></node>')),
-        *([("launch-file", 5)], "<arg> within <node>"),
+        *([("launch-file", 5)], "unrecognized 'arg' child tag"),
     ),
     "text_between": (NODES[1], f"/{NODES[1]}", [("launch-file", 5)], "between the tags"),
     "unknown_element": ("  <arg name", "  <prameter/>\n  <arg name", [("launch-file", 2)], "param"),

@@ -8,7 +8,7 @@ import pytest
 from mrp_check.code.facts import Facts
 from mrp_check.confined import cpp_headers
 from mrp_check.confined.places import Kind
-from mrp_check.rules.code import arguments, goals, homes, ignored, slow_callback
+from mrp_check.rules.code import goals, homes, ignored, slow_callback
 from mrp_check.rules.run import ctrl_c, waiting
 
 pytestmark = [pytest.mark.quick, pytest.mark.xdist_group("check_places")]
@@ -54,13 +54,12 @@ int main(int argc, char** argv)
 {
   ros::init(argc, argv, "a");
   ros::NodeHandle nh;
-  std::string name = argv[1];  // argument 1
   Client client("do_it", true);  // commands do_it TestAction
-  client.waitForServer();  // ignored waitForServer
-  client.waitForResult(ros::Duration(3));  // ignored waitForResult limited
+  client.waitForServer();
+  client.waitForResult(ros::Duration(3));  // ignored waitForResult
   auto caller = nh.serviceClient<std_srvs::SetBool>("set_it");  // asks set_it SetBool
   std_srvs::SetBool service;
-  caller.call(service);  // ignored call limited
+  caller.call(service);  // ignored call
   auto server = nh.advertiseService("offer_it", answer);  // offers offer_it SetBool
   auto subscriber = nh.subscribe("words", 1, hear);
   double gain;
@@ -98,7 +97,7 @@ int main(int argc, char** argv)
   if (!caller.isPersistent()) exit(-1);
   auto joint = nh.subscribe("words", 1, hear);
   nh.param("gain", gain, 2.0);
-  ROS_INFO("while (true) { std::cin >> x; } argv[1] // /home/NAME/map.yaml and /* \\n");
+  ROS_INFO("while (true) { std::cin >> x; } // /home/NAME/map.yaml and /* \\n");
   for (int i = 0; i < 100 && ros::ok(); ++i) ros::Duration(0.5).sleep();
   while (running()) ros::spinOnce();
   while (true)
@@ -121,10 +120,6 @@ def of_line(place):
     words = [place.kind.value, place.text, place.type, place.function]
     if place.kind is Kind.LOOP:
         words = ["loop", place.text, f"{place.period:g}" if place.period else ""]
-    elif place.kind in (Kind.ARGUMENT, Kind.IGNORED):
-        words = [place.kind.value, place.text]
-        words.append("limited" if place.kind is Kind.IGNORED and place.value else "")
-        words.append(str(place.value) if place.kind is Kind.ARGUMENT else "")
     return " ".join(filter(None, words))
 
 
@@ -132,7 +127,7 @@ LOOKED_AT = set(Kind) - {
     *(Kind.INIT, Kind.FUNCTION, Kind.HANDLE, Kind.SUBSCRIBER, Kind.SLEEP, Kind.SPIN, Kind.TIMER),
     *(Kind.STEP, Kind.COUNTER, Kind.EXIT, Kind.WAITS, Kind.CALLS),
 }
-RULES = arguments, goals, homes, ignored, slow_callback, waiting, ctrl_c
+RULES = goals, homes, ignored, slow_callback, waiting, ctrl_c
 
 
 def findings(package, facts):
@@ -155,7 +150,7 @@ def test_what_may_go_wrong_is_found_at_its_line(tmp_path):
         if "  // " in line
     }
     assert {line: ", ".join(sorted(one)) for line, one in found.items()} == said
-    right = ("offers", "sets", "commands", "ends", "starts", "kills")
+    right = ("offers", "serves", "sets", "commands", "ends", "starts", "kills")
     lines = {number for number, text in said.items() if not text.startswith(right)}
     assert {line for line, _ in findings(package, facts)} == lines
 

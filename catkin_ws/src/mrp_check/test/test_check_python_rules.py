@@ -13,8 +13,6 @@ from mrp_check.rules.code import (
     ignored,
     not_called,
     python_names,
-    responses,
-    rospy_calls,
     typed,
 )
 from mrp_check.rules.files import scripts, targets

@@ -9,7 +9,6 @@ import xml.parsers.expat
 from typing import Iterable, Iterator, Sequence
 
 from mrp_check.contract.finding import HABIT, Finding
-from mrp_check.contract.names import line_of
 from mrp_check.package.package import Package, declared_entity
 
 
@@ -22,6 +21,14 @@ class Element:
     line: int
     parents: list
     texts: list[tuple[str, int]] = dataclasses.field(default_factory=list)
+
+
+class UnclosedError(xml.parsers.expat.ExpatError):
+    """opened: the element that is open where the parser stops"""
+
+    def __init__(self, error: xml.parsers.expat.ExpatError, opened: Element) -> None:
+        super().__init__(str(error))
+        self.code, self.lineno, self.opened = error.code, error.lineno, opened
 
 
 class EntityError(xml.parsers.expat.ExpatError):
@@ -53,7 +60,10 @@ def elements(data: bytes) -> list[Element]:
     parser.StartElementHandler = start
     parser.CharacterDataHandler = say
     parser.EndElementHandler = lambda tag: stack.pop()
-    parser.Parse(data, True)
+    try:
+        parser.Parse(data, True)
+    except xml.parsers.expat.ExpatError as error:
+        raise UnclosedError(error, stack[-1]) if stack else error from None
     return found
 
 
@@ -83,11 +93,10 @@ def xml_finding(
     what = xml.parsers.expat.ErrorString(error.code) or str(error)
     line = error.lineno
     hint, cause = "", line
-    if what == "mismatched tag":
-        cause, hint = _unclosed(package, path, line)
-    elif what == "no element found":
-        cause, hint = _unclosed(package, path, None)
-        cause = cause or len(package.lines(path))
+    unclosed = what in ("mismatched tag", "no element found")
+    if unclosed and isinstance(error, UnclosedError):
+        cause = error.opened.line
+        hint = f"<{error.opened.tag}> is opened there and not closed."
     elif what == "not well-formed (invalid token)":
         cause, hint = _bad_token(package, path, line)
     return Finding(
@@ -117,33 +126,3 @@ def _bad_token(package: Package, path: str, line: int) -> tuple[int, str]:
         if number < line and ">" in text:
             break
     return line, "Perhaps a quotation mark, a > or an = is missing, or & should be &amp;."
-
-
-_TAG = re.compile(
-    r"<!--.*?-->|<\?.*?\?>|<!.*?>|<(?P<close>/)?(?P<name>[\w:-]+)[^<>]*?(?P<end>/)?>", re.DOTALL
-)
-
-
-def _unclosed(package: Package, path: str, noticed: int | None) -> tuple[int, str]:
-    """Return (line of the tag that is opened and not closed, what to say of it)."""
-    text, stack = package.text(path), []
-    for match in _TAG.finditer(text):
-        if not match.group("name") or match.group("end"):
-            continue
-        name, line = match.group("name"), line_of(match)
-        if not match.group("close"):
-            stack.append((name, line))
-            continue
-        if stack and stack[-1][0] == name:
-            stack.pop()
-            continue
-        if any(name == opened for opened, _ in stack):
-            opened, where = stack[-1]
-            return where, f"<{opened}> is opened there and not closed."
-        if stack:
-            opened, where = stack[-1]
-            return line, f"<{opened}> on line {where} is closed by </{name}>."
-        return line, f"</{name}> closes something that isn't open."
-    if stack:
-        return stack[-1][1], f"<{stack[-1][0]}> is opened there and not closed."
-    return noticed or 1, ""

@@ -14,12 +14,11 @@ from mrp_check.package.xml_file import Element, stray
 from mrp_check.run import evidence
 from mrp_check.run.case import Case
 
-_TAGS = ("launch node group arg param rosparam remap include env machine test master").split()
-_OF_NODES = "env param remap rosparam".split()
-_WITHIN = {"include": ["arg", "env"], "node": _OF_NODES, "test": _OF_NODES}
-_ATTRIBUTES = (
-    "args clear_params cwd if launch-prefix name ns output pkg respawn type unless".split()
-)
+# roslaunch's elements, and the attributes of a <node>.
+_KNOWN = (
+    "launch node group arg param rosparam remap include env machine test"
+    " args clear_params cwd if launch-prefix name ns output pkg respawn type unless"
+).split()
 
 
 def _findings(case: Case) -> Iterator[Finding]:
@@ -28,52 +27,37 @@ def _findings(case: Case) -> Iterator[Finding]:
         tags = launch.elements(case.package)
         if launch.error:
             yield _error(launch, tags, case.spec.is_contract)
-        yield from _unknown(tags)
-        yield from _no_attributes(launch, tags)
+        yield from _warned(launch, tags)
         yield from stray("launch-file", case.package, tags, ("rosparam",))
 
 
-def _unknown(tags: Sequence[tuple[str, Element]]) -> Iterator[Finding]:
-    """roslaunch passes over elements that it does not know, or not there."""
-    for file, element in tags:
-        above = element.parents[-1].tag if element.parents else ""
-        known = _WITHIN.get(above, _TAGS)
-        if element.tag not in known:
-            near = nearest(element.tag, known, 0.5)
-            where = f" within <{above}>" if element.tag in _TAGS else ""
-            yield Finding(
-                "launch-file",
-                f"roslaunch doesn't know an element <{element.tag}>{where}, so it ignores it.",
-                file,
-                element.line,
-                HABIT,
-                expected=f"<{near}>" if near else "an element of roslaunch",
-                seen=f"<{element.tag}>",
-                fix=f"Write <{near}>." if near else "Remove it.",
-                why="launch-unknown-tag",
-            )
+# What roslaunch says of an element's attribute or name, or of an element (and the one around it).
+_DOUBTED = re.compile(
+    r"(?:<(\w+)> (?:attribute|name) |unrecognized (?:tag )?)'?([^'\s]+)'?(?:.* tag .*?<(\w+))?"
+)
 
 
-# What roslaunch says of an attribute that it passes over.
-_NO_ATTRIBUTE = re.compile(r"unknown <(\w+)> attribute '([\w-]+)'")
-
-
-def _no_attributes(launch: Launch, tags: Sequence[tuple[str, Element]]) -> Iterator[Finding]:
-    """Yield a warning for each attribute that roslaunch does not know."""
-    said = {match.groups() for match in map(_NO_ATTRIBUTE.search, launch.warned) if match}
-    for file, element in tags:
-        for name in (one for one in element.attributes if (element.tag, one) in said):
-            near = nearest(name, _ATTRIBUTES, 0.7)
-            yield Finding(
-                "launch-file",
-                f"roslaunch doesn't know an attribute {name} of <{element.tag}>, so it ignores it.",
-                file,
-                element.line,
-                HABIT,
-                expected=f'{near}="..."' if near else "an attribute of roslaunch",
-                seen=f'{name}="{element.attributes[name]}"',
-                fix=f"Write {near} for {name}." if near else "Remove it.",
-            )
+def _warned(launch: Launch, tags: Sequence[tuple[str, Element]]) -> Iterator[Finding]:
+    """Yield a warning for each element that roslaunch warns of."""
+    for text in launch.warned:
+        found = _DOUBTED.search(text)
+        of, word, above = found.groups() if found else ("", "", "")
+        said = re.sub(r"^(\[[^]]*\]|WARN:) ", "", text.splitlines()[0]).partition(": <")[0]
+        for file, element in tags:
+            words = (*element.attributes, *element.attributes.values()) if of else (element.tag,)
+            is_it = element.tag == of or not of
+            if is_it and word in words and (not above or element.parents[-1].tag == above):
+                near = nearest(word, _KNOWN, 0.6)
+                yield Finding(
+                    "launch-file",
+                    f"roslaunch warns of this element: {said}",
+                    file,
+                    element.line,
+                    HABIT,
+                    expected="elements, attributes and names that roslaunch takes",
+                    seen=word,
+                    fix=f"Write {near} for {word}." if near else "Correct it, or remove it.",
+                )
 
 
 # Where the fault is, what it is, and what to do.

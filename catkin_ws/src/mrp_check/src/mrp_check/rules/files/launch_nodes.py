@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import os
 import re
 from typing import Iterator
@@ -37,25 +38,12 @@ def _findings(case: Case) -> Iterator[Finding]:
         for finding in _can_start(case, node):
             finding.node = None if case.spec.is_contract else node.type
             yield finding
-    if not case.spec.is_contract:
-        yield from _illegal(launch)
-
-
-def _illegal(launch: Launch) -> Iterator[Finding]:
-    """Yield a warning for each name that ROS takes, and says that it should not be one."""
-    for node in launch.nodes:
-        if not re.fullmatch(r"[A-Za-z]\w*", node.name):
-            legal = re.sub(r"\W", "_", os.path.splitext(node.name)[0])
-            yield Finding(
-                "launch-nodes",
-                f"{node.name} isn't a legal node name: roslaunch and ROS warn about it.",
-                node.file,
-                node.line,
-                HABIT,
-                expected="letters, digits and _, with a letter first",
-                seen=f'name="{node.name}"',
-                fix=f'Write name="{legal}".',
-            )
+    own = _executables(case.package, case.model)
+    for node in launch.nodes if not case.spec.is_contract else ():
+        is_ros = node.package == case.package.name or uses.is_called_so(case.package, node.package)
+        if node.type in own and not is_ros:
+            finding = _other_package(case.package, case.model, node, None)
+            yield dataclasses.replace(finding, certainty=HABIT)
 
 
 def _missing(package: Package, launch: Launch, name: str, spare: list[Started]) -> Finding:
