@@ -132,19 +132,6 @@ def test_what_a_launch_file_and_a_source_use_is_one_finding(tmp_path):
     assert "tf (used in" in said and "turtlesim (used in" in said
 
 
-def test_misspelt_dependency_is_its_own_lines_fault(tmp_path):
-    text_ = MANIFEST.replace("<depend>rospy", "<depend>rosppy")
-    (finding,) = dependency_findings(tmp_path, text_)
-    assert (finding.line, finding.fix) == (10, "Write rospy for rosppy.")
-
-
-def test_package_that_nobody_declares_is_the_using_lines_fault(tmp_path):
-    source = "#include <ros/ros.h>\n#include <ros/package.h>\n"
-    (finding,) = dependency_findings(tmp_path, src__a_DOT_cpp=source)
-    assert (finding.file, finding.line) == ("src/a.cpp", 2)
-    assert "roslib" in finding.message
-
-
 def test_comment_uses_nothing(tmp_path):
     other = "#include <ros/package.h>\n"
     source = f"#include <ros/ros.h>\n// {other}/*\n{other}*/\n"
@@ -313,13 +300,6 @@ def test_a_package_has_a_usual_name(name, found, tmp_path, capfd):
     package = check_rules.make(tmp_path, package_DOT_xml=text, CMakeLists_DOT_txt=cmake_text)
     assert [one.line for one in file_findings(package_name, package, spec=SPEC)] == found
     assert capfd.readouterr() == ("", "")  # catkin_pkg prints its warnings, unless asked not to
-
-
-@pytest.mark.parametrize(("path", "found"), [("src__a", [1]), (".hidden", [])])
-def test_a_package_within_another_one_is_not_found(path, found, tmp_path):
-    files = {f"{path}__package_DOT_xml": MANIFEST}
-    package = check_rules.make(tmp_path / "some_pkg", **files)
-    assert [one.line for one in file_findings(package_name, package, spec=SPEC)] == found
 
 
 INIT = 'ros::init(argc, argv, "a");'

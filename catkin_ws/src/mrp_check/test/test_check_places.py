@@ -8,7 +8,7 @@ import pytest
 from mrp_check.code.facts import Facts
 from mrp_check.confined import cpp_headers
 from mrp_check.confined.places import Kind
-from mrp_check.rules.code import goals, homes, ignored, slow_callback
+from mrp_check.rules.code import goals, homes, ignored
 from mrp_check.rules.run import ctrl_c, waiting
 
 pytestmark = [pytest.mark.quick, pytest.mark.xdist_group("check_places")]
@@ -27,7 +27,7 @@ bool answer(std_srvs::SetBool::Request& q, std_srvs::SetBool::Response& r) { ret
 
 void hear(const std_msgs::String::ConstPtr& message)
 {
-  ros::Duration(2).sleep();  // blocks hear
+  ros::Duration(2).sleep();
 }
 
 struct Doer
@@ -127,7 +127,7 @@ LOOKED_AT = set(Kind) - {
     *(Kind.INIT, Kind.FUNCTION, Kind.HANDLE, Kind.SUBSCRIBER, Kind.SLEEP, Kind.SPIN, Kind.TIMER),
     *(Kind.STEP, Kind.COUNTER, Kind.EXIT, Kind.WAITS, Kind.CALLS),
 }
-RULES = goals, homes, ignored, slow_callback, waiting, ctrl_c
+RULES = goals, homes, ignored, waiting, ctrl_c
 
 
 def findings(package, facts):

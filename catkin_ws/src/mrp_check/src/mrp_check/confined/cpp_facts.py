@@ -105,8 +105,6 @@ class _Source(Counters, Habits):
                 look(self, kind, call, arguments)
         if call.spelling in _KEPT and scope == "NodeHandle":
             self.look_at_kept(call)
-        if call.spelling == "subscribe" and scope == "NodeHandle":
-            self.look_at_callback(call, arguments)
         self.look_at_keyboard(call)
 
     def scope(self, call: Cursor) -> str:

@@ -14,8 +14,6 @@ HOME = re.compile(r"/(?:home|Users)/(?![A-Z_]+/)[\w.-]+/[^\s\"'<>;:]*")
 SLEEPS = {"sleep", "usleep", "nanosleep", "sleep_for", "sleep_until"}
 _ASKS_TO_END = {"ok", "isShuttingDown", "isStarted", "exit", "_exit", "abort"}
 _ASKS_TO_CANCEL = {"isPreemptRequested", "setPreempted", "registerPreemptCallback"}
-_SPINNERS = {"AsyncSpinner", "MultiThreadedSpinner"}  # threads: other callbacks go on
-SHORT = 0.1  # seconds that a callback may sleep
 _LEAVES = {"BREAK_STMT", "RETURN_STMT", "CXX_THROW_EXPR", "GOTO_STMT"}
 
 
@@ -79,21 +77,6 @@ class Habits(Unit):
         named = (one.spelling for one in cursor.get_children() for one in one.walk_preorder())
         if cursor.spelling in ("operator>>", "getline") and "cin" in named:
             self.add(cursor, Kind.KEYBOARD, offset=cursor.extent.start.offset)
-
-    def look_at_callback(self, call: Cursor, arguments: Sequence[Cursor]) -> None:
-        """Note where the callback of a subscriber sleeps."""
-        if _SPINNERS & self.all_calls:
-            return
-        for argument in arguments[2:]:
-            for one in argument.walk_preorder():
-                function = one.referenced if one.kind.is_expression() else None
-                body = function.get_definition() if function is not None else None
-                if body is None:
-                    continue
-                for part in body.walk_preorder():
-                    if self.seconds(part) >= SHORT and self.own_file(part):
-                        self.add(part, Kind.BLOCKS, function=body.spelling)
-                        return
 
     def seconds(self, call: Cursor) -> float:
         """Return how long a call sleeps: 1 if that is not plain, 0 if it does not sleep."""

@@ -44,7 +44,6 @@ class Kind(enum.Enum):
     KILLS = "kills"  # a process
     COUNTS = "counts"  # the arguments
     # What may go wrong:
-    BLOCKS = "blocks"  # a subscriber's callback sleeps
     GOAL_LOOP = "goal loop"  # of an action's server, which does not ask whether it is cancelled
     IGNORED = "ignored"  # what a call returns that can fail
     KEYBOARD = "keyboard"  # somebody has to type

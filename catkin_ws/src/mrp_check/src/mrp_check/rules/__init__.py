@@ -21,7 +21,6 @@ from mrp_check.rules.code import (
     responses,
     rospy_calls,
     same_name,
-    slow_callback,
     spin,
     typed,
 )
@@ -100,7 +99,6 @@ _FILES = (
     same_name,
     goals,
     ignored,
-    slow_callback,
     # build
     pylint,
     catkin_lint,

@@ -83,25 +83,18 @@ class Names(PythonRule):
         if uses.is_sibling(self.package, missing.split(".")[0]):
             return  # it is built with the package: the run shows whether it has that
         renamed, gone = OF_PYTHON_2.get(missing), releases.GONE.get(missing)
-        if renamed:
+        if renamed or gone:
+            said = f"{missing} is the Python 2 name of a module that Python 3 calls {renamed}"
+            if gone:
+                said = f"From Debian {gone.since} on, there's no {gone.what}"
+            instead = gone.instead if gone else renamed
             yield self.finding(
                 "python-names",
-                f"{missing} is the Python 2 name of a module that Python 3 calls {renamed}: Python"
-                " raises a ModuleNotFoundError.",
+                f"{said}: Python raises a ModuleNotFoundError.",
                 node,
-                expected=renamed,
-                fix=f"Import {renamed}, and use that name below.",
-            )
-            return
-        if gone:
-            yield self.finding(
-                "python-names",
-                f"From Debian {gone.since} on, there's no {gone.what}: Python raises a"
-                " ModuleNotFoundError.",
-                node,
-                expected=gone.instead,
-                fix=f"Use {gone.instead}.",
-                why=gone.why,
+                expected=instead,
+                fix=f"Use {instead}.",
+                why=gone.why if gone else "",
             )
             return
         if parent is None:

@@ -5,15 +5,14 @@ from __future__ import annotations
 
 import re
 import sys
-from typing import Collection, Iterable, Iterator, Mapping
+from typing import Iterator, Mapping
 
 from catkin_pkg.package import Package as Manifest
 
 from mrp_check.code import uses
 from mrp_check.code.python_modules import is_ros
 from mrp_check.code.uses import Use
-from mrp_check.contract.finding import HABIT, HINT, READ, Finding, Line
-from mrp_check.contract.names import nearest
+from mrp_check.contract.finding import HABIT, HINT, READ, Finding
 from mrp_check.contract.requirements import Requirement, Rule
 from mrp_check.package.cmake import Call, Model
 from mrp_check.package.manifest import FILE, declared, first_dependency, named
@@ -30,11 +29,6 @@ def _findings(case: Case) -> Iterator[Finding]:
     package, model, (manifest, _) = case.package, case.model, case.manifest
     is_apart = case.spec.is_contract
     used = uses.of_all(package, model, is_apart)
-    # Which packages the exercise is about: to leave one of them out is the manifest's fault. Any
-    # other is the fault of the line that uses it.
-    own = {"roscpp", "rospy"} | {topic.type.split("/")[0] for topic in case.spec.topics.values()}
-    if not case.spec.is_contract:
-        own.update(used)
     # Where the same line lacks them -> package -> its use; a contract tells the sure ones apart.
     lacking: dict[tuple[str, bool], dict[str, Use]] = {}
     for name, use in sorted(used.items()):
@@ -43,47 +37,17 @@ def _findings(case: Case) -> Iterator[Finding]:
         in_cmake = is_open or name in model.components
         if in_manifest and manifest is not None:
             yield from _kind(package, name, use, manifest)
-        if not in_manifest and not in_cmake and name not in own:
-            yield _foreign(package, name, use)
-            continue
         if not in_manifest:
-            near = _misspelt(package, name, named(manifest), used)
-            if near:
-                line = package.find_line(FILE, f">{near}<") or first_dependency(package)
-                tags = [f"<depend>{one}</depend>" for one in (name, near)]
-                yield _misspelt_in(FILE, (FILE, line), name, use, near, *tags)
-            else:
-                lacking.setdefault((FILE, is_apart and use.firm), {})[name] = use
+            lacking.setdefault((FILE, is_apart and use.firm), {})[name] = use
         # Python finds it all the same.
         if not in_cmake and model.catkin and use.language == "cpp":
-            near = _misspelt(package, name, model.components, ())
-            if near:
-                place = model.catkin.file, model.catkin.line
-                wanted = f"find_package(catkin REQUIRED COMPONENTS ... {name} ...)"
-                yield _misspelt_in("find_package(catkin ...)", place, name, use, near, wanted, near)
-            else:
-                lacking.setdefault((model.catkin.file, is_apart and use.firm), {})[name] = use
+            lacking.setdefault((model.catkin.file, is_apart and use.firm), {})[name] = use
     for (file, _), uses_ in lacking.items():
         firm = any(use.firm for use in uses_.values())
         if file == FILE:
             yield _not_in_manifest(package, uses_, manifest, firm)
         elif model.catkin:
             yield _not_in_cmake(uses_, model, model.catkin, firm)
-
-
-def _foreign(package: Package, name: str, use: Use) -> Finding:
-    return Finding(
-        "dependencies",
-        f"{use.file} uses the package {name}, which neither package.xml nor CMakeLists.txt names."
-        " Where it isn't installed, this package can't be built.",
-        use.file,
-        use.line,
-        certainty=READ if use.firm else HABIT,
-        expected=f"no use of {name}; or <depend>{name}</depend>, and {name} in COMPONENTS",
-        seen=package.line(use.file, use.line),
-        fix="Remove the line if nothing uses it; else declare the package.",
-        packages=(name,),
-    )
 
 
 def _kind(package: Package, name: str, use: Use, manifest: Manifest) -> Iterator[Finding]:
@@ -108,32 +72,6 @@ def _kind(package: Package, name: str, use: Use, manifest: Manifest) -> Iterator
         expected=f"<depend>{name}</depend>",
         seen=package.line(FILE, line),
         fix=f"Write <depend>{name}</depend>.",
-        packages=(name,),
-    )
-
-
-def _misspelt(
-    package: Package, name: str, names: Iterable[str], used: Collection[str]
-) -> str | None:
-    """Return the name in `names` that is no package and looks like this one, or None."""
-    others = [one for one in names if one not in used and not uses.is_here(package, one)]
-    return nearest(name, others, 0.8)
-
-
-def _misspelt_in(
-    what: str, place: Line, name: str, use: Use, near: str, expected: str, seen: str
-) -> Finding:
-    is_manifest = what == FILE
-    return Finding(
-        "dependencies",
-        f"{what} doesn't name {_used_in({name: use})}. It names {near}, but there's no such"
-        " package.",
-        *place,
-        certainty=READ if use.firm else HABIT if is_manifest else HINT,
-        expected=expected,
-        seen=seen,
-        fix=f"Write {name} for {near}.",
-        change=(f">{near}<", f">{name}<") if is_manifest else (near, name),
         packages=(name,),
     )
 

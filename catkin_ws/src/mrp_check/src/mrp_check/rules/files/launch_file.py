@@ -54,7 +54,7 @@ def _warned(launch: Launch, tags: Sequence[tuple[str, Element]]) -> Iterator[Fin
                     file,
                     element.line,
                     HABIT,
-                    expected="elements, attributes and names that roslaunch takes",
+                    expected=near or f"another word than {word}",
                     seen=word,
                     fix=f"Write {near} for {word}." if near else "Correct it, or remove it.",
                 )

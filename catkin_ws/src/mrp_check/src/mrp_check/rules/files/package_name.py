@@ -22,7 +22,6 @@ def _findings(case: Case) -> Iterator[Finding]:
     package, launch = case.package, case.launch
     if not case.spec.is_contract:
         yield from _unusual(package)
-        yield from _within(package)
     if case.manifest[0] is None or case.model.project is None:
         return
     project, call = case.model.project
@@ -48,26 +47,6 @@ def _findings(case: Case) -> Iterator[Finding]:
         fix=f"Write {expected}.",
         change=(wrong, right),
     )
-
-
-def _within(package: Package) -> Iterator[Finding]:
-    """Yield a warning for each package in a folder of this one: catkin does not look there.
-
-    https://docs.ros.org/en/independent/api/catkin_pkg/html/catkin_pkg.html#module-catkin_pkg.packages
-    """
-    for path in package.files:
-        if path.endswith("/package.xml") and not any(p[:1] == "." for p in path.split("/")):
-            yield Finding(
-                "package-name",
-                f"{path} turns a folder of this package into another package. catkin doesn't look"
-                " for one there, so it builds nothing in it.",
-                path,
-                1,
-                HABIT,
-                expected="packages next to each other, in src of the workspace",
-                seen=path,
-                fix="Move that folder next to this package; or delete it.",
-            )
 
 
 def _unusual(package: Package) -> Iterator[Finding]:
