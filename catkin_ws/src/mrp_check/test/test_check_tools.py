@@ -48,9 +48,9 @@ class Node:
         self.rate.sleep(1)
         message = UInt32()
         message.Data = double(3)
-        first, second = 3
+        self.pubisher.publish(message)
         self.rate == 3
-        rospy.loginfo("%d", first, second)
+        rospy.loginfo("%d", 3)
         while not rospy.is_shutdown():
             self.publisher.publish(message)
 """

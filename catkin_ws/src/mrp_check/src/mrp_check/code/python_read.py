@@ -14,10 +14,10 @@ from mrp_check.package.package import Package
 
 # What Python says -> what it means.
 _SYNTAX = (
-    (r"was never closed|unexpected EOF", "A bracket is opened there and never closed."),
+    (r"was never closed", "A bracket is opened there and never closed."),
     (r"unmatched|does not match opening", "This closing bracket matches no open one."),
     (r"expected ':'", "A colon is missing at the end of the line."),
-    (r"unterminated|EOL while", "A string begins with a quotation mark, but doesn't end with one."),
+    (r"unterminated", "A string begins with a quotation mark, but doesn't end with one."),
     (r"expected an indented block", "The lines that belong to this one must be indented."),
     (r"unindent does not match|unexpected indent", "The line isn't indented like those around it."),
     (r"inconsistent use of tabs", "Tabs and spaces are mixed: use four spaces for each level."),
@@ -115,10 +115,6 @@ def _syntax(package: Package, file: str, error: SyntaxError) -> Finding:
             hint = "A comment begins with # in Python, not with //."
         elif re.match(r"global\s+\w+\s*=", shown):
             hint = "'global NAME' and 'NAME = ...' are two statements, on two lines."
-        elif re.match(r"(def|class|if|for|while|else|elif|try|with)\b", shown) and ":" not in shown:
-            hint = "A colon is missing at the end of the line."
-        elif line > 1 and _opens_bracket(lines[line - 2]):
-            line, hint = line - 1, "A bracket is opened there and never closed."
     for said, shape in _OF_PYTHON2:
         if re.search(said, text):
             found = (line_of(match, 2) for match in shape.finditer(package.text(file)))
@@ -134,8 +130,3 @@ def _syntax(package: Package, file: str, error: SyntaxError) -> Finding:
         fix=f"Correct the line; `python3 -m py_compile {file}` says whether Python can read it.",
         why=next(why for shape, why in _WHY if re.search(shape, text)),
     )
-
-
-def _opens_bracket(text: str) -> bool:
-    text = re.sub(r"\"[^\"]*\"|'[^']*'|#.*", "", text)
-    return sum(map(text.count, "([{")) > sum(map(text.count, ")]}"))

@@ -6,7 +6,6 @@ from __future__ import annotations
 import ast
 from typing import Iterator
 
-from mrp_check.code.python_modules import is_ros, resolve
 from mrp_check.code.python_rule import PythonRule, ast_text, of_sources
 from mrp_check.contract.finding import CERTAIN, Finding
 from mrp_check.contract.requirements import Rule
@@ -34,14 +33,10 @@ class NotCalled(PythonRule):
                 yield from self._statement(node, node.value)
 
     def _statement(self, node: ast.Expr, named: ast.Attribute | ast.Name) -> Iterator[Finding]:
-        name, text = self.source.dotted(named), ast_text(named)
-        of_ros = name is not None and is_ros(name) and not self.is_own(name)
-        found, missing = resolve(name) if name and of_ros else (None, "")
-        is_own = isinstance(self.source.definition(named), ast.FunctionDef)
-        if is_own or missing is None and callable(found):
-            of = "spin" if name == "rospy.spin" else "python-names" if of_ros else "node-start"
+        text, is_spin = ast_text(named), self.source.dotted(named) == "rospy.spin"
+        if is_spin or isinstance(self.source.definition(named), ast.FunctionDef):
             yield self.finding(
-                of,
+                "spin" if is_spin else "node-start",
                 f"{text} is named here, but not called: the parentheses are missing.",
                 node,
                 expected=f"{text}()",
@@ -54,5 +49,5 @@ RULE = Rule(
     stage="static",
     needs=("facts",),
     findings=of_sources(NotCalled),
-    also=("python-names", "node-start", "spin"),
+    also=("node-start", "spin"),
 )

@@ -15,7 +15,7 @@ from typing import Iterator
 from mrp_check.build.row import Row
 from mrp_check.code import reading
 from mrp_check.contract.errors import CannotCheck, NotHere
-from mrp_check.contract.finding import HABIT, HINT, READ, Finding
+from mrp_check.contract.finding import HINT, READ, Finding
 from mrp_check.contract.requirements import ANY, Requirement, Rule
 from mrp_check.run import evidence
 from mrp_check.run.case import Case
@@ -35,7 +35,6 @@ _NO_VALUE = Row(
     "Give it a value before the condition or the loop; or leave the function in that case.",
 )
 _TABLE = {
-    "assert-on-tuple": Row("This assert is always true.", "Leave the parentheses out.", HABIT),
     "assigning-non-slot": Row(
         "The message has no field of that name: Python raises an AttributeError here.",
         "Correct the name; `rosmsg show` lists the fields.",
@@ -46,24 +45,11 @@ _TABLE = {
         "The function that is called here returns nothing: the variable is None.",
         "Return a value, or don't use the result.",
     ),
-    "bad-string-format-type": Row(
-        "The format doesn't fit the type of its value: Python raises a TypeError here.",
-        "Write %s, or give it a value of that type.",
-        READ,
-    ),
     "bare-except": _CATCHES_ALL,
     "broad-exception-caught": _CATCHES_ALL,
-    "comparison-with-callable": Row(
-        "A function is compared here instead of what it returns: its parentheses are missing.",
-        "Call the function.",
-    ),
     "function-redefined": Row(
         "This name was defined before: Python forgets the first definition.",
         "Give one of the two another name.",
-    ),
-    "modified-iterating-list": Row(
-        "This list is changed while a loop goes over it: the loop skips items.",
-        "Loop over a copy: list(...).",
     ),
     "no-member": Row(
         "This object has no member of that name: Python raises an AttributeError here.",
@@ -100,19 +86,9 @@ _TABLE = {
         "Pass what the function takes.",
         READ,
     ),
-    "unbalanced-tuple-unpacking": Row(
-        "There aren't as many names as values: Python raises a ValueError here.",
-        "Write as many names as there are values.",
-        READ,
-    ),
     "unexpected-keyword-arg": Row(
         "The function has no parameter of that name: Python raises a TypeError here.",
         "Correct the name.",
-        READ,
-    ),
-    "unpacking-non-sequence": Row(
-        "One value can't be split into several names: Python raises a TypeError here.",
-        "Give each name its value.",
         READ,
     ),
     "used-before-assignment": _NO_VALUE,
