@@ -51,26 +51,21 @@ def argument(call: ast.Call, position: int, name: str) -> ast.expr | None:
     return None
 
 
-def callbacks(source: Source, **others: int) -> dict[ast.AST, set[ast.AST]]:
-    """Return the callbacks of subscribers; and of each what it calls, and itself.
-
-    others: what else of rospy's is handed a callback -> at which place
-    """
-    found: dict[ast.AST, set[ast.AST]] = {}
-    places = {f"rospy.{name}": place for name, place in {"Subscriber": 2, **others}.items()}
-    for call in source.nodes(ast.Call):
-        place = places.get(source.dotted(call.func) or "")
-        given = None if place is None else argument(call, place, "callback")
-        function = source.definition(given or argument(call, place or 0, "handler"))
-        if place is not None and isinstance(function, ast.FunctionDef):
-            found[function] = {function, *source.called([function])}
-    return found
+# What rospy calls in threads of its own -> where it is handed over.
+_CALLED = {
+    "rospy.Subscriber": (2, "callback"),
+    "rospy.Service": (2, "handler"),
+    "rospy.Timer": (1, "callback"),
+}
 
 
 def in_threads(source: Source) -> set[ast.AST]:
-    """Return the functions that rospy calls in threads of its own, which end with the program."""
-    called = callbacks(source, Service=2, Timer=1).values()
-    return {function for one in called for function in one}
+    """Return the functions that rospy calls in threads of its own, which end with the program, and
+    what these call."""
+    calls = ((call, source.dotted(call.func) or "") for call in source.nodes(ast.Call))
+    given = [argument(call, *_CALLED[name]) for call, name in calls if name in _CALLED]
+    called = [one for one in map(source.definition, given) if one]
+    return {*called, *source.called(called)}
 
 
 def places(source: Source) -> list[Place]:

@@ -8,7 +8,7 @@ from typing import Any, Callable, Iterator, Protocol
 
 from mrp_check.code.facts import Facts
 from mrp_check.code.python_modules import is_ros, resolve
-from mrp_check.code.python_source import Defined, Source
+from mrp_check.code.python_source import Source
 from mrp_check.contract.finding import HABIT, HINT, Finding
 from mrp_check.package.package import Package
 
@@ -69,14 +69,6 @@ class PythonRule:
             return None
         found, missing = resolve(name)
         return found if missing is None and hasattr(found, "__slots__") else None
-
-    def handed_over(self, takes: Callable[[ast.Call], object]) -> set[Defined | None]:
-        """Return what the source's own calls are given, of its functions, classes and lambdas.
-
-        takes: says of a call whether it counts
-        """
-        calls = filter(takes, self.source.nodes(ast.Call))
-        return {self.source.definition(given) for call in calls for given in arguments_of(call)}
 
     def written(self, node: ast.expr) -> str:
         """Return an expression as it is written."""

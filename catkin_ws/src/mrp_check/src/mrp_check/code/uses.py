@@ -211,22 +211,16 @@ _WELL_KNOWN = set(
         "turtlesim actionlib tf tf2_ros cv_bridge image_transport dynamic_reconfigure pcl_ros"
         " moveit_commander rviz gazebo_ros controller_manager actionlib_tutorials roscpp_tutorials"
         " rospy_tutorials turtle_tf turtlebot3_gazebo tf_conversions laser_geometry"
-        " tf2_geometry_msgs tf2_sensor_msgs"
+        " tf2_geometry_msgs tf2_sensor_msgs learning_tf"
     ).split()
 )
-
-
-def is_of_ros(name: str) -> bool:
-    """Return whether a name is that of one of ROS's own packages, on this machine or elsewhere."""
-    return name in _WELL_KNOWN or is_installed(name)
 
 
 def is_called_so(package: Package, name: str) -> bool:
     """Return whether a name is that of a ROS package: on this machine, beside the package, or
     elsewhere."""
     is_messages = name.endswith(("_msgs", "_srvs")) and not nearest(name, ["std_msgs"], 0.85)
-    is_ros = is_messages or name == "learning_tf" or is_of_ros(name)
-    return is_ros or is_sibling(package, name)
+    return is_messages or name in _WELL_KNOWN or is_here(package, name)
 
 
 def of(

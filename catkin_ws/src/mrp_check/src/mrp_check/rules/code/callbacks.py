@@ -50,10 +50,14 @@ _BLOCKS = ("body", "orelse", "finalbody")
 
 class EarlyCallback(PythonRule):
     def findings(self) -> Iterator[Finding]:
-        called = self.handed_over(self._calls_back)
-        for call in self.source.nodes(ast.Call):
-            what = self._calls_back(call)
-            later = self._made_after(call, called) if what else {}
+        calls = {
+            call: _CALLING[self.source.dotted(call.func) or ""]
+            for call in self.source.nodes(ast.Call)
+            if self.source.dotted(call.func) in _CALLING
+        }
+        called = {self.source.definition(given) for call in calls for given in arguments_of(call)}
+        for call, what in calls.items():
+            later = self._made_after(call, called)
             for argument in arguments_of(call) if later else ():
                 function = self.source.definition(argument)
                 used = self._used(function, [])
@@ -72,10 +76,6 @@ class EarlyCallback(PythonRule):
                         expected=f"{said} before what calls {function.name}()",
                         fix=f"Move line {place.lineno} above this line.",
                     )
-
-    def _calls_back(self, call: ast.Call) -> str:
-        """Return what comes to a callback that a call is given; nothing if none comes."""
-        return _CALLING.get(self.source.dotted(call.func) or "", "")
 
     def _made_after(
         self, call: ast.Call, called: set[Defined | None]
