@@ -48,12 +48,6 @@ def test_text(content, cmake_text, expected, tmp_path):
     assert told(file_findings(text, package)) == expected
 
 
-def test_windows_line_ends_of_cpp_are_a_note(tmp_path):
-    package = check_rules.make(tmp_path, src__a_DOT_cpp="int main()\r\n{\r\n}\r\n")
-    assert told(file_findings(text, package)) == []
-    assert told(file_findings(text, package), "note") == [("text", 1)]
-
-
 @pytest.mark.parametrize(
     ("old", "new", "line", "says"),
     [

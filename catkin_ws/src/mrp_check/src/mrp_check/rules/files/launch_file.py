@@ -4,10 +4,10 @@
 from __future__ import annotations
 
 import re
-from typing import Callable, Iterator, Optional, Sequence, Tuple
+from typing import Callable, Iterator, Sequence
 
 from mrp_check.contract.finding import CERTAIN, HABIT, HINT, Finding, Line
-from mrp_check.contract.names import last_part, nearest
+from mrp_check.contract.names import nearest
 from mrp_check.contract.requirements import Requirement, Rule
 from mrp_check.package.launch import Launch
 from mrp_check.package.xml_file import Element, stray
@@ -60,108 +60,68 @@ def _warned(launch: Launch, tags: Sequence[tuple[str, Element]]) -> Iterator[Fin
                 )
 
 
-# Where the fault is, what it is, and what to do.
-_Words = Tuple[Line, str, Optional[str]]
-
-
-class _Said:
-    """What roslaunch said instead of loading a file; finds the element that is to blame."""
-
-    def __init__(self, launch: Launch, tags: Sequence[tuple[str, Element]]) -> None:
-        self.text = " ".join(launch.error.split())
-        self.tags, self.start = tags, (launch.file, 1)
-
-    def first(self, condition: Callable[[Element], bool]) -> Line:
-        """Return the place of the first element for which the condition holds."""
-        return next(((f, e.line) for f, e in self.tags if condition(e)), self.start)
-
-    def named(self, tag: str, name: str) -> list[Line]:
-        """Return the places of the elements of that tag and name."""
-        same = ((f, e) for f, e in self.tags if e.tag == tag and e.attributes.get("name") == name)
-        return [(file, element.line) for file, element in same]
-
-    def not_understood(self, name: str | None = None) -> _Words:
-        words = [name] if name else re.findall(r"[\w./$()-]+", self.text)
-        place = self.first(lambda e: any(v in words for v in e.attributes.values()))
-        return place, f"roslaunch can't load the launch file: {self.text}", None
-
-
-def _twice(said: _Said, name: str) -> _Words:
-    name = last_part(name)
-    place = [said.start, *said.named("node", name)][-1]
-    message = f"Two nodes of the launch file have the name {name}; each needs its own."
-    return place, message, "Give each <node> its own name."
-
-
-def _attribute(said: _Said, tag: str, name: str) -> _Words:
-    place = said.first(lambda e: e.tag == tag and name not in e.attributes)
-    message = f'A <{tag}> in the launch file has no {name}="...".'
-    return place, message, f'Add {name}="...".'
-
-
-def _not_there(said: _Said, name: str) -> _Words:
-    name = name.strip("'\".,")
-    place = said.first(lambda e: any(name in v for v in e.attributes.values()))
-    message = f"The launch file names a package or a file that isn't there: {name}."
-    return place, message, None
-
-
-def _argument(said: _Said, name: str) -> _Words:
-    declared = said.named("arg", name)
-    if declared:
-        message = f"The launch file's argument {name} has no value: roslaunch asks for one."
-        return declared[0], message, 'Give it a default: default="...".'
-    place = said.first(lambda e: any(f"arg {name}" in v for v in e.attributes.values()))
-    return place, f"roslaunch can't load the launch file: {said.text}", None
-
-
 # What roslaunch says where an argument, a variable of the environment, or another package's file
 # is missing.
 _WANTED = re.compile(r"requires the '\w+' arg|arg to be set|environment variable|[Nn]ot ?[Ff]ound")
-# What roslaunch says -> the function of _Said and of its groups that returns (place, message, fix),
-# and the entry of the page why.
-_WORDS = (
-    (r"multiple nodes named \[(\S+?)\]", _twice, "launch-name-twice"),
-    (
-        r"<(\w+)> tag is missing required attribute:? ?'(\w+)'",
-        _attribute,
-        "launch-attribute-missing",
-    ),
-    (
-        r"Resource ?[Nn]ot ?[Ff]ound: (?:The following package was not found in .*>: )?(\S+)",
-        _not_there,
-        "package-not-found",
-    ),
-    (
-        r"arg (?:to be set|named)? ?\[?'?(\w+)'?\]?|requires the '(\w+)' arg",
-        _argument,
-        "launch-arg-not-set",
-    ),
-    (r"unknown .*?'(\w+)'|\[(\w+)\] is not a valid|$", _Said.not_understood, ""),
-)
+# What roslaunch says -> the entry of the page why.
+_TWICE = r"multiple nodes named \[(?:\S*/)?(\S+?)\]"
+_ATTRIBUTE = r"<(\w+)> tag is missing required attribute:? ?'(\w+)'"
+_NOT_THERE = r"Resource ?[Nn]ot ?[Ff]ound: (?:The following package was not found in .*>: )?(\S+)"
+_ARGUMENT = r"(?:arg (?:to be set|named)?|requires the) ?\[?'?(\w+)'?\]?"
+_WHY = {
+    _TWICE: "launch-name-twice",
+    _ATTRIBUTE: "launch-attribute-missing",
+    _NOT_THERE: "package-not-found",
+    _ARGUMENT: "launch-arg-not-set",
+}
 
 
 def _error(launch: Launch, tags: Sequence[tuple[str, Element]], is_contract: bool) -> Finding:
     """Return the Finding about what roslaunch said instead of loading the file."""
-    said = _Said(launch, tags)
-    match, words, why = next(
-        (match, words, why)
-        for shape, words, why in _WORDS
-        for match in [re.search(shape, said.text)]
-        if match
-    )
-    place, message, fix = words(said, *filter(None, match.groups()))
+    said = " ".join(launch.error.split())
+    shape = next((one for one in _WHY if re.search(one, said)), "")
+    names = [*re.findall(shape, said)[:1]] if shape else []
+    message, fix = f"roslaunch can't load the launch file: {said}", ""
+
+    def first(is_it: Callable[[Element], bool]) -> list[Line]:
+        return [(file, element.line) for file, element in tags if is_it(element)][:1]
+
+    def of_name(tag: str, name: str) -> list[Line]:
+        found = [(f, e) for f, e in tags if (e.tag, e.attributes.get("name")) == (tag, name)]
+        return [(file, element.line) for file, element in found]
+
+    if shape == _TWICE:
+        place = of_name("node", names[0])[-1:]
+        message = f"Two nodes of the launch file have the name {names[0]}; each needs its own."
+        fix = "Give each <node> its own name."
+    elif shape == _ATTRIBUTE:
+        tag, name = names[0]
+        place = first(lambda e: e.tag == tag and name not in e.attributes)
+        message, fix = f'A <{tag}> in the launch file has no {name}="...".', f'Add {name}="...".'
+    elif shape == _NOT_THERE:
+        name = names[0].strip("'\".,")
+        place = first(lambda e: any(name in value for value in e.attributes.values()))
+        message = f"The launch file names a package or a file that isn't there: {name}."
+    elif shape == _ARGUMENT and (place := of_name("arg", names[0])[:1]):
+        message = f"The launch file's argument {names[0]} has no value: roslaunch asks for one."
+        fix = 'Give it a default: default="...".'
+    elif shape == _ARGUMENT:
+        place = first(lambda e: any(f"arg {names[0]}" in v for v in e.attributes.values()))
+    else:
+        word = re.search(r"unknown .*?'(\w+)'|\[(\w+)\] is not a valid", said)
+        words = word.groups() if word else re.findall(r"[\w./$()-]+", said)
+        place = first(lambda e: bool({*words} & {*e.attributes.values()}))
     return Finding(
         "launch-file",
         message,
-        *place,
+        *(place or [(launch.file, 1)])[0],
         # Another launch file, or who calls it, may give what it wants.
-        HINT if _WANTED.search(said.text) and not is_contract else CERTAIN,
+        HINT if _WANTED.search(said) and not is_contract else CERTAIN,
         expected="a file that roslaunch can load",
-        seen=said.text[:500],
+        seen=said[:500],
         fix=fix
         or "Correct this line, and try again: roslaunch --nodes says whether it can be read.",
-        why=why,
+        why=_WHY.get(shape, ""),
     )
 
 

@@ -70,17 +70,7 @@ def _of(package: Package, path: str, kind: str, relayed: bool) -> Iterator[Findi
             fix="Save the file as 'UTF-8', not as 'UTF-8 with BOM'.",
             why="script-bom",
         )
-    if b"\r\n" in data:
-        yield from _windows_ends(data, path, kind, is_script)
-    yield from _encoding(data, path, kind, relayed)
-
-
-def _windows_ends(data: bytes, path: str, kind: str, is_script: bool) -> Iterator[Finding]:
-    fix = f"Convert the file: sed -i 's/\\r$//' {path}"
-    if kind not in ("python", "message"):
-        works = f"{path} has Windows line ends. It works anyway, but scripts with them don't."
-        yield Finding("text", works, path, 1, HINT, fix=fix)
-    elif is_script and data.split(b"\n", 1)[0].endswith(b"\r"):
+    if is_script and data.split(b"\n", 1)[0].endswith(b"\r"):
         yield Finding(
             "text",
             f"{path} has Windows line ends. Linux takes the one after the first line as part of"
@@ -89,9 +79,10 @@ def _windows_ends(data: bytes, path: str, kind: str, is_script: bool) -> Iterato
             1,
             expected="lines that end with a newline (LF)",
             seen="lines that end with carriage return and newline (CRLF)",
-            fix=fix,
+            fix=f"Convert the file: sed -i 's/\\r$//' {path}",
             why="script-crlf",
         )
+    yield from _encoding(data, path, kind, relayed)
 
 
 def _encoding(data: bytes, path: str, kind: str, relayed: bool) -> Iterator[Finding]:
@@ -112,18 +103,15 @@ def _encoding(data: bytes, path: str, kind: str, relayed: bool) -> Iterator[Find
                 return
         except (UnicodeDecodeError, LookupError):
             pass
-    harmless = kind in ("cpp", "header", "cmake")
-    what = (
-        "A compiler may ignore it"
-        if harmless
-        else "A program that reads the file as UTF-8 stops there"
-    )
+    if kind in ("cpp", "header", "cmake"):
+        return  # a compiler reads on
     yield Finding(
         "text",
-        f"Line {line} of {path} has a byte that isn't UTF-8. {what}.",
+        f"Line {line} of {path} has a byte that isn't UTF-8. A program that reads the file as UTF-8"
+        " stops there.",
         path,
         line,
-        HINT if harmless else CERTAIN,
+        CERTAIN,
         expected="text in UTF-8",
         seen=f"the byte {byte:02X}, perhaps a letter like ä or é saved as Latin-1",
         fix="Save the file with the encoding UTF-8.",
