@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import pathlib
-import re
 from concurrent.futures import Future
 from typing import Callable, Mapping, Sequence
 
@@ -16,8 +15,6 @@ from mrp_check.package.workspace import Workspace
 from mrp_check.sandbox import confine
 
 _KEPT = 300  # characters of what the reader says when it fails
-# What may include a source, or what only the preprocessor knows. Most include headers, by name.
-_ODD_INCLUDE = re.compile(rb'include(?!\s*["<][^">\n]*[">])|include\s*["<][^">\n]*\.c')
 
 
 class CppReader:
@@ -42,7 +39,8 @@ class CppReader:
         reader = str(sandbox.code() / "cpp_facts.py")
         try:
             command = "/usr/bin/python3", reader, crossing.to_json(task)
-            done = workspace.run_once(*command, of=self._read_with(file))
+            # One may include any other.
+            done = workspace.run_once(*command, of=workspace.package.of_kind("cpp", "header"))
         except confine.ConfineError:
             return None
         try:
@@ -50,14 +48,6 @@ class CppReader:
         except (crossing.CrossingError, KeyError):
             self._see_whose_fault(file, done)
             return None
-
-    def _read_with(self, file: str) -> list[str]:
-        """Return the files of the package that are read where a source is read."""
-        package = self.workspace.package
-        files = [file, *package.of_kind("header")]
-        if any(_ODD_INCLUDE.search(package.bytes(path)) for path in files):
-            files += [path for path in package.of_kind("cpp") if path != file]
-        return files
 
     def _see_whose_fault(self, file: str, done: confine.Result) -> None:
         """Raise CannotCheck if it is not the source's fault that there is no answer."""
