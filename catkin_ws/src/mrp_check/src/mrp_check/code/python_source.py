@@ -17,15 +17,12 @@ UNKNOWN = object()  # a value that the source does not say plainly
 GAP = "{}"  # what stands in a text for a part that the source does not say plainly
 _MAX_TEXT = 10_000  # characters
 _NANOSECONDS = 1e9  # of a second
-# What is counted with: numbers below the first; of powers, no larger base, and no more bits.
-_LARGEST, _LARGEST_BASE, _MOST_BITS = 2**70, 16, 70
+_LARGEST = 2**70  # of a number that is counted with
 _OPERATORS: dict[type[ast.operator], Callable[[Any, Any], object]] = {
     ast.Add: operator.add,
     ast.Sub: operator.sub,
     ast.Mult: operator.mul,
     ast.Div: operator.truediv,
-    ast.Pow: operator.pow,
-    ast.LShift: operator.lshift,
 }
 # Python's modules of which beginners take all names.
 _PLAIN = {"math", "numpy", "random", "socket", "struct", "threading", "time", "tkinter", "turtle"}
@@ -331,10 +328,7 @@ class Source:
         if not isinstance(left, (int, float)) or not isinstance(right, (int, float)):
             return UNKNOWN
         compute = _OPERATORS.get(type(node.op))
-        is_power = isinstance(node.op, (ast.Pow, ast.LShift))
         if compute is None or max(abs(left), abs(right)) >= _LARGEST:
-            return UNKNOWN
-        if is_power and (not 0 <= right <= _MOST_BITS or abs(left) > _LARGEST_BASE):
             return UNKNOWN
         try:
             return compute(left, right)
