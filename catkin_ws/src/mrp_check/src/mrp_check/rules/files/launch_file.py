@@ -68,18 +68,19 @@ _TWICE = r"multiple nodes named \[(?:\S*/)?(\S+?)\]"
 _ATTRIBUTE = r"<(\w+)> tag is missing required attribute:? ?'(\w+)'"
 _NOT_THERE = r"Resource ?[Nn]ot ?[Ff]ound: (?:The following package was not found in .*>: )?(\S+)"
 _ARGUMENT = r"(?:arg (?:to be set|named)?|requires the) ?\[?'?(\w+)'?\]?"
-_WHY = {
-    _TWICE: "launch-name-twice",
-    _ATTRIBUTE: "launch-attribute-missing",
-    _NOT_THERE: "package-not-found",
-    _ARGUMENT: "launch-arg-not-set",
-}
+_WHY = (
+    (_TWICE, "launch-name-twice"),
+    (_ATTRIBUTE, "launch-attribute-missing"),
+    (_NOT_THERE, "package-not-found"),
+    (_ARGUMENT, "launch-arg-not-set"),
+    ("", ""),
+)
 
 
 def _error(launch: Launch, tags: Sequence[tuple[str, Element]], is_contract: bool) -> Finding:
     """Return the Finding about what roslaunch said instead of loading the file."""
     said = " ".join(launch.error.split())
-    shape = next((one for one in _WHY if re.search(one, said)), "")
+    shape, why = next(row for row in _WHY if re.search(row[0], said))
     names = [*re.findall(shape, said)[:1]] if shape else []
     message, fix = f"roslaunch can't load the launch file: {said}", ""
 
@@ -121,7 +122,7 @@ def _error(launch: Launch, tags: Sequence[tuple[str, Element]], is_contract: boo
         seen=said[:500],
         fix=fix
         or "Correct this line, and try again: roslaunch --nodes says whether it can be read.",
-        why=_WHY.get(shape, ""),
+        why=why,
     )
 
 
