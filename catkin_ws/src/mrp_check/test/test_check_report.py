@@ -149,6 +149,15 @@ def test_console_shows_one_cause_once_and_notes_on_request():
     assert "[OK]" in terminal.text(one, everything=True)
 
 
+def test_console_says_of_a_warning_without_a_contract_what_no_other_line_says():
+    more = {"expected": "a.b()", "fix": "Write a.b().", "why": "script-crlf"}
+    one = report(Finding("text", "It.", "a.py", 1, severity="warning", **more))
+    lines = ["expected:", "fix:", "page:", "why:"]
+    assert [word for word in lines if word in terminal.text(one)] == lines
+    one.left_out = ["values"]
+    assert [word for word in lines if word in terminal.text(one)] == ["fix:", "why:"]
+
+
 def test_console_and_page_name_the_text_that_a_tool_prints(monkeypatch):
     monkeypatch.setenv("MRP_PAGES", "https://a.example/mrp/")
     one = report(Finding("text", "It.", "a.py", 1, why="script-crlf"))

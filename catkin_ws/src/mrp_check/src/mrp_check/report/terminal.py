@@ -86,7 +86,8 @@ def text(report, colours=False, everything=False):
         if cause.severity == NOTE and not everything:
             continue
         for finding in (cause, *(following if everything else ())):
-            first, *rest = finding_lines(finding, report)
+            is_short = finding.severity == WARNING and not (has_contract or everything)
+            first, *rest = finding_lines(finding, report, is_short)
             head, mark, message = first.partition(f" {finding.severity}: ")
             lines += ["", f"{head} {paint(mark.strip(), finding.severity)} {message}", *rest]
         if others:
@@ -165,14 +166,20 @@ def plain(text):
     return _UNFIT.sub("\ufffd", text)
 
 
-def finding_lines(finding, report):
-    """Return a finding as lines, without colours."""
+def finding_lines(finding, report, is_short=False):
+    """Return a finding as lines, without colours.
+
+    is_short: without what another line says, too: what is expected where there is a fix, and the
+        page about the requirement where there is one about this very text
+    """
     lines = _wrapped(f"{where(finding, report)}: {finding.severity}: ", finding.message, "  ")
-    lines += detail_lines(finding, ("expected", "seen", "fix"))
+    has_fix = is_short and finding.fix
+    lines += detail_lines(finding, ("seen", "fix") if has_fix else ("expected", "seen", "fix"))
     cause = finding.consequence_of
     if cause:
         return [*lines, f"  This follows from: {REQUIREMENTS[cause].title} ({cause})"]
-    return lines + [f"  {name + ':':<10}{address_of(page)}" for name, page in pages(finding)]
+    links = pages(finding)[-1:] if is_short else pages(finding)
+    return lines + [f"  {name + ':':<10}{address_of(page)}" for name, page in links]
 
 
 def pages(finding):
