@@ -39,7 +39,7 @@ def is_script(package: Package, path: str) -> bool:
         return False
     if not _INIT.search(package.text(path)) and _is_imported(package, path):
         return False
-    if package.shebang(path) or package.is_executable(path):
+    if package.shebang(path) or package.is_executable(path) and not _is_module(package, path):
         return True
     # In a Python package, it's a module that a script elsewhere imports and starts.
     return not _is_module(package, path) and bool(_INIT.search(package.text(path)))

@@ -8,7 +8,7 @@ from typing import Iterator, Sequence
 
 from mrp_check.code.source_node import SourceNode, each_node
 from mrp_check.confined.places import Kind, Place
-from mrp_check.contract.finding import CERTAIN, READ, Finding
+from mrp_check.contract.finding import Finding
 from mrp_check.contract.requirements import Requirement, Rule
 from mrp_check.run import evidence
 
@@ -37,18 +37,12 @@ def _of(node: SourceNode) -> Iterator[Finding]:
         yield _never(node, bool(waits))
 
 
-# rospy calls back in threads of its own; of roscpp, only a spinner calls.
-def _sure(node: SourceNode) -> str:
-    return READ if node.is_python else CERTAIN
-
-
 def _only_once(node: SourceNode, spin: Place) -> Finding:
     return node.finding(
         "spin",
         "ros::spinOnce() calls the callbacks of what has arrived, and returns at once, so the"
         " program then ends.",
         spin,
-        certainty=_sure(node),
         expected="ros::spin() at the end of main",
         fix="Write ros::spin() for ros::spinOnce().",
         change=("spinOnce", "spin"),
@@ -62,7 +56,6 @@ def _never(node: SourceNode, loops: bool) -> Finding:
         f"{node.main} never calls {call}, so "
         + ("no callback is ever called." if loops else "the program ends at once."),
         node.facts.end_of_main(node.name) or (node.main, _last_line(node)),
-        certainty=_sure(node),
         expected=f"{call} at the end of main",
         seen="no such call",
         fix=f"Add {call}{'' if node.is_python else ';'} at the end of main.",
@@ -97,7 +90,6 @@ def _made_too_late(node: SourceNode, spins: Sequence[Place]) -> Iterator[Finding
                 f"{spins_by} only returns when the node ends, so what's below it, on line"
                 f" {min(late)}, is created too late.",
                 spin,
-                certainty=_sure(node),
                 expected=f"{spins_by} below everything that the node creates",
                 fix=f"Move it below line {min(late)}.",
             )
