@@ -6,14 +6,14 @@ import types
 import check_rules
 import pytest
 from mrp_check.code.facts import Facts
-from mrp_check.confined.launch_dump import Started
 from mrp_check.confined.places import Kind, Place
 from mrp_check.confined.seen import Alone, LaunchResult, Log, Message, Registration, Seen
-from mrp_check.contract.finding import ERROR, HABIT, HINT, NOTE, WARNING, Finding
+from mrp_check.contract.finding import ERROR, HABIT, HINT, NOTE, SEEN, WARNING, Finding
 from mrp_check.contract.spec import Shutdown
 from mrp_check.rules.code import same_name
 from mrp_check.rules.files import messages
 from mrp_check.rules.run import called_back, exceptions, exit, meeting, starts
+from mrp_check.run import blame
 from mrp_check.run.observing import Launched, Observed
 
 pytestmark = pytest.mark.quick
@@ -24,7 +24,8 @@ PACKAGE = types.SimpleNamespace(name="some_pkg", text={"src/b.cpp": "talk /say"}
 
 def findings(rule, runs, **known):
     """Return what a rule says of what was seen under launch files."""
-    places = types.SimpleNamespace(of=lambda *_: ("src/a.cpp", 1), of_topic=lambda *_: ("a.cpp", 1))
+    named = dict.fromkeys(("of", "of_topic", "asked"), lambda *_: ("src/a.cpp", 1))
+    places = types.SimpleNamespace(**named)
     observed = types.SimpleNamespace(launches=runs, direct=None)
     given = {"observed": observed, "places": places, "nodes": {}, "package": PACKAGE}
     given.update({"launches": [], **known})
@@ -65,23 +66,12 @@ def launched(file, topic, *names):
 
 
 @pytest.mark.parametrize(
-    ("files", "made_up", "unread", "found"),
-    [
-        ([], (), "", [ERROR]),
-        ([], (), "it needs an argument", []),
-        (["launch/a.launch"], (), "", []),
-        ([], ("/say",), "", []),
-        ([], ("/sa",), "", [ERROR]),
-    ],
+    ("files", "found"), [([], [ERROR]), (["a.launch"], [])], ids=["none", "another"]
 )
-def test_names_that_a_launch_file_may_give(files, made_up, unread, found):
-    """Without one, all nodes run together; with one, it has renamed what they need, or may have if
-    roslaunch couldn't read it. Nor is it an error that a topic is named after a node which the
-    checker has renamed."""
-    runs = [launched(file, "/say/raw", "hear") for file in files]
-    runs.append(launched("", "/hear/raw", "hear", "say"))
-    runs[-1].made_up = made_up
-    known = {"launches": [types.SimpleNamespace(error=unread)]}
+def test_names_that_a_launch_file_may_give(files, found):
+    """Without one, all nodes run together; one that starts others may rename these."""
+    runs = [launched("", "/hear/raw", "hear", "say")]
+    known = {"launches": [types.SimpleNamespace(file=file) for file in files]}
     assert [one for one in severities(meeting, runs, **known) if one == ERROR] == found
 
 
@@ -167,22 +157,128 @@ def test_what_needs_a_header_that_is_not_here_is_not_blamed(header, found, tmp_p
     assert len([*check_rules.of(starts.RULE, known)]) == found
 
 
+# What a node runs into, its exit code, and a line of its source -> how sure it is that the package
+# is to blame: started by itself, and under its own launch file.
+ENDS = [
+    ("NameError: name 'a' is not defined", 1, "", SEEN, SEEN),
+    ("AttributeError: 'NoneType' object has no attribute 'a'", 1, "", HABIT, HABIT),
+    ("TypeError: main() missing 1 required argument", 1, "main(*sys.argv[1:])", HINT, SEEN),
+    ("KeyError: '~port'", 1, "", HABIT, SEEN),
+    ("FileNotFoundError: no file", 1, "", HABIT, HABIT),
+    ("EOFError: EOF when reading a line", 1, "", HINT, HINT),
+    ("LookupException: no frame", 1, "", HABIT, HABIT),  # nobody sends any
+    ("InvalidNameException: a b", -6, "", SEEN, SEEN),
+    ("invalid_argument: stof", -6, "", HABIT, SEEN),
+    ("", 1, "", HABIT, SEEN),
+    ("", 1, "open /dev/ttyUSB0", HABIT, HABIT),
+    ("", 1, "if len(sys.argv) < 2 or argv[1]", HINT, SEEN),
+    ("", -6, "", SEEN, SEEN),
+    ("", -11, "", SEEN, SEEN),
+    ("", -11, "cv::VideoCapture(0)", HABIT, HABIT),
+]
+
+
+def blamed(error, code, source, file=None, lines=(), **seen):
+    """Return how sure it is, by blame.certainty(); file: the launch file, if there is one."""
+    kind, _, text = error.partition(": ")
+    package = types.SimpleNamespace(name="some_pkg", text=lambda file: source)
+    facts = Facts(sources={"a": ["src/a"]})
+    case = types.SimpleNamespace(package=package, facts=facts, launches=[])
+    seen.setdefault("subscriptions", [Registration("/a", "/talk", "std_msgs/String", 0)])
+    result = LaunchResult("enough", 9, [(1, "err", line) for line in lines], Seen(**seen))
+    launched = None if file is None else Launched(file, {"/a": "a"}, result)
+    return blame.certainty(case, "a", blame.End(kind, text, code, []), launched)
+
+
 @pytest.mark.parametrize(
-    ("arguments", "certainty", "file"),
-    [("", HABIT, "a.launch"), ("1 2", HINT, "src/a.cpp"), (None, HINT, "src/a.cpp")],
+    ("error", "code", "source", "alone", "launched"), ENDS, ids=range(len(ENDS))
 )
-def test_a_launch_file_gives_a_node_no_arguments(arguments, certainty, file):
-    said = Finding("starts", "a ends.", "src/a.cpp", 1, node="a")
-    direct = types.SimpleNamespace(lines=[(0, 0, "usage: a X Y")], code=1)
-    package = types.SimpleNamespace(name="some_pkg", lines=lambda file: [])
-    node = types.SimpleNamespace(name="a", direct=direct, not_up=[said], package=package)
-    started = Started("some_pkg", "a", "a", "/", "", [], [], arguments or "", "", "a.launch", 2)
-    launches = [] if arguments is None else [types.SimpleNamespace(nodes=[started], params={})]
-    case = types.SimpleNamespace(
-        nodes={"a": node}, package=package, launches=launches, built=True, observed=Observed()
+def test_who_is_to_blame_for_an_end(error, code, source, alone, launched):
+    assert blamed(error, code, source) == alone
+    assert (
+        blamed(error, code, source, "") == alone
+    )  # all nodes together, which nobody has asked for
+    assert blamed(error, code, source, "a.launch") == launched
+
+
+def test_a_node_that_lacks_what_another_one_offers_is_not_to_blame():
+    asks = {"lookups": [Registration("/a", "/add", "", 0), Registration("/a", "~b", "", 0)]}
+    add = [Registration("/b", "/add", "", 0)]
+    talks = [Registration("/b", topic, "", 0) for topic in ("/talk", "/tf")]
+    none = "AttributeError: 'NoneType' object has no attribute 'a'"
+    absent = ["ERROR: cannot launch node of type [move_base/move_base]: move_base"]
+    assert blamed("KeyError: 'a'", 1, "", "a.launch", **asks) == HABIT
+    assert blamed("KeyError: 'a'", 1, "", "a.launch", services=add, **asks) == SEEN
+    assert blamed("KeyError: 'a'", 1, "", "a.launch", absent) == HABIT
+    assert blamed("NameError: a", 1, "", "a.launch", absent) == SEEN
+    own = ["ERROR: cannot launch node of type [some_pkg/b]: no such file"]
+    assert blamed("KeyError: 'a'", 1, "", "a.launch", own) == SEEN
+    assert blamed(none, 1, "", "a.launch", publications=talks) == SEEN
+    assert blamed("LookupException: a", 1, "", "a.launch", publications=talks) == SEEN
+
+
+def test_what_a_node_throws_is_read_from_its_words():
+    said = "terminate called after throwing an instance of 'boost::wrapexcept<boost::lock_error>'"
+    assert blame.of_lines([said], -6).kind == "lock_error"
+    said = "terminate called after throwing an instance of 'ros::InvalidNameException'"
+    assert blame.of_lines(["[ERROR] no", said], -6).kind == "InvalidNameException"
+    assert blame.of_lines(["terminate called without an active exception"], -6).kind == ""
+
+
+@pytest.mark.parametrize(
+    ("sought", "offered", "others", "found"),
+    [
+        ("/swich", "/switch", [], [ERROR]),
+        ("/swich", "/swich", [], []),
+        ("/swich", "/other", [], []),
+        ("/swich", "/switch", ["/switch"], []),  # another node seeks that
+    ],
+    ids=range(4),
+)
+def test_a_service_of_another_name(sought, offered, others, found):
+    lookups = [Registration(f"/{topic}", topic, "", 1) for topic in others]
+    lookups.append(Registration("/ask", sought, "", 1))
+    seen = Seen(lookups=lookups, services=[Registration("/offer", offered, "", 1)])
+    nodes = {"/ask": "ask", "/offer": "offer"}
+    launches = [Launched("a.launch", nodes, types.SimpleNamespace(seen=seen))]
+    assert severities(meeting, launches) == found
+    launches[0].file = ""
+    assert severities(meeting, launches) == []
+
+
+@pytest.mark.parametrize(
+    ("line", "kind", "time", "found"),
+    [
+        ("n = int(text)", "ValueError", 1, [ERROR]),  # what it raised, and not that it died
+        ("n = int(text)", "ValueError", 5.1, [ERROR]),  # it was asked to end by then: that it died
+        ("n = ask()", "KeyboardInterrupt", 1, [ERROR]),
+    ],
+    ids=range(3),
+)
+def test_what_a_node_raises_under_roslaunch(line, kind, time, found, tmp_path):
+    package = check_rules.make(tmp_path / "some_pkg", src__odd_DOT_py=f"{line}\n")
+    places = types.SimpleNamespace(
+        wrong_arguments=lambda lines: None,
+        traceback=lambda lines: (("src/odd.py", 1), kind, "no") if kind in lines else None,
+        sources=lambda node: ["src/odd.py"],
+        of=lambda *given: ("src/odd.py", 1),
     )
-    starts.weigh_start(case, node, said)
-    assert (said.certainty, said.file) == (certainty, file)
+    died = "[odd-1] process has died [pid 7, exit code 1, cmd odd.py __name:=odd]."
+    lines = [(time, "err", kind), (4, "out", died)]
+    logged = Log("/odd", "ERROR", "No service.", "", 0, 3)
+    seen = LaunchResult(ending="enough", asked=5, lines=lines, seen=Seen(logs=[logged]))
+    known = types.SimpleNamespace(
+        package=package,
+        facts=Facts(sources={"odd": ["src/odd.py"]}),
+        places=places,
+        launches=[],
+        spec=types.SimpleNamespace(is_contract=False),
+        nodes={"odd": types.SimpleNamespace(not_up=[])},
+        observed=types.SimpleNamespace(launches=[Launched("a.launch", {"/odd": "odd"}, seen)]),
+    )
+    said = [*check_rules.of(exceptions.RULE, known, exceptions.under_launch_files)]
+    assert [one.severity for one in said] == found
+    assert all(f"{kind}: no" in f.message or "error: No service." in f.message for f in said)
 
 
 @pytest.mark.parametrize(
@@ -194,13 +290,11 @@ def test_what_waits_for_messages_does_not_end(topic, calls, certainty):
     heard = types.SimpleNamespace(subscriptions=[Registration("/a", topic, "", 1)])
     ends = [Place("src/a.cpp", 1, Kind.EXIT, calls)] if calls else []
     facts = Facts(places=ends, sources={"a": ["src/a.cpp"]})
-    places = types.SimpleNamespace(facts=facts, sources=lambda node: [])
+    places = types.SimpleNamespace(facts=facts, traceback=lambda lines: None)
     direct = Alone(code=0, ended_after=1.0)
     node = types.SimpleNamespace(name="a", direct=direct, places=places, seen_alone=heard)
-    node.errors = list
-    case = types.SimpleNamespace(
-        package=PACKAGE, launches=[], built=True, spec=None, observed=Observed()
-    )
+    node.errors, node.console = list, []
+    case = types.SimpleNamespace(package=PACKAGE, launches=[], built=True, observed=Observed())
     said = Finding("spin", "a ends.", "src/a.cpp", 1, node="a")
     starts.weigh_start(case, node, said)
     assert said.certainty == certainty
@@ -220,31 +314,6 @@ def test_what_ends_with_an_error_has_ended(code, found):
 
 
 NOT_THERE = "open: No such file or directory"
-
-
-@pytest.mark.parametrize(
-    ("said", "port", "certainty", "what"),
-    [
-        (NOT_THERE, "/dev/ttyUSB0", HINT, "a waits for a device: "),
-        (NOT_THERE, "/tmp/ttyUSB0", "", "a ends: "),
-        ("The port parameter is required and not set.", "", HINT, "a waits for a parameter: "),
-        ("Failed to get param 'port'", "", HINT, "a waits for a parameter: "),
-        ("Failed to allocate", "", "", "a ends: "),
-    ],
-    ids=range(5),
-)
-def test_what_only_its_user_has_is_waited_for(said, port, certainty, what):
-    finding = Finding("starts", f"a ends: {said}", "src/a.cpp", 1, node="a")
-    direct = types.SimpleNamespace(lines=[(0, "out", said)], code=255)
-    package = types.SimpleNamespace(name="some_pkg")
-    places = types.SimpleNamespace(facts=Facts(), sources=lambda node: [])
-    node = types.SimpleNamespace(name="a", direct=direct, places=places, errors=lambda: [said])
-    launches = [types.SimpleNamespace(nodes=[], params={"/a/port": port})]
-    case = types.SimpleNamespace(
-        nodes={"a": node}, package=package, launches=launches, built=True, observed=Observed()
-    )
-    starts.weigh_start(case, node, finding)
-    assert (finding.certainty, finding.message) == (certainty, what + said)
 
 
 @pytest.mark.parametrize(
@@ -282,45 +351,3 @@ def test_ros_reads_each_line_of_a_definition(name, text, said, tmp_path):
     found = [*check_rules.of(messages.RULE, known, messages.definitions)]
     assert [(one.file, one.line) for one in found] == ([(name, 2)] if said else [])
     assert all(said in one.message for one in found)
-
-
-@pytest.mark.parametrize(
-    ("line", "kind", "time", "other", "found"),
-    [
-        ("n = int(sys.argv[1])", "ValueError", 1, "even", [NOTE]),
-        ("n = int(text)", "ValueError", 1, "even", [ERROR, ERROR]),
-        ("n = int(text)", "ValueError", 1, "odd", [WARNING, NOTE]),  # of the same name
-        ("n = int(text)", "ValueError", 5.1, "even", [ERROR]),  # it was asked to end by then
-        ("n = ask()", "KeyboardInterrupt", 1, "even", [ERROR]),  # that it died
-        ("n = connect()", "ConnectionRefusedError", 1, "even", [NOTE]),
-    ],
-    ids=range(6),
-)
-def test_what_a_node_raises_under_roslaunch(line, kind, time, other, found, tmp_path):
-    files = {"src__odd_DOT_py": f"{line}\n", "src__b_DOT_py": ""}
-    package = check_rules.make(tmp_path / "some_pkg", **files)
-    places = types.SimpleNamespace(
-        wrong_arguments=lambda lines: None,
-        traceback=lambda lines: (("src/odd.py", 1), kind, "no") if kind in lines else None,
-        sources=lambda node: ["src/odd.py"],
-        of=lambda *given: ("src/odd.py", 1),
-    )
-    died = "[odd-1] process has died [pid 7, exit code 1, cmd odd.py __name:=odd]."
-    lines = [(time, "err", kind), (4, "out", died)]
-    logged = Log("/odd", "ERROR", "No service.", "", 0, 3)
-    seen = LaunchResult(ending="enough", asked=5, lines=lines, seen=Seen(logs=[logged]))
-    launches = [Launched("", {"/odd": "odd"}, seen)]
-    named = {"src/odd.py": "odd", "src/b.py": other}
-    starts = [Place(file, 1, Kind.INIT, name) for file, name in named.items()]
-    known = types.SimpleNamespace(
-        package=package,
-        facts=Facts(sources={file: [file] for file in named}, places=starts),
-        places=places,
-        nodes={"odd": types.SimpleNamespace(not_up=[])},
-        observed=types.SimpleNamespace(launches=launches),
-    )
-    rule = exceptions.RULE, known, exceptions.under_launch_files
-    said = [*check_rules.of(*rule)]
-    assert [one.severity for one in said] == found
-    ended = [one.message for one in said if "ends together" in one.message]
-    assert all(text.endswith("Its last error: No service.") for text in ended)

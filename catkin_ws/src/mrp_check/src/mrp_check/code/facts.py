@@ -14,7 +14,7 @@ from mrp_check.confined.places import Kind, Place
 from mrp_check.contract.finding import Finding
 
 _ASKED = {
-    *(Kind.ASKS, Kind.OFFERS, Kind.READS, Kind.KNOWS, Kind.SETS, Kind.COMMANDS, Kind.SERVES),
+    *(Kind.ASKS, Kind.OFFERS, Kind.READS, Kind.KNOWS, Kind.COMMANDS, Kind.SERVES),
 }
 
 
@@ -50,12 +50,6 @@ class Facts:
         give it."""
         places = (place for place in self.places if place.kind in _ASKED)
         return [place for place in places if place.file in files and place.base]
-
-    def unwaited(self, files: Container[str]) -> Place | None:
-        """Return where these sources call a service, if they never wait for any."""
-        kinds = (Kind.WAITS, Kind.CALLS, Kind.ASKS)
-        places = [p for kind in kinds for p in self.places if p.kind is kind and p.file in files]
-        return places[0] if places and places[0].kind is not Kind.WAITS else None
 
     def exits(self, node: str) -> list[Place]:
         """Return where the sources of a node end it by a call, such as of exit()."""

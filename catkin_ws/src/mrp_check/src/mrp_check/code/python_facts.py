@@ -132,7 +132,7 @@ class _Node:
         elif name in ("input", "raw_input"):
             yield self.place(Kind.SLEEP)
             is_own = self.source.definition(node.func) or name in self.source.imports
-            yield from () if is_own else self.keyboard()
+            yield from () if is_own else (self.place(Kind.KEYBOARD),)
         elif method in _METHODS:
             yield self.place(_METHODS[method])
 
@@ -170,32 +170,11 @@ class _Node:
         is_deaf = not leaves and not named & _ENDS and not self.is_in_thread()
         test = node.test if isinstance(node, ast.While) else None
         is_endless = is_deaf and isinstance(test, ast.Constant) and bool(test.value)
-        turns = self.turns(node) if is_deaf and isinstance(node, ast.For) else 0
-        period = turns * sum(map(self.seconds, within)) if turns else None
-        endless, end = "endless" if is_endless else UNKNOWN, last_line(node)
-        yield self.place(Kind.LOOP, endless, period=period, end=end)
+        yield self.place(Kind.LOOP, "endless" if is_endless else UNKNOWN, end=last_line(node))
 
     def is_in_thread(self) -> bool:
         """Return whether rospy calls what is around it in a thread, which ends with the program."""
         return self.source.function(self.node) in in_threads(self.source)
-
-    def turns(self, loop: ast.For) -> float:
-        call = loop.iter
-        if not isinstance(call, ast.Call) or self.called(call) != "range" or len(call.args) != 1:
-            return 0
-        number = self.source.value(call.args[0])
-        return number if isinstance(number, int) else 0
-
-    def seconds(self, call: ast.AST) -> float:
-        """Return how long a call sleeps, as far as that is plain."""
-        if not isinstance(call, ast.Call) or getattr(call.func, "attr", "") != "sleep":
-            return 0
-        value = self.source.value(call.args[0]) if call.args else None
-        made = self.source.made(getattr(call.func, "value", call))
-        if made and self.source.dotted(made.func) == "rospy.Rate" and made.args:
-            rate = self.source.value(made.args[0])
-            return 1 / rate if isinstance(rate, (int, float)) and rate else 0
-        return value if isinstance(value, (int, float)) else 0
 
     def statement(self, node: ast.Expr) -> Iterator[Place]:
         """Look for a call that waits for something, and whose result nobody looks at."""
@@ -206,18 +185,6 @@ class _Node:
         if isinstance(call, ast.Call) and name in _FAIL and not is_seen:
             if call.args or call.keywords:  # without a limit, it only fails on Ctrl-C
                 yield self.place(Kind.IGNORED, name)
-
-    def keyboard(self) -> Iterator[Place]:
-        """Look at input(): after rospy.init_node(), Ctrl-C does not end it."""
-        inits = [c for c in self.source.nodes(ast.Call) if self.called(c) == "rospy.init_node"]
-        is_early = any(
-            self.source.function(one) is self.source.function(self.node)
-            and self.node.lineno < one.lineno
-            for one in inits
-        )
-        keywords = {keyword.arg for one in inits for keyword in one.keywords}
-        if inits and not is_early and "disable_signals" not in keywords:
-            yield self.place(Kind.KEYBOARD)
 
     def named(self, kind: Kind, position: int, keyword: str) -> Iterator[Place]:
         """Look at a service, an action or a parameter that is named."""
@@ -232,9 +199,7 @@ class _Node:
     def parameter(self, node: ast.Call) -> Iterator[Place]:
         name, key = self.called(node), argument(node, 0, "param_name") or argument(node, 0, "key")
         has_default = len(node.args) + len(node.keywords) > 1
-        kind = Kind.SETS if name == "rospy.set_param" else Kind.KNOWS
-        if name == "rospy.get_param" and not has_default:
-            kind = Kind.READS
+        kind = Kind.READS if name == "rospy.get_param" and not has_default else Kind.KNOWS
         if isinstance(self.source.value(key), str):
             yield self.place(kind, self.source.value(key))
 
@@ -283,13 +248,6 @@ class _Node:
         value = code if isinstance(code, int) else int(isinstance(code, str))
         yield self.place(Kind.EXIT, self.called(node), value=value)
 
-    def length(self, node: ast.Call) -> Iterator[Place]:
-        for given in node.args:
-            one = self.source.only(given) or given
-            words = one.func if isinstance(one, ast.Call) else given
-            if self.source.dotted(words) in ("sys.argv", "rospy.myargv"):
-                yield self.place(Kind.COUNTS)
-
     def signal(self, node: ast.Call) -> Iterator[Place]:
         name = self.source.dotted(argument(node, 0, "signalnum"))
         yield self.place(Kind.SIGNAL, name or UNKNOWN)
@@ -323,11 +281,10 @@ _CALLS = (
         ("sys.exit", "os._exit", "exit", "quit", "SystemExit", "rospy.signal_shutdown"),
         _Node.exit,
     ),
-    (("len",), _Node.length),
     (("signal.signal",), _Node.signal),
     (("itertools.count",), _Node.count),
     (
-        tuple(f"rospy.{one}_param" for one in ("get", "has", "search", "set"))
+        tuple(f"rospy.{one}_param" for one in ("get", "has", "search"))
         + ("rospy.get_param_cached",),
         _Node.parameter,
     ),

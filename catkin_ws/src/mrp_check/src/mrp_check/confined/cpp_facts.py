@@ -92,11 +92,6 @@ class _Source(Counters, Habits):
         virtual = cursor.kind == self.kinds.CXX_METHOD and cursor.is_virtual_method()
         usr = None if used or virtual else cursor.canonical.get_usr()
         self.add(cursor, Kind.FUNCTION, cursor.spelling, end=cursor.extent.end.line, usr=usr)
-        for argc in [*cursor.get_arguments()][:1] if cursor.spelling == "main" else ():
-            for one in cursor.walk_preorder():
-                sides = one.get_children() if one.kind == self.kinds.BINARY_OPERATOR else ()
-                if any(self.names(self.peel(side), argc) for side in sides):
-                    self.add(one, Kind.COUNTS)
 
     def look_at_call(self, call: Cursor) -> None:
         arguments, scope = list(call.get_arguments()), self.scope(call)
@@ -327,10 +322,8 @@ _CALLS = (
     (_HANDLE, ("getParam",), Kind.READS, _Source.add_name),
     (_PARAM, ("param", "getParamCached", "hasParam", "searchParam"), Kind.KNOWS, _Source.add_name),
     (("param",), ("get", "has", "search", "getCached"), Kind.KNOWS, _Source.add_name),
-    (_PARAM, ("setParam", "set"), Kind.SETS, _Source.add_name),
     (("service",), ("waitForService", "exists"), Kind.WAITS, _Source.add_name),
     (None, ("waitForExistence", "waitForServer"), Kind.WAITS, _Source.add_name),
-    (("ServiceClient", "service"), ("call",), Kind.CALLS, _Source.add_name),
     (None, ("SimpleActionClient",), Kind.COMMANDS, _Source.add_name),
     (None, ("SimpleActionServer",), Kind.SERVES, _Source.add_name),
     (None, _GOAL_ENDS, Kind.ENDS, _Source.add_call),

@@ -30,7 +30,7 @@ class Habits(Unit):
         """Note a service, an action or a parameter, by the first text that a call is given."""
         values = (self.value(argument) for argument in arguments[:2])
         name = next((value for value in values if isinstance(value, str)), None)
-        if name is None and kind not in (Kind.WAITS, Kind.CALLS):
+        if name is None and kind is not Kind.WAITS:
             return
         self.add(call, kind, name, type=self.of_type(call, arguments))
         if kind is Kind.WAITS and name:
@@ -73,10 +73,10 @@ class Habits(Unit):
                 self.add(call, kind, call.spelling)
 
     def look_at_keyboard(self, cursor: Cursor) -> None:
-        """Note std::cin >> and getline(std::cin), after ros::init(): before, Ctrl-C ends it."""
+        """Note std::cin >> and getline(std::cin)."""
         named = (one.spelling for one in cursor.get_children() for one in one.walk_preorder())
         if cursor.spelling in ("operator>>", "getline") and "cin" in named:
-            self.add(cursor, Kind.KEYBOARD, offset=cursor.extent.start.offset)
+            self.add(cursor, Kind.KEYBOARD)
 
     def seconds(self, call: Cursor) -> float:
         """Return how long a call sleeps: 1 if that is not plain, 0 if it does not sleep."""
@@ -103,10 +103,7 @@ class Habits(Unit):
         asks = bool(_ASKS_TO_END & called) or any(self.asks(one) for one in within)
         is_deaf = not leaves and not asks
         endless = "endless" if is_deaf and self.is_endless(loop) else None
-        turns = self.turns(loop) if is_deaf else 0
-        period = turns * sum(map(self.seconds, within))
-        end = loop.extent.end.line
-        self.add(loop, Kind.LOOP, endless, period=period or None, end=end)
+        self.add(loop, Kind.LOOP, endless, end=loop.extent.end.line)
         function = self.function(loop)
         if function is not None and {"publishFeedback", "sleep"} & called:
             ends = "setSucceeded" in self.calls(function.walk_preorder())
@@ -125,17 +122,3 @@ class Habits(Unit):
             return tokens[:5] == ["for", "(", ";", ";", ")"]
         asked = tokens[1:4] if tokens[0] == "while" else tokens[-3:]
         return asked in (["(", "true", ")"], ["(", "1", ")"])
-
-    def turns(self, loop: Cursor) -> float:
-        """Return how often a loop turns that counts from one number to another; 0 if not plain."""
-        if loop.kind != self.kinds.FOR_STMT:
-            return 0
-        parts = [*loop.get_children()]
-        begin = next((c for c in parts[0].walk_preorder() if c.kind == self.kinds.VAR_DECL), None)
-        sides = [*parts[1].get_children()] if len(parts) > 1 else []
-        if begin is None or len(sides) != 2 or not self.names(self.peel(sides[0]), begin):
-            return 0
-        first, last = self.value(self.initial(begin)), self.value(sides[1])
-        if isinstance(first, (int, float)) and isinstance(last, (int, float)):
-            return last - first
-        return 0

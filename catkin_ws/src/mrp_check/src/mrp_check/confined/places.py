@@ -30,19 +30,16 @@ class Kind(enum.Enum):
     FUNCTION = "function"
     # Services, actions and parameters that are named:
     ASKS = "asks"  # for a service
-    CALLS = "calls"  # a service
     WAITS = "waits"  # until a service or an action's server is there
     OFFERS = "offers"  # a service
     COMMANDS = "commands"  # an action
     SERVES = "serves"  # an action
     READS = "reads"  # a parameter, without a default
     KNOWS = "knows"  # a parameter
-    SETS = "sets"  # a parameter
     ENDS = "ends"  # a goal
-    # Other programs, and the command line:
+    # Other programs:
     STARTS = "starts"  # a process
     KILLS = "kills"  # a process
-    COUNTS = "counts"  # the arguments
     # What may go wrong:
     GOAL_LOOP = "goal loop"  # of an action's server, which does not ask whether it is cancelled
     IGNORED = "ignored"  # what a call returns that can fail
@@ -67,8 +64,7 @@ class Place:
     end: the last line of a function or a loop; unused: whether nothing names it; usr: clang's name
         for it
     queue, queue_line: its length, and where that stands
-    period: seconds of a timer, or of all turns of a loop that does not ask whether the node is to
-        end; oneshot: whether a timer fires once
+    period: seconds of a timer; oneshot: whether it fires once
     anonymous: whether a node asks for such a name
     offset: where it stands in its file, in characters
     type, bits: of a counter; type: of a service or an action, its last part

@@ -57,13 +57,11 @@ from mrp_check.rules.run import (
     called_back,
     compile,
     configure,
-    ctrl_c,
     exceptions,
     exit,
     first_message,
     meeting,
     starts,
-    waiting,
     warnings,
 )
 from mrp_check.rules.tools import catkin_lint, gcc, pylint
@@ -106,7 +104,6 @@ _FILES = (
     compile,
     gcc,
     # run
-    waiting,
     starts,
     own_name,
     exceptions,
@@ -125,7 +122,6 @@ _FILES = (
     launch_moved,
     # stop
     exit,
-    ctrl_c,
 )
 RULES = tuple(file.RULE for file in _FILES)
 REQUIREMENTS = {

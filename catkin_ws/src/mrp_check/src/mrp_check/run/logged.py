@@ -11,8 +11,7 @@ from typing import Iterator, NamedTuple
 from mrp_check.confined.seen import DirectResult, Line, Log, Seen
 from mrp_check.contract.names import last_part
 from mrp_check.package.package import Package
-from mrp_check.run.observing import Observed
-from mrp_check.run.traces import ends
+from mrp_check.run.observing import Observed, ends
 
 # The entries that explain error texts: a folder beside the tutorial's pages. A checker that is
 # installed by itself has none.
@@ -31,6 +30,7 @@ class Run(NamedTuple):
     """A recorded run of a node.
 
     where: in the words of a message, such as "under launch/all.launch"
+    is_launched: whether it ran under a launch file of the package
     logs: its lines on /rosout before it was asked to end
     lines: what was printed until then, by all nodes of a launch file
     path: the node's full name in it
@@ -41,6 +41,7 @@ class Run(NamedTuple):
 
     node: str
     where: str
+    is_launched: bool
     path: str
     logs: list[Log]
     lines: list[Line]
@@ -52,17 +53,17 @@ class Run(NamedTuple):
 
 def runs(observed: Observed) -> Iterator[Run]:
     """Yield each node's runs: under the launch files, and by itself."""
-    launches = [(one.where, one.nodes, one.seen) for one in observed.launches]
+    launches = [(one.where, bool(one.file), one.nodes, one.seen) for one in observed.launches]
     if observed.launch:
         paths = {started.path: name for name, started in observed.started.items()}
-        launches.append(("under the launch file", paths, observed.launch))
-    for where, paths, launch in launches:
+        launches.append(("under the launch file", True, paths, observed.launch))
+    for where, is_launched, paths, launch in launches:
         before = [line for line in launch.lines if line[0] < launch.asked]
         codes = ends(text for _, _, text in before)
         for path, node in paths.items():
             logs = [log for log in launch.seen.logs if log.node == path and log.time < launch.asked]
             rest = launch.seen, launch.asked, codes.get(path), launch.latched
-            yield Run(node, where, path, logs, before, *rest)
+            yield Run(node, where, is_launched, path, logs, before, *rest)
     direct = observed.direct or DirectResult()
     for node, alone in direct.nodes.items():
         if alone.name:
@@ -71,7 +72,7 @@ def runs(observed: Observed) -> Iterator[Run]:
             before = [line for line in alone.lines if line[0] < asked]
             ended = alone.code if alone.ended_after is not None else None
             rest = direct.seen, asked, ended, direct.latched
-            yield Run(node, "started by itself", path, logs, before, *rest)
+            yield Run(node, "started by itself", False, path, logs, before, *rest)
 
 
 def is_own(package: Package, log: Log) -> bool:

@@ -19,8 +19,9 @@ from mrp_check.contract.names import last_part
 from mrp_check.contract.spec import Topic
 from mrp_check.run.any_case import AnyCase
 from mrp_check.run.node import FEW
+from mrp_check.run.observing import ends
 from mrp_check.run.planning import resolved
-from mrp_check.run.traces import ROS_SERVICES, ROS_TOPICS, ends
+from mrp_check.run.traces import ROS_SERVICES, ROS_TOPICS
 
 _WORD = re.compile(r"[A-Za-z]\w*")  # what a contract can call a node or a topic
 _ANONYMOUS = re.compile(r"_\d+_\d+$")  # how such a name ends

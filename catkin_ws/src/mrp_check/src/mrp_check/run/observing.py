@@ -11,11 +11,13 @@ from __future__ import annotations
 import dataclasses
 import os
 import pathlib
+import re
+from typing import Iterable
 
 from mrp_check.code.facts import Facts
 from mrp_check.confined import messages
 from mrp_check.confined.launch_dump import Started
-from mrp_check.confined.seen import Alone, DirectResult, LaunchResult
+from mrp_check.confined.seen import Alone, DirectResult, LaunchResult, Log
 from mrp_check.contract.names import last_part
 from mrp_check.contract.resources import SHARES
 from mrp_check.contract.spec import NodeSpec, Spec
@@ -24,6 +26,19 @@ from mrp_check.package.workspace import Workspace
 from mrp_check.run.planning import Planner
 from mrp_check.run.sessions import Sessions, too_busy
 
+# What roslaunch says; only of what has died it says a code.
+_DIED = re.compile(
+    r"\[(?P<name>\S+)-\d+\] process has "
+    r"(?:died \[pid \d+, exit code (?P<code>-?\d+)|finished cleanly)"
+)
+
+
+def ends(lines: Iterable[str]) -> dict[str, int]:
+    """Return full name -> exit code of each node whose end roslaunch tells of in these lines: of
+    one that was started again, the first."""
+    found = [one for one in map(_DIED.search, lines) if one]
+    return {f"/{one['name']}": int(one["code"] or 0) for one in reversed(found)}
+
 
 @dataclasses.dataclass
 class Launched:
@@ -31,18 +46,33 @@ class Launched:
 
     file: relative to the package; empty of one that the checker has made
     nodes: full name -> node of the spec
-    made_up: the full names that neither the nodes nor a launch file give: the checker does
     """
 
     file: str
     nodes: dict[str, str]
     seen: LaunchResult
-    made_up: tuple[str, ...] = ()
 
     @property
     def where(self) -> str:
         """In the words of a message."""
         return f"under {self.file}" if self.file else "together with the other nodes"
+
+    def kept_up(self) -> set[str]:
+        """Return the nodes of the spec that came up under a launch file, and did not end."""
+        seen, ended = self.seen.seen, self.died()
+        paths = {one.node for one in [*seen.publications, *seen.subscriptions, *seen.services]}
+        up = {name for path, name in self.nodes.items() if path in paths and name not in ended}
+        return up if self.file else set()
+
+    def logs(self, path: str) -> list[Log]:
+        """Return what the node of a full name logged before it was asked to end."""
+        logs, asked = self.seen.seen.logs, self.seen.asked
+        return [log for log in logs if log.node == path and log.time < asked]
+
+    def died(self) -> dict[str, int]:
+        """Return node of the spec -> exit code, of those that ended by themselves."""
+        codes = ends(self.seen.until_asked())
+        return {name: codes[path] for path, name in self.nodes.items() if path in codes}
 
 
 @dataclasses.dataclass

@@ -27,6 +27,8 @@ def start_findings(node: Traces) -> Iterator[Finding]:
         return
     if node.in_launch and died is not None:
         code = died
+    elif any(node.name in launched.kept_up() for launched in node.places.observed.launches):
+        return  # the same, without a contract
     elif direct.ended_after is None:
         if node.in_launch and not registered and not node.own_name:
             yield _not_registered(node)
@@ -34,7 +36,7 @@ def start_findings(node: Traces) -> Iterator[Finding]:
     # By itself, it is answered as the contract says; beside others, as these do.
     if node.wanted.ends and 0 in (code, direct.code if direct.asked is None else None):
         return
-    found = _traceback(node)
+    found = traceback_of(node)
     if found and code != 0:
         yield _raised(node, *found)
     elif code != 0:
@@ -52,7 +54,7 @@ def start_findings(node: Traces) -> Iterator[Finding]:
         )
 
 
-def _traceback(node: Traces) -> Traceback | None:
+def traceback_of(node: Traces) -> Traceback | None:
     """Return the last traceback of the node: of its own run, or of what roslaunch shows."""
     found = node.places.traceback(node.errors())
     if found is None:

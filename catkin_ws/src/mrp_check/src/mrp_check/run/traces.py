@@ -4,20 +4,16 @@
 from __future__ import annotations
 
 import re
-from typing import Any, Iterable
+from typing import Any
 
 from mrp_check.confined.places import Kind
 from mrp_check.confined.seen import Message, Number, Seen
 from mrp_check.contract import spec as specs
 from mrp_check.contract.finding import SEEN, Finding, Where
+from mrp_check.run.observing import ends
 from mrp_check.run.places import Places
 from mrp_check.run.planning import WRAP
 
-# What roslaunch says; only of what has died it says a code.
-_DIED = re.compile(
-    r"\[(?P<name>\S+)-\d+\] process has "
-    r"(?:died \[pid \d+, exit code (?P<code>-?\d+)|finished cleanly)"
-)
 # Topics that belong to ROS itself.
 ROS_TOPICS = {"/rosout", "/rosout_agg", "/clock", "/tf", "/tf_static", "/diagnostics"}
 # What each node offers by itself.
@@ -27,13 +23,6 @@ ROS_SERVICES = {"get_loggers", "set_logger_level", "tf2_frames"}
 def outside(topic: str) -> str:
     """Return a topic's name without the namespace that a node has when it runs by itself."""
     return re.sub(r"^/check_\d+/", "/", topic)
-
-
-def ends(lines: Iterable[str]) -> dict[str, int]:
-    """Return full name -> exit code of each node whose end roslaunch tells of in these lines: of
-    one that was started again, the first."""
-    found = [one for one in map(_DIED.search, lines) if one]
-    return {f"/{one['name']}": int(one["code"] or 0) for one in reversed(found)}
 
 
 class Traces:

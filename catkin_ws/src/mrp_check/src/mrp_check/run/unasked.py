@@ -66,13 +66,13 @@ def observe(
     files = {file: nodes for file, nodes in own.items() if nodes and file}
     runs = [(file, workspace.package_folder / file, files[file]) for file in list(files)[:_MOST]]
     if len(result.executables) > 1 and result.executables.keys() - result.started.keys():
-        made, made_up = _made(facts, result)
+        made = _made(facts, result)
         runs.append(("", planner.write_launch_file_of_all(made), made))
     for file, path, nodes in runs:
         plan = planner.of_file(path, _SECONDS, _watched(workspace, facts, nodes), enough)
         seen = sessions.result(plan, LaunchResult, problems)
         if seen:
-            result.launches.append(Launched(file, nodes, seen, () if file else made_up))
+            result.launches.append(Launched(file, nodes, seen))
     result.direct = ran.result()
     return result
 
@@ -88,20 +88,18 @@ def _preloaded(workspace: Workspace) -> pathlib.Path | None:
     return library if done.code == 0 else None
 
 
-def _made(facts: Facts, result: Observed) -> tuple[dict[str, str], tuple[str, ...]]:
-    """Return full name -> node of the spec, as a launch file names it or as it names itself; and
-    those names that are made up, as the node's own isn't known, or is that of another one."""
+def _made(facts: Facts, result: Observed) -> dict[str, str]:
+    """Return full name -> node of the spec, as a launch file names it or as it names itself; by its
+    executable, if its own name isn't known, or is that of another one."""
     found = {started.path: name for name, started in result.started.items()}
     found = {path: name for path, name in found.items() if name in result.executables}
-    made_up = []
     for name in sorted(result.executables.keys() - {*found.values()}):
         own = next((place.text for place in facts.of(name, Kind.INIT) if place.text), "")
         path = "/" + re.sub(r"\W", "_", own.lstrip("/~"))
         if path == "/" or path in found:
             path = "/" + re.sub(r"\W", "_", name)
-            made_up.append(path)
         found[path] = name
-    return found, tuple(made_up)
+    return found
 
 
 def _watched(workspace: Workspace, facts: Facts, nodes: Mapping[str, str]) -> list[LaunchNode]:

@@ -12,7 +12,8 @@ from mrp_check.contract.finding import HABIT, SEEN, Finding
 from mrp_check.contract.requirements import ANY, Rule
 from mrp_check.run.case import Case
 from mrp_check.run.node import Node, each_node
-from mrp_check.run.traces import ROS_TOPICS, ends
+from mrp_check.run.observing import ends
+from mrp_check.run.traces import ROS_TOPICS
 
 _FEW = 3  # messages that must have come
 _SECONDS = 2.0  # for which the first of them must have waited

@@ -37,7 +37,8 @@ def _findings(case: Case) -> Iterator[Finding]:
             if not times or not _is_lost(case, run, one, times):
                 continue
             reported.add((run.node, topic))
-            heard = any(s.topic == one.topic for s in run.seen.subscriptions)
+            # Under no launch file of its own, it may wait for somebody else.
+            is_sure = run.is_launched and any(s.topic == one.topic for s in run.seen.subscriptions)
             call = "get_num_connections()" if case.spec.nodes[run.node].language == "python" else ""
             yield Finding(
                 "topic",
@@ -45,7 +46,7 @@ def _findings(case: Case) -> Iterator[Finding]:
                 f" and never again, {run.where}: no subscriber is connected yet, so nobody gets"
                 " it.",
                 *case.places.of_topic(run.node, Kind.PUBLISHER, one.topic),
-                certainty=SEEN if heard else HABIT,
+                certainty=SEEN if is_sure else HABIT,
                 expected="a wait until somebody is connected; or latch",
                 seen=f"{len(times)} message(s), {times[-1] - one.answered:.3f} s after that",
                 fix=f"First wait until {call or 'getNumSubscribers()'} is more than 0, or latch.",

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Publishers and subscribers of a package meet: no name is misspelt, and the types are the same."""
+"""The nodes of a package meet: no name of a topic or a service is misspelt, and types agree."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ from mrp_check.contract.finding import HABIT, HINT, SEEN, Finding
 from mrp_check.contract.names import last_part, nearest
 from mrp_check.contract.requirements import ANY, Rule
 from mrp_check.run.case import Case
+from mrp_check.run.observing import Launched
 from mrp_check.run.traces import ROS_TOPICS, outside
 
 _ALIKE = 0.85
@@ -32,12 +33,11 @@ class End(typing.NamedTuple):
 
 
 class Graph(typing.NamedTuple):
-    """What was seen in a run. made_up: the names of nodes that the checker has made up for it."""
+    """What was seen in a run."""
 
     where: str
     publishers: list[End]
     subscribers: list[End]
-    made_up: tuple[str, ...] = ()
 
 
 def _findings(case: Case) -> Iterator[Finding]:
@@ -55,6 +55,30 @@ def _findings(case: Case) -> Iterator[Finding]:
             ):
                 told.add((end.node, end.topic))
                 yield finding
+    for launched in case.observed.launches:
+        yield from _of_services(case, launched) if launched.file else ()
+
+
+def _of_services(case: Case, launched: Launched) -> Iterator[Finding]:
+    """Yield a finding for each service that a node seeks, if another node offers one whose name is
+    alike, and which nobody seeks."""
+    seen = launched.seen.seen
+    sought = {one.topic for one in seen.lookups}
+    offered = {one.topic: launched.nodes.get(one.node) for one in seen.services}
+    for topic, path in {one.topic: one.node for one in seen.lookups}.items():
+        node = launched.nodes.get(path)
+        near = nearest(topic, [one for one in offered if one not in sought], _ALIKE)
+        if node and near and topic not in offered and offered[near] not in (node, None):
+            yield Finding(
+                "starts",
+                f"{node} waits for the service {topic}, {launched.where}, which nobody offers, but"
+                f" {offered[near]} offers {near}.",
+                *case.places.asked(node, Kind.ASKS, last_part(topic)),
+                expected=near,
+                seen=topic,
+                fix="Give both services one name.",
+                node=node,
+            )
 
 
 def _graphs(case: Case) -> Iterator[tuple[Graph, set[str]]]:
@@ -66,14 +90,12 @@ def _graphs(case: Case) -> Iterator[tuple[Graph, set[str]]]:
         nodes = {*launched.nodes.values()} - (set() if launched.file else together)
         together |= nodes
         where = f"Under {launched.file}" if launched.file else _TOGETHER
-        graph = _graph(where, launched.seen.seen, launched.nodes, lambda topic: topic)
-        yield graph._replace(made_up=launched.made_up), nodes
+        yield _graph(where, launched.seen.seen, launched.nodes, lambda topic: topic), nodes
     direct = case.observed.direct
     if direct:
         alone = {one.name: key for key, one in direct.nodes.items() if one.name}
         # Each ran in a namespace of its own.
-        graph = _graph(_BY_ITSELF, direct.seen, alone, outside)
-        yield graph, {*alone.values()} - together
+        yield _graph(_BY_ITSELF, direct.seen, alone, outside), {*alone.values()} - together
 
 
 def _graph(
@@ -137,15 +159,10 @@ def _alone(case: Case, graph: Graph, end: End, published: set[str]) -> Iterator[
     other = near[0]
     # Under their own launch file, both are without a partner: what one says, the other should hear.
     is_run = graph.where not in (_TOGETHER, _BY_ITSELF)
-    is_sure = is_run and other.topic not in heard
-    is_sure = is_sure or (
-        is_like(other, end) and (other.topic not in heard or not _is_moved(other, end))
-    )
-    # A launch file that roslaunch couldn't read may give topics other names; and one that's named
-    # after its node has another name where the checker has renamed the node.
-    is_open = not is_run and any(launch.error for launch in case.launches)
-    made_up = tuple(f"{name}/" for name in graph.made_up)
-    is_open = is_open or any(f"{one.topic}/".startswith(made_up) for one in (end, other))
+    is_near = is_like(other, end)
+    is_sure = other.topic not in heard or is_near and not _is_moved(other, end)
+    # A launch file that doesn't start them here may give them other names elsewhere.
+    is_sure = is_sure and (is_run or is_near and not case.launches)
     digits = [re.sub(r"\d", "", one.topic) for one in (other, end)]
     fix = "Give both topics one name; a <remap> in the launch file does so, too."
     if other.topic == f"/{last_part(end.topic)}":
@@ -159,7 +176,7 @@ def _alone(case: Case, graph: Graph, end: End, published: set[str]) -> Iterator[
         f" {other.node} publishes on {other.topic}.",
         file,
         line,
-        SEEN if is_sure and not is_open and digits[0] != digits[1] else HABIT,
+        SEEN if is_sure and digits[0] != digits[1] else HABIT,
         expected=other.topic,
         seen=end.topic,
         fix=fix,
@@ -208,4 +225,4 @@ def _is_moved(one: End, other: End) -> bool:
     return last_part(one.topic) == last_part(other.topic)
 
 
-RULE = Rule("run", ("nodes",), _findings, also=("topic", "type"), only=ANY)
+RULE = Rule("run", ("nodes",), _findings, also=("topic", "type", "starts"), only=ANY)

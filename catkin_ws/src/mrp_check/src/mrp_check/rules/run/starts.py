@@ -3,45 +3,24 @@
 
 from __future__ import annotations
 
-import ast
 import re
 from typing import Iterator
 
 from mrp_check.code import uses
 from mrp_check.code.facts import Facts
-from mrp_check.confined.launch_dump import Started
 from mrp_check.confined.places import Kind
-from mrp_check.contract.finding import HABIT, HINT, Finding, Line, Where
+from mrp_check.contract.finding import HABIT, HINT, Finding, Where
 from mrp_check.contract.names import last_part
 from mrp_check.contract.requirements import Requirement, Rule
 from mrp_check.package.package import Package
-from mrp_check.run import evidence
+from mrp_check.run import blame, evidence
 from mrp_check.run.case import Case
 from mrp_check.run.node import Node
 from mrp_check.run.observing import Observed
-from mrp_check.run.traces import ROS_TOPICS, ends
-from mrp_check.run.words import code_text, last_words
+from mrp_check.run.starting import traceback_of
+from mrp_check.run.traces import ROS_TOPICS
+from mrp_check.run.words import code_text
 
-_ARGUMENTS, _PARAMETER = "arguments on its command line", "a parameter"
-_DEVICE = "a device"
-# What a node says that stands before an empty keyboard, screen or command line, what it waits for,
-# and what the line that raised must name, where anything else raises the same error, too.
-_WAITS = (
-    (r"(?i)^\s*\W*usage\b|\[ ?\w+\] \[[\d., ]+\]: usage\b", _ARGUMENTS, ""),
-    (r"EOFError: EOF when reading a line", "the keyboard", ""),
-    (r"termios\.error|Inappropriate ioctl for device", "the keyboard", ""),
-    (r"(?i)cannot open display|could not connect to display|no display name", "a screen", ""),
-    (r"(?i)can.t open camera|VIDEOIO|/dev/(video|tty|input)\w*", _DEVICE, ""),
-    (r"KeyError: ", _PARAMETER, "param"),
-    (r"IndexError: list index|ValueError: ", "arguments", "sys.argv"),
-)
-# The last words of a node that names a parameter as missing.
-_NO_PARAMETER = re.compile(
-    r"(?i)\bparam(eter)?s?\b.*\b(required|missing|not)\b"
-    r"|\b(required|missing|no|not|failed|unable)\b.*\bparam(eter)?s?\b"
-)
-_WAITS_FOR_ARGUMENTS = f"waits for {_ARGUMENTS}"
-_FEW = 6  # lines
 _OF_ACTIONS = {"feedback", "result", "status"}
 
 
@@ -132,74 +111,34 @@ def _launch_place(package: Package, seen: Observed) -> Where:
 
 
 def weigh_start(case: Case, node: Node, finding: Finding) -> None:
-    """Lower the certainty of a finding about a node that ended, if it waited for what only its user
-    or its launch file gives; without a contract, nobody says that it must run by itself."""
+    """Set how sure it is that the package is to blame for the end of a node by itself."""
     own = rf"(No module named|cannot import name .* from) '{case.package.name}\b"
     if case.built is None and re.search(own, finding.seen):
         finding.certainty = HINT  # it is not made where CMake failed
+    if finding.certainty == HINT:
         return
-    waits = _of_start(case, node, finding)
-    started = _without_arguments(case, node)
-    if waits and started:
-        finding.message = f"{node.name} {_WAITS_FOR_ARGUMENTS}, and {started.file} gives none."
-        finding.certainty, finding.file, finding.line = HABIT, started.file, started.line
-
-
-def _without_arguments(case: Case, node: Node) -> Started | None:
-    """Return a <node> of a launch file that starts a node, and gives it no arguments."""
-    started = (one for launch in case.launches for one in launch.nodes)
-    own = (one for one in started if (one.package, one.type) == (case.package.name, node.name))
-    return next((one for one in own if not one.arguments.strip() and one.file), None)
-
-
-def _of_start(case: Case, node: Node, finding: Finding) -> bool:
-    """Do so; return whether it waits for arguments on its command line."""
-    lines = [text for _, _, text in node.direct.lines] if node.direct else []
-    dies = _dies_under(case, node)
-    params = [str(value) for launch in case.launches for value in launch.params.values()]
-    has_device = any(value.startswith("/dev/") for value in params)
-    for shape, what, reads in _WAITS:
-        if dies and what in (_ARGUMENTS, "arguments", _PARAMETER):
-            continue  # its launch file should give them
-        if what == _DEVICE and has_device:  # a library that opens it needn't name it
-            shape += "|No such file or directory"
-        said = next((text for text in lines if re.search(shape, text)), None)
-        if said:
-            if reads and not any(reads in name for name in _names(node, finding)):
-                continue
-            finding.certainty = HABIT if what == _PARAMETER else HINT
-            finding.message = f"{node.name} waits for {what}: {said.strip()[:200]}"
-            return what == _ARGUMENTS
-    if dies:
-        finding.message = f"{finding.message.rstrip('.')}. It dies under {dies}, too."
+    runs = (one for one in case.observed.launches if one.file)
+    launched = next((one for one in runs if one.died().get(node.name)), None)
+    code = node.direct.code if node.direct else None
+    found = traceback_of(node)
+    if launched:
+        finding.message = f"{finding.message.rstrip('.')}. It dies {launched.where}, too."
         add_name_that_is_set(case, finding)
-        return False
-    said = last_words(node.errors())
-    if finding.id == "starts" and _NO_PARAMETER.search(said):
+    elif code == 0:
+        _weigh_clean_end(node, finding)
+        return
+    end = blame.of_lines(node.errors(), code)
+    end = end._replace(kind=found[1], text=found[2]) if found else end
+    finding.certainty = blame.certainty(case, node.name, end, launched)
+
+
+def _weigh_clean_end(node: Node, finding: Finding) -> None:
+    """Do so of one that ended with exit code 0: it may have meant to, unless it was to be called
+    back."""
+    if not _is_left_alone(node):
         finding.certainty = HINT
-        finding.message = f"{node.name} waits for {_PARAMETER}: {said}"
-        return False
-    if not any("Error:" in line for line in lines) and misses_arguments(node, finding):
-        finding.certainty = HINT
-        finding.message = f"{node.name} {_WAITS_FOR_ARGUMENTS}."
-        return True
-    file = _works_under(case, node)
-    if file:
-        finding.certainty = HINT
-        finding.message = f"{node.name} works under {file}; started by itself, it ends."
-        return False
-    early = _early_call(node, lines)
-    if early:
-        finding.certainty, (finding.file, finding.line) = HABIT, early
-        finding.message += " It doesn't wait for the service that it calls."
-        return False
-    if node.direct and node.direct.code == 0 and _is_left_alone(node):
-        if node.places.facts.exits(node.name):  # it may have meant to, as of what it was answered
-            finding.certainty = HABIT
-    elif node.direct and node.direct.code == 0:
-        finding.certainty = HINT
-        finding.message = f"{node.name} exits with code 0: {last_words(lines) or 'without a word'}"
-    return False
+    elif node.places.facts.exits(node.name):
+        finding.certainty = HABIT
 
 
 def add_name_that_is_set(case: Case, finding: Finding) -> None:
@@ -212,62 +151,6 @@ def add_name_that_is_set(case: Case, finding: Finding) -> None:
         finding.fix = (
             "Set it inside <node> if the node asks for it with ~, and outside if it asks without."
         )
-
-
-def _dies_under(case: Case, node: Node) -> str | None:
-    """Return a launch file of the package under which a node dies, whatever it says then."""
-    for launched in case.observed.launches:
-        codes = ends(launched.seen.until_asked(0))
-        paths = [path for path, name in launched.nodes.items() if name == node.name]
-        if launched.file and any(codes.get(path) for path in paths):
-            return launched.file
-    return None
-
-
-def _works_under(case: Case, node: Node) -> str | None:
-    """Return a launch file under which a node came up, and did not end."""
-    for launched in case.observed.launches:
-        seen = launched.seen.seen
-        up = {one.node for one in [*seen.publications, *seen.subscriptions, *seen.services]}
-        died = {*ends(launched.seen.until_asked())}
-        paths = {path for path, name in launched.nodes.items() if name == node.name}
-        if launched.file and paths & up - died:
-            return launched.file
-    return None
-
-
-def _early_call(node: Node, lines: list[str]) -> Line | None:
-    """Return the call of a service, if the node ends as nobody offers it yet."""
-    raised = any("Traceback" in line for line in lines)
-    if not node.direct or (node.direct.code or 0) <= 0:
-        return None
-    if raised and not any("ServiceException" in line for line in lines):
-        return None
-    place = node.places.facts.unwaited(node.places.sources(node.name))
-    return (place.file, place.line) if place else None
-
-
-def misses_arguments(node: Node, finding: Finding) -> bool:
-    """Return whether a program counts its arguments beside where it ended; or, where that place
-    is not known, beside any line that ends it."""
-    if not finding.file or not finding.line:
-        return False
-    places = [one for one in node.places.facts.places if one.file == finding.file]
-    counting = [one.line for one in places if one.kind is Kind.COUNTS]
-    if any(abs(line - finding.line) <= _FEW for line in counting):
-        return True
-    code = node.direct.code if node.direct else 0
-    exits = [p.line for p in places if p.kind is Kind.EXIT and (p.value or p.text != "return")]
-    return bool(code) and any(0 <= end - n < 2 * _FEW for end in exits for n in counting)
-
-
-def _names(node: Node, finding: Finding) -> set[str]:
-    """Return the names in the line of a Python source that raised."""
-    source = node.places.facts.python.get(finding.file or "")
-    if source is None:
-        return set()
-    named = [one for one in source.nodes(ast.Attribute) if one.lineno == finding.line]
-    return {source.dotted(one) or one.attr for one in named}
 
 
 def _is_left_alone(node: Node) -> bool:
