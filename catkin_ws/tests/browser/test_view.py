@@ -163,6 +163,8 @@ def test_markup_is_text(each_page):
         lambda: row(each_page, "#senders", "/test_page", "/markup")[7:] == [MARKUP],
         "the text itself",
     )
+    rospy.logwarn(MARKUP)
+    wait_for_text(each_page, "#log", MARKUP)
     assert each_page.run("return document.title") == "mrp_view"
     assert each_page.find("main img, main script") == []
     publisher.unregister()
@@ -182,12 +184,29 @@ def test_names_that_are_markup_are_text(each_page):
     api.unregisterPublisher(topic, "http://localhost:1/")
 
 
+def test_log_is_filtered(each_page):
+    rospy.loginfo("a line to be filtered")
+    rospy.logerr("a line that stays")
+    wait_for_text(each_page, "#log", "a line that stays")
+    assert "a line to be filtered" in text(each_page, "#log")
+    choose = (
+        "const one = document.querySelector(arguments[0]); one.value = arguments[1];"
+        "one.dispatchEvent(new Event('change'))"
+    )
+    each_page.run(choose, "#log-level", "ERROR")
+    assert "a line to be filtered" not in text(each_page, "#log")
+    assert "a line that stays" in text(each_page, "#log")
+    each_page.run(choose, "#log-level", "DEBUG")
+    each_page.run(choose, "#log-node", "/test_page")
+    assert "a line to be filtered" in text(each_page, "#log")
+
+
 def test_without_a_mouse(page):
     """Tab reaches all that can be pressed, and within the graph the arrow keys go on."""
     publisher = rospy.Publisher("keys", UInt32, queue_size=1)
     page.wait_until(lambda: len(items(page)) >= 2, "a graph")
     page.run("document.activeElement.blur()")
-    wanted = {"pause", "show-log", "show-viewer"}
+    wanted = {"pause", "show-log", "show-viewer", "plot-topic", "log-node", "log-level", "log"}
     reached = set()
     for _ in range(30):
         page.press(Keys.TAB)
@@ -333,6 +352,7 @@ def look(request, browser, shown):
         lambda: any("Dead" in item or "dead" in item for item in items(browser)), "dead"
     )
     browser.wait_until(lambda: "✗" in text(browser, "#graph"), "a red edge")
+    browser.wait_until(lambda: browser.find("#plot .line"), "a plot")
     return size, mode
 
 

@@ -22,10 +22,22 @@ export function setText(element, text) {
   if (element.textContent !== text) element.textContent = text;
 }
 
-// The same colour for a publisher everywhere: by the order in which they came.
-const known = new Map();
+// Has in a <select> these values, and keeps the one that is chosen.
+export function setOptions(select, values, first) {
+  const wanted = first === undefined ? values : ["", ...values];
+  const had = [...select.options].map((option) => option.value);
+  if (had.length === wanted.length && had.every((value, index) => value === wanted[index])) return;
+  const chosen = select.value;
+  select.replaceChildren(...wanted.map((value) => html("option", { value }, value || first)));
+  if (wanted.includes(chosen)) select.value = chosen;
+}
 
-export function colourOf(publisher) {
+// The same colour and dash for a publisher everywhere: by the order in which they came.
+const known = new Map();
+const DASHES = ["", "6 3", "2 3", "8 3 2 3"];
+
+export function styleOf(publisher) {
   if (!known.has(publisher)) known.set(publisher, known.size);
-  return `var(--line-${known.get(publisher) % 8})`;
+  const number = known.get(publisher);
+  return { colour: `var(--line-${number % 8})`, dash: DASHES[Math.floor(number / 2) % DASHES.length] };
 }

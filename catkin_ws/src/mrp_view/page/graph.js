@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The graph: drawn where dot has put everything, with a pulse for each message that is shown.
 
-import { byId, colourOf, html, setText, svg } from "./dom.js";
+import { byId, html, setText, styleOf, svg } from "./dom.js";
 
 const LEGIBLE = 0.75; // the smallest scale: a larger graph scrolls
 const MOST_PULSES = 60;
@@ -191,7 +191,7 @@ export class Graph {
   // A message of that publisher: to the topic, and on to all who are connected.
   pulse(topic, publisher, subscribers) {
     if (document.hidden) return;
-    const colour = colourOf(publisher);
+    const { colour } = styleOf(publisher);
     this.start(`p ${publisher} ${topic}`, colour, () => {
       for (const subscriber of subscribers) this.start(`s ${topic} ${subscriber}`, colour);
     });

@@ -4,19 +4,24 @@
 import { Connection } from "./connection.js";
 import { byId, html, setText } from "./dom.js";
 import { count, Graph } from "./graph.js";
+import { LogView } from "./log.js";
+import { History, showPlot } from "./plot.js";
 import { keyOfLink, keyOfSender, showLinks, showSenders } from "./tables.js";
 
 const NARROW = matchMedia("(max-width: 700px)");
 const LOG_TOPICS = ["/rosout", "/rosout_agg"];
 
 const graph = new Graph();
+const log = new LogView();
+const history = new History();
 const senders = new Map();
 const links = new Map();
-const shown = new Map(); // key of a sender -> [[now, count, how often it was shown], ...] of the last two seconds
+const shown = new Map(); // key of a sender -> [[now, count, samples], ...] of the last two seconds
 const hidden = new Set(); // topics
 let findings = [];
 let latest = null; // the last graph
 let now = 0;
+let viewerId = null;
 let state = "connecting";
 let paused = false;
 
@@ -44,7 +49,7 @@ function take(message) {
     showCounts();
     return;
   }
-  if (message.all) begin();
+  if (message.all) begin(message);
   now = message.now;
   for (const row of message.rows) receive(row);
   for (const [topic, from] of message.gone ?? []) senders.delete(keyOfSender({ topic, from }));
@@ -54,27 +59,32 @@ function take(message) {
     findings = message.findings;
     showFindings();
   }
+  if (message.log.length || message.all) log.add(message.log, message.log_count);
+  history.forget(now);
   showTables();
   if (message.links.length || message.links_gone?.length || message.all) showCounts();
 }
 
 // Everything comes anew: after a pause, a lost connection, or a restart of the viewer.
-function begin() {
+function begin(message) {
   senders.clear();
   links.clear();
   shown.clear();
+  log.clear();
+  if (viewerId !== message.id) history.clear();
+  viewerId = message.id;
 }
 
 function receive(row) {
   const key = keyOfSender(row);
-  const isNew = row.count > (senders.get(key)?.count ?? 0);
   senders.set(key, row);
+  history.add(key, row.samples, now);
   const before = shown.get(key) ?? [[now, row.count, 0]];
   const last = before[before.length - 1];
-  before.push([now, row.count, last[2] + Number(isNew)]);
+  before.push([now, row.count, last[2] + row.samples.length]);
   while (before.length > 2 && before[1][0] < now - 2) before.shift();
   shown.set(key, before);
-  if (!isNew || !isShown(row.topic)) return;
+  if (!row.samples.length || !isShown(row.topic)) return;
   const subscribers = (latest?.graph.links ?? [])
     .filter((link) => link.topic === row.topic && link.from === row.from && link.state === "ok")
     .map((link) => link.to);
@@ -101,6 +111,7 @@ function showTables() {
   setTimeout(() => {
     tablesDue = false;
     showSenders(visibleSenders(), shares());
+    showPlot(history, visibleSenders(), now);
   }, 250);
 }
 
@@ -171,4 +182,8 @@ byId("pause").addEventListener("click", () => {
   showStatus();
 });
 for (const id of ["show-log", "show-viewer"]) byId(id).addEventListener("change", choose);
+byId("plot-topic").addEventListener("change", (event) => {
+  event.target.dataset.chosen = "yes";
+  showPlot(history, visibleSenders(), now);
+});
 NARROW.addEventListener("change", () => connection.tell());

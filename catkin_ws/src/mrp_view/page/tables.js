@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The tables of the publishers' messages and of the connections.
 
-import { byId, colourOf, html, setText, svg } from "./dom.js";
+import { byId, html, setText, styleOf, svg } from "./dom.js";
 
 // Keeps the rows of a table, sorted by their keys.
 class Table {
@@ -79,10 +79,11 @@ export function showSenders(rows, shares) {
   }
 }
 
-// The colour of this publisher's messages in the graph.
+// The line that is this publisher's in the plot.
 function sign(publisher) {
-  const line = svg("line", { x1: 0, y1: 5, x2: 22, y2: 5, "stroke-width": 3 });
-  line.style.stroke = colourOf(publisher);
+  const { colour, dash } = styleOf(publisher);
+  const line = svg("line", { x1: 0, y1: 5, x2: 22, y2: 5, "stroke-width": 3, "stroke-dasharray": dash });
+  line.style.stroke = colour;
   return svg("svg", { class: "sign", width: 24, height: 10, "aria-hidden": "true" }, line);
 }
 

@@ -8,7 +8,7 @@ import types
 import pytest
 from mrp_labs.msg import Count
 from mrp_view import fields, listener
-from mrp_view.counting import Gaps, Sender
+from mrp_view.counting import SAMPLES, Gaps, Sender
 from rosgraph_msgs.msg import Log
 from std_msgs import msg as std_msgs
 
@@ -73,22 +73,23 @@ def test_header_is_a_counter_and_has_a_stamp():
 
 
 @pytest.mark.parametrize(
-    ("message", "text"),
+    ("message", "text", "number"),
     [
-        (std_msgs.UInt32(4), "4"),
-        (std_msgs.String("<b>"), "<b>"),
-        (std_msgs.Float32(0.5), "0.5"),
-        (std_msgs.Bool(True), "True"),
-        (std_msgs.Empty(), "empty"),
+        (std_msgs.UInt32(4), "4", ("data", 4)),
+        (std_msgs.String("<b>"), "<b>", None),
+        (std_msgs.Float32(0.5), "0.5", ("data", 0.5)),
+        (std_msgs.Bool(True), "True", ("data", 1)),
+        (std_msgs.Empty(), "empty", None),
         (
             std_msgs.UInt8MultiArray(data=b"\x01\xff"),
             "layout: dim: [], data_offset: 0, data: 2 bytes: 01 ff",
+            ("layout.data_offset", 0),
         ),
-        (std_msgs.ColorRGBA(1, 0, 0, 1), "r: 1, g: 0, b: 0, a: 1"),
+        (std_msgs.ColorRGBA(1, 0, 0, 1), "r: 1, g: 0, b: 0, a: 1", ("r", 1)),
     ],
 )
-def test_text(message, text):
-    assert fields.text(message) == text
+def test_text_and_number(message, text, number):
+    assert (fields.text(message), fields.number(message)) == (text, number)
 
 
 def test_text_of_a_large_message_is_short():
@@ -96,6 +97,10 @@ def test_text_of_a_large_message_is_short():
     assert len(fields.text(large)) <= fields.LONGEST
     assert "100000 in all" in fields.text(large)
     assert len(fields.text(std_msgs.String("x" * 10**6))) == fields.LONGEST
+
+
+def test_header_has_no_number_but_what_follows_has():
+    assert fields.number(Count(counter=7)) == ("counter", 7)
 
 
 def test_types_that_cannot_be_shown():
@@ -111,12 +116,14 @@ def test_types_that_cannot_be_shown():
         assert found is None and words in why
 
 
-def test_counts_stay_exact_while_only_the_newest_message_is_kept():
+def test_counts_stay_exact_while_few_messages_are_kept():
     sender = Sender(fields.counter_of("std_msgs/UInt32", ""))
     for number in range(1000):
         sender.add(0.0, struct.pack("<I", number), None)
-    assert sender.take() == (1000, struct.pack("<I", 999))
-    assert sender.take() == (1000, None)
+    count, samples = sender.take()
+    assert count == 1000
+    assert [struct.unpack("<I", raw)[0] for _, raw in samples] == list(range(1000))[-SAMPLES:]
+    assert sender.take() == (1000, [])
     assert sender.missing() == (0, 0)
 
 

@@ -171,6 +171,13 @@ def test_changes_are_sent_once():
     assert changes.update([{"name": "a", "n": 2}]) == ([{"name": "a", "n": 2}], [["b"]])
 
 
+def test_log_lines_after_a_number():
+    lines = [(n, {"text": str(n)}) for n in range(11, 21)]
+    assert feed.log_since(lines, 18) == [{"text": "19"}, {"text": "20"}]
+    assert feed.log_since(lines, 0, most=1) == [{"text": "20"}]
+    assert feed.log_since(lines, 20) == []
+
+
 def test_what_json_cannot_say_is_never_sent():
     with pytest.raises(ValueError):
         feed.encode({"x": float("nan")})

@@ -47,6 +47,11 @@ class TestProgram(unittest.TestCase):
             page.wait_for(lambda: page.rows.get(key, {}).get("latency") is not None, "a latency")
             self.assertGreaterEqual(page.rows[key]["latency"], 0)
             self.assertIn("frame_id: <b>", page.rows[key]["value"])
+            rospy.logwarn("<script>alert(2)</script>")
+            page.wait_for(
+                lambda: any(line["text"] == "<script>alert(2)</script>" for line in page.lines),
+                "the log line",
+            )
         string.unregister()
         header.unregister()
 

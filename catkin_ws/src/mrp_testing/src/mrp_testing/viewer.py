@@ -49,9 +49,9 @@ class Client:
     """What a page gets: the parts of it as they are now.
 
     graph: the last message of that kind; rows: (topic, publisher) -> row;
-    links: (topic, publisher, subscriber) -> link; findings: as the viewer sends them
+    links: (topic, publisher, subscriber) -> link; findings, lines: as the viewer sends them
     kinds: those of all findings so far
-    values: topic -> those of its messages that were looked into
+    samples: topic -> how many of its messages were looked into
     closed: why the viewer has closed the connection, or None
 
     Use it in a `with`.
@@ -63,8 +63,9 @@ class Client:
         self.links = {}
         self.findings = []
         self.kinds = set()
+        self.lines = []
         self.ticks = 0
-        self.values = collections.defaultdict(set)
+        self.samples = collections.Counter()
         self.closed = None
         self._url = address.replace("http:", "ws:") + "socket"
         self._origin = address.rstrip("/")
@@ -118,10 +119,10 @@ class Client:
             self.graph = message
             return
         if message.get("all"):
-            self.rows, self.links = {}, {}
+            self.rows, self.links, self.lines = {}, {}, []
         for row in message["rows"]:
             self.rows[row["topic"], row["from"]] = row
-            self.values[row["topic"]].add(row["value"])
+            self.samples[row["topic"]] += len(row["samples"])
         for link in message["links"]:
             self.links[link["topic"], link["from"], link["to"]] = link
         for key in message.get("gone", []):
@@ -131,6 +132,7 @@ class Client:
         if message["findings"] is not None:
             self.findings = message["findings"]
             self.kinds |= {finding["kind"] for finding in self.findings}
+        self.lines = (self.lines + message["log"])[-1000:]
         self.ticks += 1
 
     def states(self):

@@ -5,6 +5,7 @@ import collections
 import struct
 import threading
 
+SAMPLES = 5  # messages that are kept from one look to the next
 _WINDOW = 5.0  # seconds over which a rate is taken
 _STEPS = 4096  # differences that are told apart
 
@@ -66,7 +67,7 @@ class Sender:
         self._read, modulus, self.counted = counter or (None, 1, None)
         self._gaps = Gaps(modulus) if counter else None
         self._stamp_of = stamp_of
-        self._newest = None
+        self._samples = collections.deque(maxlen=SAMPLES)
         self._rate_at = collections.deque()
         self._rate = 0.0
         self._lock = threading.Lock()
@@ -81,7 +82,7 @@ class Sender:
             self.count += 1
             self.last = now
             self.size = len(raw) if size is None else size
-            self._newest = raw if self.size == len(raw) else self.size
+            self._samples.append((now, raw if self.size == len(raw) else self.size))
             try:
                 if self._gaps is not None:
                     self._gaps.add(self._read(raw))
@@ -92,10 +93,11 @@ class Sender:
                 self._gaps = None
 
     def take(self):
-        """Return (count, the newest message since this was called before, or None)."""
+        """Return (count, the last SAMPLES messages since this was called before)."""
         with self._lock:
-            newest, self._newest = self._newest, None
-            return self.count, newest
+            samples = list(self._samples)
+            self._samples.clear()
+            return self.count, samples
 
     def missing(self):
         """Return (missing values, restarts), or None: see Gaps."""

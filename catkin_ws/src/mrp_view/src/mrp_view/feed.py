@@ -7,6 +7,8 @@ the right ones. So nothing is kept for a slow one: what it cannot take now, it n
 
 import json
 
+LOG_AT_ONCE = 50  # lines in one message
+
 
 def encode(message):
     """Return a message as JSON. Raises ValueError if a number in it has none."""
@@ -64,6 +66,11 @@ class Changes:
         gone = [list(key) for key in self._last if key not in new]
         self._last = new
         return changed, gone
+
+
+def log_since(lines, number, most=LOG_AT_ONCE):
+    """Return the last lines after that number. lines: (number, line), the numbers counting on"""
+    return [line for n, line in lines if n > number][-most:]
 
 
 def options_of(message, viewer):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What is in a message: its text, and what is counted in it."""
+"""What is in a message: its text, its number, and what is counted in it."""
 
 import re
 import struct
@@ -100,3 +100,18 @@ def _text(value, room):
     if isinstance(value, float):
         return f"{value:.7g}"
     return str(value)
+
+
+def number(message):
+    """Return (name, value) of the first number in a message, or None. A header has none."""
+    for name in message.__slots__:
+        value = getattr(message, name)
+        if isinstance(value, (bool, int, float)):
+            return name, value + 0
+        if isinstance(value, (genpy.Time, genpy.Duration)):
+            return name, value.to_sec()
+        if isinstance(value, genpy.Message) and value._type != "std_msgs/Header":
+            inner = number(value)
+            if inner:
+                return f"{name}.{inner[0]}", inner[1]
+    return None

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Subscribe to everything that is published, count what comes, and look into some of it."""
 
+import collections
 import threading
 import time
 
@@ -15,6 +16,9 @@ from mrp_view.counting import Sender
 from mrp_view.graph import refusal
 
 LOG_TOPIC = "/rosout"
+LOG_LINES = 500  # that are kept
+_LEVELS = {1: "DEBUG", 2: "INFO", 4: "WARN", 8: "ERROR", 16: "FATAL"}
+_LONGEST_LINE = 2000  # characters
 _LARGE = 100_000  # bytes: larger messages are looked into only once a second
 _TOO_LARGE = 8_000_000  # bytes: larger messages are not decoded, and not kept
 _BEGINNING = 1000  # bytes
@@ -67,6 +71,7 @@ class _Heard:
         )
         self.message_class, self.why = fields.message_class(self.type, self.md5sum)
         self.value = self.why or ""
+        self.number = None
         self.inspected = 0.0  # when its last large message was read
         self.unknown_since = None  # when the master no longer knew it
 
@@ -78,6 +83,7 @@ class Listener:
         seconds. A publisher that waits for its subscribers counts the viewer, too: so the others
         go first.
 
+    lines: the last log lines, (number, dict), the number counting from 1
     refusals: as in graph.Observation
     """
 
@@ -89,6 +95,8 @@ class Listener:
         self._known = set()  # (topic, publisher) that the master knows
         self._lock = threading.Lock()
         self._heard = {}  # (topic, publisher) -> _Heard
+        self.lines = collections.deque(maxlen=LOG_LINES)
+        self.lines_count = 0
         self.refusals = {}
 
     def follow(self, observation):
@@ -187,9 +195,21 @@ class Listener:
             return
         log = Log().deserialize(message.raw)
         refused = refusal(log.name, log.msg)
-        if refused:
-            with self._lock:
+        with self._lock:
+            if refused:
                 self.refusals[refused[:3]] = refused
+            self.lines_count += 1
+            self.lines.append(
+                (
+                    self.lines_count,
+                    {
+                        "t": log.header.stamp.to_sec(),
+                        "node": log.name,
+                        "level": _LEVELS.get(log.level, str(log.level)),
+                        "text": log.msg[:_LONGEST_LINE],
+                    },
+                )
+            )
 
     def observe(self, observation):
         """Put into an Observation what the connections say."""
@@ -222,9 +242,11 @@ class Listener:
         elif heard.unknown_since is None:
             heard.unknown_since = now
         forgotten = not known and sender.last - heard.unknown_since > _STILL
-        count, newest = sender.take()
-        if newest is not None and (sender.size <= _LARGE or now - heard.inspected >= 1):
-            heard.value = self._value(heard, newest)
+        count, raw_samples = sender.take()
+        if sender.size > _LARGE and now - heard.inspected < 1:
+            raw_samples = []
+        samples = [self._sample(heard, at, raw) for at, raw in raw_samples]
+        if samples:
             heard.inspected = now
         return {
             "topic": topic,
@@ -239,16 +261,28 @@ class Listener:
             "counted": sender.counted,
             "latency": sender.latency,
             "value": heard.value,
+            "number": heard.number,
+            "samples": samples,
         }
 
-    def _value(self, heard, raw):
-        """Return the text of a raw message; or of its size, if it was too large."""
+    def _sample(self, heard, at, raw):
+        """Return (time, number or None) of a raw message, and remember what it says."""
         if isinstance(raw, int):
-            return f"{raw / 1e6:.0f} MB, not decoded"
+            heard.value, heard.number = f"{raw / 1e6:.0f} MB, not decoded", None
+            return round(at, 4), None
         if heard.message_class is None:
-            return heard.why
+            return round(at, 4), None
         try:
             message = heard.message_class().deserialize(raw)
+            named = fields.number(message)
+            heard.value = (
+                message.msg[: fields.LONGEST] if isinstance(message, Log) else fields.text(message)
+            )
         except Exception as error:  # what genpy raises of bytes that are no such message
-            return f"no {heard.type}: {error}"
-        return message.msg[: fields.LONGEST] if isinstance(message, Log) else fields.text(message)
+            heard.value = f"no {heard.type}: {error}"
+            named = None
+        heard.number = named and named[0]
+        number = named and named[1]
+        # JSON has no number for these.
+        finite = isinstance(number, (int, float)) and abs(number) < float("inf")
+        return round(at, 4), number if finite else None

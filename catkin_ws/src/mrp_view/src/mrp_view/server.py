@@ -6,6 +6,7 @@ import collections
 import json
 import os
 import pathlib
+import secrets
 import subprocess
 import time
 
@@ -140,6 +141,7 @@ class View:
         self.names = names
         self.sockets = set()
         self._listener = listener
+        self._id = secrets.token_hex(8)
         self._tutorial = tutorial
         self._graph = {"nodes": [], "topics": [], "edges": [], "links": []}
         self._master = {"state": "never", "uri": "", "why": ""}
@@ -149,6 +151,7 @@ class View:
         self._rows = []
         self._row_changes = feed.Changes("topic", "from")
         self._count_changes = feed.Changes("topic", "from", "to")
+        self._log_sent = 0
         self._layouts = collections.OrderedDict()  # Structure's key -> layout, or an error's text
         self._being_laid_out = set()
         self._dot = asyncio.Lock()
@@ -236,6 +239,9 @@ class View:
         self._rows = self._listener.look(now)
         rows, gone = self._row_changes.update(self._rows)
         links, links_gone = self._count_changes.update(self._counts)
+        lines = list(self._listener.lines)
+        log = feed.log_since(lines, self._log_sent)
+        self._log_sent = lines[-1][0] if lines else 0
         found = findings(self._graph, self._counts, self._rows, self.viewer)
         changes = {
             "rows": rows,
@@ -243,6 +249,7 @@ class View:
             "links": links,
             "links_gone": links_gone,
             "findings": None if found == self._found else found,
+            "log": log,
         }
         self._found = found
         changed = everything = None
@@ -257,7 +264,7 @@ class View:
                 continue
             graph = self._graph_text(socket)
             if socket.late:
-                everything = everything or self._text(now, self._everything())
+                everything = everything or self._text(now, self._everything(lines))
                 text = everything
             else:
                 changed = changed or self._text(now, changes)
@@ -266,12 +273,14 @@ class View:
             socket.send([graph, text] if graph else [text])
 
     def _text(self, now, content):
-        return feed.encode({"t": "tick", "now": now, **content})
+        head = {"t": "tick", "id": self._id, "now": now, "log_count": self._log_sent}
+        return feed.encode({**head, **content})
 
-    def _everything(self):
+    def _everything(self, lines):
         return {
             "all": True,
             "rows": self._rows,
             "links": self._counts,
             "findings": self._found,
+            "log": feed.log_since(lines, 0, 200),
         }
