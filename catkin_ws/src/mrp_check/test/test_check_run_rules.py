@@ -300,6 +300,21 @@ def test_what_waits_for_messages_does_not_end(topic, calls, certainty):
     assert said.certainty == certainty
 
 
+def test_what_only_a_launch_file_kills_is_not_told_to_spin():
+    died = "[a-1] process has died [pid 7, exit code -11, cmd a __name:=a]."
+    seen = LaunchResult(ending="enough", asked=5, lines=[(4, "out", died)], seen=Seen())
+    facts = Facts(sources={"a": []})
+    places = types.SimpleNamespace(facts=facts, traceback=lambda lines: None)
+    node = types.SimpleNamespace(name="a", direct=Alone(code=0, ended_after=1.0), places=places)
+    node.errors, node.console = list, []
+    observed = Observed(launches=[Launched("a.launch", {"/a": "a"}, seen)])
+    known = {"facts": facts, "launches": [], "built": True, "observed": observed}
+    said = Finding("spin", "a ends.", "src/a.cpp", 1, node="a", fix="Call ros::spin().")
+    starts.weigh_start(types.SimpleNamespace(package=PACKAGE, **known), node, said)
+    assert (said.id, said.certainty) == ("starts", SEEN) and "spin" not in said.fix
+    assert said.message.startswith("a dies under a.launch;") and "signal 11" in said.seen
+
+
 @pytest.mark.parametrize(("code", "found"), [(0, WARNING), (1, WARNING), (-11, ERROR)])
 def test_what_ends_with_an_error_has_ended(code, found):
     raised = ("a.py", 1), "AttributeError", "port"

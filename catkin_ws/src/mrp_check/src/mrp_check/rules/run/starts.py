@@ -121,7 +121,12 @@ def weigh_start(case: Case, node: Node, finding: Finding) -> None:
     launched = next((one for one in runs if one.died().get(node.name)), None)
     code = node.direct.code if node.direct else None
     found = traceback_of(node)
-    if launched:
+    if launched and code == 0:
+        code = launched.died()[node.name]
+        finding.id, finding.seen = "starts", code_text(code)
+        finding.message = f"{node.name} dies {launched.where}; by itself, it ends without an error."
+        finding.fix = "Start that launch file, and look at what the node prints last."
+    elif launched:
         finding.message = f"{finding.message.rstrip('.')}. It dies {launched.where}, too."
         add_name_that_is_set(case, finding)
     elif code == 0:
