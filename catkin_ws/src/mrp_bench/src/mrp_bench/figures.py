@@ -47,8 +47,8 @@ def machine():
 def measure(rounds, log, say, plan=PLAN):
     """Measure a plan, all ways in turns, round after round; return the rows of results.json.
 
-    What else the machine does from one minute to the next so falls on all ways alike.
-    log: a file for what the programs print; say: is called with a line on each thing that is done
+    This way, whatever else the machine does meanwhile affects all ways alike.
+    log: a file for what the programs print; say: called with a line after each measurement
     """
     begin, done, count = time.monotonic(), 0, rounds * len(plan)
     found = collections.defaultdict(list)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The measured programs: started, told what to send, and asked for what has arrived; and a master.
+"""Start the measured programs and a master, have messages sent, and collect what arrived.
 
-How they talk is said in include/mrp_bench/program.h.
+include/mrp_bench/program.h describes how the programs talk.
 """
 
 import array
@@ -172,10 +172,9 @@ def _cpu(programs):
 
 
 def with_parent(command, number=signal.SIGKILL):
-    """Return the command with which a program gets that signal when the thread that starts it ends.
+    """Return a command whose program gets that signal when the thread that started it ends.
 
-    So nothing is left behind where a process is killed, which then cannot end what it has started.
-    SIGKILL is for those that stand still: it is the only one that ends them.
+    A process that is killed can't end what it has started, but the kernel still does.
     """
     # setpriv becomes the program: there is no other process.
     return ["setpriv", "--pdeathsig", signal.Signals(number).name, *command]

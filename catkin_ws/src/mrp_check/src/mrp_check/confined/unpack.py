@@ -48,7 +48,7 @@ def _run(*command: str) -> str:
     if done.returncode == -signal.SIGXFSZ:
         sys.exit("it unpacks to a file that is far too large")
     said = done.stderr.decode("utf-8", "replace").strip()
-    # Of a single entry that it can't read, CMake only says so.
+    # If CMake can't read one entry, it prints an error and still exits with 0.
     if done.returncode or "error:" in said:
         first = (said or f"exit code {done.returncode}").splitlines()[0]
         sys.exit(re.sub(r"^cmake -E tar: |^CMake Error: Problem with \w+\(\): ", "", first))

@@ -33,8 +33,8 @@ _MISTAKES = {
 _OF_OTHERS = {
     *("OSError", "IOError", "FileNotFoundError", "PermissionError", "ConnectionRefusedError"),
     *("ConnectionResetError", "TimeoutError", "BlockingIOError", "SerialException", "gaierror"),
-    *("error", "timeout", "TclError", "EOFError", "KeyboardInterrupt", "ROSInterruptException"),
-    *("ROSException", "ResourceNotFound", "system_error"),
+    *("timeout", "TclError", "ROSInterruptException", "ROSException", "ResourceNotFound"),
+    "system_error",
 }
 _OF_FRAMES = {"LookupException", "ConnectivityException", "TransformException"}
 _BY_USER = {"EOFError", "error", "KeyboardInterrupt"}

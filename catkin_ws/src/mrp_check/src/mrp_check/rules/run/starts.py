@@ -138,8 +138,8 @@ def weigh_start(case: Case, node: Node, finding: Finding) -> None:
 
 
 def _weigh_clean_end(node: Node, finding: Finding) -> None:
-    """Do so of one that ended with exit code 0: it may have meant to, unless it was to be called
-    back."""
+    """Lower the certainty for a node that ended with exit code 0: it may have meant to, unless it
+    was waiting for messages."""
     if not _is_left_alone(node):
         finding.certainty = HINT
     elif node.places.facts.exits(node.name):
