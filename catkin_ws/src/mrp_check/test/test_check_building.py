@@ -41,8 +41,8 @@ def test_unbalanced_brace_is_found_by_the_indentation():
         ("‘uint32_t’ was not declared in this scope", "#include <cstdint> is missing"),
         ("std_msgs/UInt23.h: No such file or directory", "mean std_msgs/UInt32.h?"),
         (
-            "class_loader/class_loader.h: No such file or directory",
-            "called class_loader/class_loader.hpp",
+            "boost/version.h: No such file or directory",
+            "called boost/version.hpp",
         ),
         (
             "no matching function for call to ‘ros::NodeHandle::subscribe(const char [2])’",
