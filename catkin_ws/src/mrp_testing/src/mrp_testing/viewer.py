@@ -50,7 +50,7 @@ class Client:
 
     graph: the last message of that kind; rows: (topic, publisher) -> row;
     links: (topic, publisher, subscriber) -> link; findings, lines: as the viewer sends them
-    kinds: those of all findings so far
+    told: (kind, text) of all findings so far
     samples: topic -> how many of its messages were looked into
     closed: why the viewer has closed the connection, or None
 
@@ -62,7 +62,7 @@ class Client:
         self.rows = {}
         self.links = {}
         self.findings = []
-        self.kinds = set()
+        self.told = set()
         self.lines = []
         self.ticks = 0
         self.samples = collections.Counter()
@@ -131,7 +131,7 @@ class Client:
             self.links.pop(tuple(key), None)
         if message["findings"] is not None:
             self.findings = message["findings"]
-            self.kinds |= {finding["kind"] for finding in self.findings}
+            self.told |= {(finding["kind"], finding["text"]) for finding in self.findings}
         self.lines = (self.lines + message["log"])[-1000:]
         self.ticks += 1
 

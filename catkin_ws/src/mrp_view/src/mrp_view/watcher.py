@@ -96,11 +96,14 @@ class Watcher:
             self.why = why
             if self.master == "never":
                 return
-            states = [
-                self.observation.state(node)
-                for node in self.observation.nodes() - {self.observation.viewer}
-            ]
-            self.master = "gone" if ALIVE in states or SILENT in states else "ended"
+            others = self.observation.nodes() - {self.observation.viewer}
+            reports = [self.observation.reports[node] for node in others]
+            # One question that found nobody is enough here. To call a node dead it isn't: roslaunch
+            # ends the master and /rosout at almost the same time.
+            answer = any(
+                report.state in (ALIVE, SILENT) and not report.failures for report in reports
+            )
+            self.master = "gone" if answer else "ended"
             if self.master == "ended":
                 (
                     self.observation.publishers,
@@ -139,7 +142,7 @@ class Watcher:
                 if report is not None and self._proxies.get(node) is proxy:
                     # A node that ends stops answering a moment before it leaves the master's list.
                     report.failures = report.failures + 1 if state == DEAD else 0
-                    if state == DEAD and report.failures < PATIENCE and self.master == "here":
+                    if state == DEAD and report.failures < PATIENCE:
                         return
                     report.state, report.why = state, why
                     if ends is not None:
