@@ -40,9 +40,8 @@ PACKAGES_lab := $(PACKAGES_run) labs
 PACKAGES_check := $(PACKAGES_run) check
 PACKAGES_learn := $(PACKAGES_check) learn
 PACKAGES_view := $(PACKAGES_run) view
-PACKAGES_debug := $(PACKAGES_run) debug
 PACKAGES_test := $(PACKAGES_build) check learn view bench test
-PACKAGES_test-all := $(PACKAGES_test) docs debug cluster test-all
+PACKAGES_test-all := $(PACKAGES_test) docs cluster test-all
 PACKAGES_test-browser := $(PACKAGES_build) view check docs test browser
 PACKAGES_bench := $(PACKAGES_build) bench
 PACKAGES_docs := docs
@@ -150,10 +149,6 @@ learn: packages-learn  ## show one exercise after the other, and check each when
 exercise: packages-check  ## show the next exercise, or check it; HINT=1 gives a hint
 	@$(IN_ENVIRONMENT) PYTHONPATH=catkin_ws/src/mrp_check/src /usr/bin/python3 -m mrp_check.cli.learn --once \
 	  $(if $(HINT),--hint) $(if $(RESET),--reset) catkin_ws/exercises || [ $$? = 1 ]
-
-.PHONY: debug
-debug: packages-debug $(BUILT_TUTORIAL)  ## start one node, NODE=publisher_cpp_node, under gdb or pdb, beside make run
-	@$(IN_WORKSPACE) $(LOCAL) source devel/setup.bash; exec tools/debug.sh "$(NODE)"
 
 ##@ Your own package
 
