@@ -11,18 +11,20 @@ import pytest
 import rosgraph
 from mrp_bench import figures, robots
 from mrp_bench.programs import Master, ProgramError, Running, cpu
-from mrp_bench.ways import LIMITS, PLAN, WAYS, Stream, Way, steps
+from mrp_bench.ways import LIMIT, PLAN, WAYS, Stream, Way, steps
 from mrp_testing.process import Process, processes_with
 from mrp_testing.waiting import wait_until
 from rospy.impl import tcpros_pubsub
 
 pytestmark = pytest.mark.quick
 
+TWO = (LIMIT, "py_py")
 
-def test_every_way_is_measured_beside_its_limits():
+
+def test_every_way_is_measured_beside_the_limit():
     assert {way for way, _ in PLAN} == set(WAYS)
     for _, stream in PLAN:
-        assert {way for way, other in PLAN if other[:2] == stream[:2]} >= {*LIMITS}
+        assert {way for way, other in PLAN if other[:2] == stream[:2]} >= {LIMIT}
     assert len({(way, *stream[:2]) for way, stream in PLAN}) == len(PLAN), (
         "something is twice there"
     )
@@ -50,24 +52,24 @@ def test_every_way_delivers_every_message_in_order(master, tmp_path):
 
 
 @pytest.mark.slow
-def test_ways_are_measured_in_turns(tmp_path):
+def test_ways_are_measured_in_turns(master, tmp_path):
     lines = []
-    plan = steps(LIMITS, (8, 200, 10), (70000, 0, 3))
+    plan = steps(TWO, (8, 200, 10), (70000, 0, 3))
     rows = figures.measure(4, tmp_path / "log", lines.append, plan)
     assert [line.split(" of 4")[0][-1] for line in lines] == [*"1111222233334444"]
     assert [line.split(": ")[1].split(",")[0] for line in lines] == [
-        name for name in LIMITS for _ in range(2)
+        name for name in TWO for _ in range(2)
     ] * 4
     assert all(line.endswith(" s left") for line in lines)
-    assert lines[-1].startswith("[16/16] round 4 of 4: raw_py, 68 kB as fast as it goes")
+    assert lines[-1].startswith("[16/16] round 4 of 4: py_py, 68 kB as fast as it goes")
     assert [(row["way"], row["size"], row["rounds"]) for row in rows] == [
-        (name, size, 4) for size in (8, 70000) for name in LIMITS
+        (name, size, 4) for size in (8, 70000) for name in TWO
     ]
 
 
 @pytest.mark.slow
 def test_program_that_ends_is_an_error(tmp_path):
-    ends = Way("ends", "ends", ("bench_raw", "send=1"), ("bench_raw.py", "receive=1"))
+    ends = Way("ends", "ends", ("bench_raw", "send=1"), ("bench_raw", "receive=1"))
     with pytest.raises(ProgramError, match="expected of 'bench_raw send=.*' the answer 'ready'"):
         with Running(ends, tmp_path / "log"):
             pass

@@ -14,7 +14,7 @@ import time
 import numpy
 
 from mrp_bench.programs import Running
-from mrp_bench.ways import LIMITS, PLAN, WAYS, size_text
+from mrp_bench.ways import LIMIT, PLAN, WAYS, size_text
 
 # The percentiles that tables show, and their names.
 PERCENTILES = {"p50": 50, "p90": 90, "p99": 99, "max": 100}
@@ -91,7 +91,7 @@ class Round:
 
 
 def _row(name, size, rate, found):
-    """Return what results.json says of a way and a stream, beside the limits."""
+    """Return what results.json says of a way and a stream, beside the limit."""
 
     def latency(of):
         return statistics.median(numpy.median(round_.latencies) for round_ in of)
@@ -100,11 +100,7 @@ def _row(name, size, rate, found):
         return statistics.median(round_.throughput for round_ in of)
 
     rounds = found[name, size, rate]
-    limits = {
-        limit: found[limit, size, rate]
-        for limit in LIMITS
-        if limit != name and (limit, size, rate) in found
-    }
+    limit = found[LIMIT, size, rate]
     cpus = [round_.receiver_cpu for round_ in rounds]
     return {
         "way": name,
@@ -113,13 +109,9 @@ def _row(name, size, rate, found):
         "rounds": len(rounds),
         "latency": percentiles(numpy.concatenate([round_.latencies for round_ in rounds])),
         # As fast as it goes, messages wait in queues: that says nothing of the way itself.
-        "latency_ratio": {
-            limit: latency(rounds) / latency(of) for limit, of in limits.items() if rate
-        },
+        "latency_ratio": latency(rounds) / latency(limit) if rate else None,
         "throughput": throughput(rounds),
-        "throughput_ratio": {
-            limit: throughput(rounds) / throughput(of) for limit, of in limits.items()
-        },
+        "throughput_ratio": throughput(rounds) / throughput(limit),
         "sender_cpu": statistics.median(round_.sender_cpu for round_ in rounds),
         "receiver_cpu": None if None in cpus else statistics.median(cpus),
         "sent": sum(round_.sent for round_ in rounds),

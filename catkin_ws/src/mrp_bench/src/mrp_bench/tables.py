@@ -6,7 +6,7 @@ It imports no library, because the pages are built without numpy and without ROS
 
 from typing import NamedTuple
 
-from mrp_bench.ways import LIMITS, WAYS, size_text
+from mrp_bench.ways import WAYS, size_text
 
 
 class Table(NamedTuple):
@@ -37,15 +37,14 @@ def summary(content):
         for rate in (1000, 0)
     }
     rows = []
-    for way in ("raw_cpp", "cpp_cpp", "cpp_py", "py_cpp", "py_py"):
+    for way in ("raw", "cpp_cpp", "cpp_py", "py_cpp", "py_py"):
         slow, fast = by_way[1000][way], by_way[0][way]
-        ratio = slow["latency_ratio"].get("raw_cpp")
         rows.append(
             [
                 WAYS[way].text,
                 f"{slow['latency']['p50']:.0f}",
                 f"{slow['latency']['p99']:.0f}",
-                f"{ratio:.1f}" if ratio else "1",
+                f"{slow['latency_ratio']:.1f}",
                 _thousands(fast["throughput"]),
             ]
         )
@@ -55,7 +54,7 @@ def summary(content):
 
 def latency(content):
     """Return a table for each size and rate."""
-    header = ["way", "p50, µs", "p90, µs", "p99, µs", "max, µs", "x C++", "x Python"]
+    header = ["way", "p50, µs", "p90, µs", "p99, µs", "max, µs", "x"]
     return [
         _table(
             f"{size_text(size)} at {rate} Hz",
@@ -63,7 +62,7 @@ def latency(content):
             rows,
             lambda row: [
                 *(f"{value:.1f}" for value in row["latency"].values()),
-                *_ratios(row["latency_ratio"]),
+                f"{row['latency_ratio']:.2f}",
             ],
         )
         for size, rate, rows in _slices(content)
@@ -73,13 +72,13 @@ def latency(content):
 
 def throughput(content):
     """Return a table for each size."""
-    header = ["way", "per second", "x C++", "x Python"]
+    header = ["way", "per second", "x"]
     return [
         _table(
             f"{size_text(size)} as fast as it goes",
             header,
             rows,
-            lambda row: [_thousands(row["throughput"]), *_ratios(row["throughput_ratio"])],
+            lambda row: [_thousands(row["throughput"]), f"{row['throughput_ratio']:.2f}"],
         )
         for size, rate, rows in _slices(content)
         if not rate
@@ -105,10 +104,6 @@ def _delivered(row):
     receiver = row["receiver_cpu"]
     receiver = "the same" if receiver is None else f"{receiver:.2f}"
     return [lost, order, f"{row['sender_cpu']:.2f}", receiver]
-
-
-def _ratios(ratios):
-    return [f"{ratios[limit]:.2f}" if limit in ratios else "" for limit in LIMITS]
 
 
 # What is tabled of many robots.

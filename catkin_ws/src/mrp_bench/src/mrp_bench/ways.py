@@ -24,7 +24,7 @@ class Way(typing.NamedTuple):
 
     @property
     def is_raw(self):
-        return self.sender[0].startswith("bench_raw")
+        return self.sender[0] == "bench_raw"
 
 
 CPP, PY = "bench_node", "bench_node.py"
@@ -46,8 +46,7 @@ def _one_process(name, text, *arguments):
 
 
 _ALL = [
-    Way("raw_cpp", "raw TCP, C++", ("bench_raw",), ("bench_raw", "receive=1")),
-    Way("raw_py", "raw TCP, Python", ("bench_raw.py",), ("bench_raw.py", "receive=1")),
+    Way("raw", "raw TCP", ("bench_raw",), ("bench_raw", "receive=1")),
     _way("cpp_cpp", "C++ to C++", CPP, CPP),
     _way("cpp_py", "C++ to Python", CPP, PY),
     _way("py_cpp", "Python to C++", PY, CPP),
@@ -84,7 +83,7 @@ _ALL = [
 WAYS = {way.name: way for way in _ALL}
 
 # What each way is compared with.
-LIMITS = ("raw_cpp", "raw_py")
+LIMIT = "raw"
 
 
 def size_text(size):
@@ -95,7 +94,7 @@ def size_text(size):
 
 
 kB, MB = 1 << 10, 1 << 20  # noqa: N816
-_PAIRS = ["raw_cpp", "raw_py", "cpp_cpp", "cpp_py", "py_cpp", "py_py"]
+_PAIRS = ["raw", "cpp_cpp", "cpp_py", "py_cpp", "py_py"]
 _FASTER = [
     "cpp_direct",
     "cpp_one_process",
@@ -140,7 +139,7 @@ PLAN = [
     *steps(_PAIRS, (64 * kB, 500, 150), (4 * MB, 20, 12)),
     *steps(["cpp_shared"], (4 * MB, 20, 12)),
     *steps(_PAIRS + _FASTER_LARGE, (MB, 50, 25)),
-    *steps(["raw_cpp", "raw_py", "cpp_batch"], (8, 0, 200000)),
+    *steps(["raw", "cpp_batch"], (8, 0, 200000)),
     *steps(_BURST_FAST, (8, 0, 50000)),
     *steps(_BURST_SLOW, (8, 0, 10000)),
     *steps(_PAIRS + _FASTER_LARGE, (MB, 0, 100)),
