@@ -14,12 +14,6 @@ from mrp_testing.waiting import wait_until
 from std_msgs.msg import Header, String
 
 
-def peak_memory(pid):
-    """Return the most memory that a process has had, in bytes."""
-    with open(f"/proc/{pid}/status") as text:
-        return int(re.search(r"VmHWM:\s+(\d+)", text.read())[1]) * 1024
-
-
 class TestProgram(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
@@ -56,19 +50,16 @@ class TestProgram(unittest.TestCase):
         header.unregister()
 
     def test_message_that_is_too_large_is_not_decoded(self):
-        """Its bytes are not kept either: the viewer's memory grows by less than the message."""
         publisher = rospy.Publisher("large", String, queue_size=1)
         key = ("/large", rospy.get_name())
         with Viewer("--settle", "0") as viewer, Client(viewer.address) as page:
             wait_until(publisher.get_num_connections, viewer.__str__)
-            before = peak_memory(viewer.pid)
             publisher.publish("x" * 50_000_000)
             page.wait_for(lambda: page.rows.get(key, {}).get("value"), "the message")
             self.assertEqual(page.rows[key]["value"], "50 MB, not decoded")
             publisher.publish("small")
             page.wait_for(lambda: page.rows[key]["value"] == "small", "the next message")
             self.assertEqual(page.rows[key]["count"], 2)
-            self.assertLess(peak_memory(viewer.pid) - before, 50_000_000)
         publisher.unregister()
 
     def test_printed_address_can_be_opened(self):

@@ -6,6 +6,7 @@ import struct
 import threading
 
 SAMPLES = 5  # messages that are kept from one look to the next
+_TOO_LARGE = 8_000_000  # bytes: of a larger message only the size is kept
 _WINDOW = 5.0  # seconds over which a rate is taken
 _STEPS = 4096  # differences that are told apart
 
@@ -72,17 +73,16 @@ class Sender:
         self._rate = 0.0
         self._lock = threading.Lock()
 
-    def add(self, now, raw, clock, size=None):
-        """Count a raw message. now: seconds since the epoch; clock(): ROS's time, for the latency;
-        size: in bytes, if raw is only the beginning of it: then only the size is kept.
+    def add(self, now, raw, clock):
+        """Count a raw message. now: seconds since the epoch; clock(): ROS's time, for the latency.
 
         A publisher may send what is no message of its type: then nothing in it is looked at.
         """
         with self._lock:
             self.count += 1
             self.last = now
-            self.size = len(raw) if size is None else size
-            self._samples.append((now, raw if self.size == len(raw) else self.size))
+            self.size = len(raw)
+            self._samples.append((now, raw if self.size <= _TOO_LARGE else self.size))
             try:
                 if self._gaps is not None:
                     self._gaps.add(self._read(raw))
@@ -93,7 +93,7 @@ class Sender:
                 self._gaps = None
 
     def take(self):
-        """Return (count, the last SAMPLES messages since this was called before)."""
+        """Return (count, the last SAMPLES messages, or their sizes, since it was called before)."""
         with self._lock:
             samples = list(self._samples)
             self._samples.clear()

@@ -8,8 +8,6 @@ import time
 import rosgraph
 import rospy
 from rosgraph_msgs.msg import Log
-from rospy.exceptions import TransportTerminated
-from rospy.impl.tcpros_pubsub import TCPROSSub
 
 from mrp_view import fields, rpc
 from mrp_view.counting import Sender
@@ -20,41 +18,8 @@ LOG_LINES = 500  # that are kept
 _LEVELS = {1: "DEBUG", 2: "INFO", 4: "WARN", 8: "ERROR", 16: "FATAL"}
 _LONGEST_LINE = 2000  # characters
 _LARGE = 100_000  # bytes: larger messages are looked into only once a second
-_TOO_LARGE = 8_000_000  # bytes: larger messages are not decoded, and not kept
-_BEGINNING = 1000  # bytes
 _STILL = 1.0  # seconds after which a publisher that the master no longer knows has not just ended
 _FORGET = 60  # seconds for which what a topic's senders sent is shown after the topic has gone
-
-
-class Raw(rospy.AnyMsg):
-    """A message of any type. raw: its bytes; of one that is too large only the first ones, which
-    have its header. size: in bytes."""
-
-    def deserialize(self, data):
-        self.raw, self.size = data, len(data)
-        return self
-
-
-def _read_messages(self, b, msg_queue, sock):
-    """Read as rospy does, but leave out what is too large: rospy would hold two copies of it."""
-    size = int.from_bytes(b.getbuffer()[:4], "little")
-    if size <= _TOO_LARGE or self.recv_data_class is not Raw:
-        super(TCPROSSub, self).read_messages(b, msg_queue, sock)
-        return
-    message = Raw().deserialize(bytes(b.getbuffer()[4 : 4 + _BEGINNING]))
-    message.size = size
-    left = size + 4 - b.tell()
-    while left:
-        part = len(sock.recv(min(left, self.buff_size)))
-        if not part:
-            raise TransportTerminated("the publisher ended in the middle of a message")
-        left -= part
-    b.seek(0)
-    b.truncate(0)
-    msg_queue.append(message)
-
-
-TCPROSSub.read_messages = _read_messages
 
 
 class _Heard:
@@ -146,7 +111,7 @@ class Listener:
         callback = self._log_line if topic == LOG_TOPIC else self._count
         # It must not lose what it counts: neither a queue that drops, nor a small buffer.
         self._subscribers[topic] = rospy.Subscriber(
-            topic, Raw, callback, callback_args=topic, buff_size=2**18
+            topic, rospy.AnyMsg, callback, callback_args=topic, buff_size=2**18
         )
 
     def _forget(self, topics, now):
@@ -181,7 +146,7 @@ class Listener:
         heard = self._heard.get((topic, header.get("callerid")))
         if heard is None or heard.md5sum != header.get("md5sum"):
             heard = self._new(topic, header)
-        heard.sender.add(now, message.raw, rospy.get_time, message.size)
+        heard.sender.add(now, message._buff, rospy.get_time)
 
     def _new(self, topic, header):
         with self._lock:
@@ -193,7 +158,7 @@ class Listener:
         self._count(message, topic)
         if message._connection_header.get("md5sum") != Log._md5sum:
             return
-        log = Log().deserialize(message.raw)
+        log = Log().deserialize(message._buff)
         refused = refusal(log.name, log.msg)
         with self._lock:
             if refused:
