@@ -10,7 +10,6 @@ The text is an expression in Python, such as `contract.QUEUE_SIZE + 1` or `len(l
 `word(...)` writes a number as a word.
 """
 
-import difflib
 import importlib
 import json
 import logging
@@ -25,10 +24,6 @@ from sphinx.util.docutils import SphinxRole
 ROS = ("rospy", "rosmaster")
 WORDS = "zero one two three four five six seven eight nine ten eleven twelve".split()
 FILES = ("mrp/launch/*.launch", "mrp_labs/launch/*.*", "mrp/doc/recorded/*.json")
-
-
-class UnknownError(Exception):
-    """An expression has no value; the text says what was expected and what was found."""
 
 
 class Names(dict):
@@ -58,9 +53,6 @@ class Sources(dict):
             return found
         self.used.add(str(self.files[name]))
         return read(self.files[name])
-
-    def known(self):
-        return [*self, *self.modules, *self.files]
 
 
 def read(path):
@@ -103,24 +95,11 @@ def _shown(value):
 
 
 def value_of(text, sources):
-    """Return the text for an expression. Raises UnknownError."""
-    try:
-        found = eval(text, {"__builtins__": {}}, sources)
-    except NameError as error:
-        raise _unknown(error.name, sources.known()) from None
-    except AttributeError as error:
-        names = error.obj if isinstance(error.obj, dict) else dir(error.obj)
-        raise _unknown(error.name, names) from None
-    except Exception as error:
-        raise UnknownError(f"expected an expression, found {text!r}: {error!r}") from None
+    """Return the text for an expression. Raises whatever is wrong with it."""
+    found = eval(text, {"__builtins__": {}}, sources)
     if not isinstance(found, (int, float, str)):
-        raise UnknownError(f"expected a number or a text, found {found!r}")
+        raise TypeError(f"expected a number or a text, found {found!r}")
     return _shown(found)
-
-
-def _unknown(name, known):
-    near = difflib.get_close_matches(name, known, 3, 0.5) or sorted(known)
-    return UnknownError(f"expected a name such as {', '.join(near[:5])}; found {name}")
 
 
 class ValueRole(SphinxRole):
@@ -128,8 +107,8 @@ class ValueRole(SphinxRole):
         sources = Sources()
         try:
             text = value_of(self.text, sources)
-        except UnknownError as error:
-            message = self.inliner.reporter.error(f"value: {error}", line=self.lineno)
+        except Exception as error:
+            message = self.inliner.reporter.error(f"value: {error!r}", line=self.lineno)
             return [self.inliner.problematic(self.rawtext, self.rawtext, message)], [message]
         for file in sources.used:
             self.env.note_dependency(file)
