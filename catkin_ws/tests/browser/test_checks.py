@@ -30,22 +30,14 @@ FAULTS = {
     "a mark that stays hidden": (PROOF.format("Proved: It is.", "none", 24), "proofs"),
     "a mark without a label": (PROOF.format("Proved:", "block", 24), "proofs"),
     "white on a light blue": (TEXT.format("#fff", "#2980b9"), "axe"),
-    "half transparent black on white": (TEXT.format("rgba(0, 0, 0, 0.5)", "#fff"), "axe"),
-    "black that lets half of the white through": (
-        f'<div style="opacity: 0.5">{TEXT.format("#000", "#fff")}</div>',
-        "axe",
-    ),
     "code that only a mouse can scroll": (SCROLLS.format(""), "axe"),
-    "a button that says nothing": ("<button></button>", "axe"),
 }
 
 HARMLESS = {
     "nothing else": "",
     "code that scrolls in itself": SCROLLS.format('tabindex="0"'),
     "a mark of a proof": PROOF.format("Proved: It is.", "block", 24),
-    "black on white": TEXT.format("#000", "#fff"),
     "the least contrast": TEXT.format("#767676", "#fff"),
-    "faint text that is hidden": '<p style="color: #eee; display: none">Text</p>',
     "a picture in the page's own text": '<img alt="A dot" src="data:image/svg+xml,<svg/>">',
 }
 
