@@ -205,6 +205,8 @@ def env(request, tmp_path, known_compiler, roscore):
     if "roscpp" in needs:
         env["CPLUS_INCLUDE_PATH"] = str(request.getfixturevalue("headers"))
     env.update(HOME=str(tmp_path), LC_ALL="C.UTF-8", PORT=str(port), ROS_MASTER_URI=uri_of(port))
+    if "robot" in needs:  # see lay_out
+        env["ROS_PACKAGE_PATH"] = f"{tmp_path / 'here'}:{env['ROS_PACKAGE_PATH']}"
     # These entries bring the real apt-get: it only simulates, with lists in the test's folder, or
     # runs as nobody.
     programs = tmp_path / "programs"
@@ -260,6 +262,14 @@ def lay_out(entry, folder):
     folder.mkdir()
     if "package" in entry.needs.split():
         (folder / "package.xml").write_text(PACKAGE_XML)
+    if "robot" in entry.needs.split():  # a package with a node, to which Try adds what it does
+        robot = folder / "robot"
+        robot.mkdir()
+        (robot / "package.xml").write_text("<package><name>robot</name></package>")
+        (robot / "talker.sh").write_text("#!/bin/sh\n")
+        (robot / "talker.sh").chmod(0o755)
+        node = '<node pkg="robot" type="talker.sh" name="talker"/>'
+        (folder / "a.launch").write_text(f"<launch>{node}</launch>")
     if entry.defect:
         check_sets.lay_out(entry.defect.base, folder)
         check_sets.break_(folder, entry.defect)
