@@ -49,6 +49,12 @@ def test_commands_for_other_repositories_are_those_of_the_page():
         assert re.sub(of_release, "#", command) in page
 
 
+def test_pictures_are_there():
+    pictures = re.findall(r'(?:src|srcset)="([^"]+)"', README)
+    assert pictures
+    assert [name for name in pictures if not (ROOT / name).is_file()] == []
+
+
 @pytest.mark.slow
 def test_ci_and_the_workflow_call_targets_of_the_list():
     workflow = yaml.safe_load((ROOT / ".github" / "workflows" / "ci.yml").read_text())
