@@ -31,7 +31,7 @@ class Names(dict):
 
     def __getattr__(self, name):
         if name not in self:
-            raise AttributeError(name, name=name, obj=self)
+            raise AttributeError(name)
         return self[name]
 
 
