@@ -20,7 +20,7 @@ int main()
 {
   if (true)
   {
-    f();
+    f(std_msgs::UInt32());
   return 0;
 }
 """
@@ -28,7 +28,7 @@ int main()
 
 def test_unbalanced_brace_is_found_by_the_indentation():
     assert cpp_words.unbalanced_brace(CPP.splitlines()) == (5, "}")
-    assert cpp_words.unbalanced_brace(CPP.replace("f();", "f(); }").splitlines()) is None
+    assert cpp_words.unbalanced_brace(CPP.replace("());", "()); }").splitlines()) is None
     assert cpp_words.unbalanced_brace(["}", "// {"]) == (1, "{")
     assert cpp_words.unbalanced_brace(["{", "}", "", "}"]) == (4, "{")
     assert cpp_words.unbalanced_brace(["{", "}", "  return 0;", "}"]) == (2, "{")
@@ -38,6 +38,7 @@ def test_unbalanced_brace_is_found_by_the_indentation():
     ("error", "says"),
     [
         ("‘ros’ has not been declared", "#include <ros/ros.h> is missing"),
+        ("‘std_msgs’ has not been declared", "#include <std_msgs/UInt32.h> is missing"),
         ("‘uint32_t’ was not declared in this scope", "#include <cstdint> is missing"),
         ("std_msgs/UInt23.h: No such file or directory", "mean std_msgs/UInt32.h?"),
         (
@@ -56,7 +57,7 @@ def test_unbalanced_brace_is_found_by_the_indentation():
         ),
         ("something that nobody has seen before", "something that nobody has seen before"),
     ],
-    ids=range(7),
+    ids=range(8),
 )
 def test_compilers_errors_in_plain_words(error, says, tmp_path):
     package = check_rules.make(tmp_path / "src" / "some_pkg", src__a_DOT_cpp=CPP)
