@@ -140,8 +140,8 @@ WRITTEN = {
     "mrp": "wrong_type",
     "talker_listener_py": "listener_topic",
     "talker_listener_cpp": "talker_rate",
-    "own_message": "reading_type",
-    "add_two_ints_py": "sum_py_offered_name",
+    "relay": "message_field_type",
+    "add_two_ints": "sum_py_offered_name",
 }
 
 
