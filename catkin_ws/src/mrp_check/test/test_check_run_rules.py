@@ -15,6 +15,7 @@ from mrp_check.rules.files import messages
 from mrp_check.rules.run import called_back, exceptions, exit, meeting, starts
 from mrp_check.run import blame
 from mrp_check.run.observing import Launched, Observed
+from mrp_check.run.places import Places
 
 pytestmark = pytest.mark.quick
 
@@ -166,6 +167,8 @@ ENDS = [
     ("KeyError: '~port'", 1, "", HABIT, SEEN),
     ("FileNotFoundError: no file", 1, "", HABIT, HABIT),
     ("EOFError: EOF when reading a line", 1, "", HINT, HINT),
+    ("termios.error: (25, 'Inappropriate ioctl for device')", 1, "", HINT, HINT),
+    ("socket.gaierror: [Errno -2] Name or service not known", 1, "", HABIT, HABIT),
     ("LookupException: no frame", 1, "", HABIT, HABIT),  # nobody sends any
     ("InvalidNameException: a b", -6, "", SEEN, SEEN),
     ("invalid_argument: stof", -6, "", HABIT, SEEN),
@@ -215,6 +218,26 @@ def test_a_node_that_lacks_what_another_one_offers_is_not_to_blame():
     assert blamed("KeyError: 'a'", 1, "", "a.launch", own) == SEEN
     assert blamed(none, 1, "", "a.launch", publications=talks) == SEEN
     assert blamed("LookupException: a", 1, "", "a.launch", publications=talks) == SEEN
+
+
+@pytest.mark.parametrize(
+    ("line", "kind"),
+    [
+        ("KeyError: 'a'", "KeyError"),
+        ("rospy.exceptions.ROSException: no", "ROSException"),
+        ("termios.error: (25, 'Inappropriate ioctl for device')", "termios.error"),
+        ("socket.gaierror: [Errno -2] Name or service not known", "socket.gaierror"),
+        ("a: b", None),
+    ],
+    ids=range(5),
+)
+def test_the_class_of_an_error_ends_a_traceback(line, kind, tmp_path):
+    workspace = types.SimpleNamespace(package=PACKAGE, package_folder=tmp_path)
+    frame = f'  File "{tmp_path}/src/a.py", line 3, in main'
+    found = Places(workspace, Facts(), Observed()).traceback(
+        ["Traceback (most recent call last):", frame, "    f()", line]
+    )
+    assert found == (kind and (("src/a.py", 3), kind, line.partition(": ")[2]))
 
 
 def test_what_a_node_throws_is_read_from_its_words():

@@ -22,7 +22,7 @@ from mrp_check.contract.finding import HABIT, HINT, SEEN
 from mrp_check.run.case import Case
 from mrp_check.run.observing import Launched
 
-# Classes of Python and of C++, without their modules and namespaces.
+# Classes of Python and of C++, without namespaces, and without modules if they have a capital.
 _MISTAKES = {
     *("SyntaxError", "IndentationError", "TabError", "NameError", "UnboundLocalError"),
     *("AttributeError", "TypeError", "ImportError", "ModuleNotFoundError", "RecursionError"),
@@ -32,12 +32,12 @@ _MISTAKES = {
 }
 _OF_OTHERS = {
     *("OSError", "IOError", "FileNotFoundError", "PermissionError", "ConnectionRefusedError"),
-    *("ConnectionResetError", "TimeoutError", "BlockingIOError", "SerialException", "gaierror"),
-    *("timeout", "TclError", "ROSInterruptException", "ROSException", "ResourceNotFound"),
-    "system_error",
+    *("ConnectionResetError", "TimeoutError", "BlockingIOError", "SerialException"),
+    *("TclError", "ROSInterruptException", "ROSException", "ResourceNotFound", "system_error"),
+    *("socket.gaierror", "socket.timeout", "pygame.error"),
 }
 _OF_FRAMES = {"LookupException", "ConnectivityException", "TransformException"}
-_BY_USER = {"EOFError", "error", "KeyboardInterrupt"}
+_BY_USER = {"EOFError", "termios.error", "_curses.error", "KeyboardInterrupt"}
 # How code reads its command line.
 _ARGUMENTS = re.compile(r"\bargv\[\s*\w|\b(myargv|argparse|optparse|getopt|program_options)\b")
 # How code and parameters name a device, another computer, or a screen.

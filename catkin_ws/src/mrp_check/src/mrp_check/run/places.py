@@ -18,7 +18,10 @@ from mrp_check.run.planning import WRAP
 
 # Of a traceback, and of what faulthandler prints.
 _FRAME = re.compile(r'^\s*File "(?P<path>[^"]+)", line (?P<line>\d+)')
-_ERROR = re.compile(r"^(?:[a-z_]\w*\.)*(?P<kind>[A-Z]\w*)(?:: (?P<text>.*))?$")
+# A class; one of a small letter, such as termios.error, with its module.
+_ERROR = re.compile(
+    r"^(?:[a-z_]\w*\.)*?(?P<kind>[A-Z]\w*|(?:[a-z_]\w*\.)+[a-z_]\w*)(?:: (?P<text>.*))?$"
+)
 _ARGUMENTS = re.compile(
     r"TypeError: (?P<text>(?:[\w<>]+\.)*(?P<name>\w+)\(\) (?:takes|missing) .*argument.*)"
 )
