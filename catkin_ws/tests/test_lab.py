@@ -2,6 +2,7 @@
 """Runs `make labs` and `make lab`: every lab shows what labs.yaml says."""
 
 import re
+import signal
 from xml.etree import ElementTree
 
 import pytest
@@ -108,6 +109,17 @@ def test_what_the_twin_says_is_marked_once(capsys):
     assert [line for line in printed if line.endswith(MARK)] == [
         line + MARK for line in (*lines[:4], lines[-1])
     ]
+
+
+@pytest.mark.quick
+def test_program_that_ignores_ctrl_c_is_killed(capsys, monkeypatch):
+    monkeypatch.setattr("lab.GRACE", 0.1)
+    with Run() as run:
+        program, _ = run.start("sh -c 'trap \"\" INT; echo ready; while :; do sleep 1; done'")
+        run.wait("ready")
+        run.end("sh")
+    assert program.returncode == -signal.SIGKILL
+    assert "0.1 s after Ctrl-C, it still runs, so it is killed: sh -c" in capsys.readouterr().out
 
 
 @pytest.mark.slow

@@ -26,6 +26,8 @@ import yaml
 
 PACKAGE = pathlib.Path(__file__).resolve().parents[1] / "src" / "mrp_labs"
 DEADLINE = float(os.environ.get("MRP_TEST_DEADLINE", 60))  # seconds that a line may take
+# Seconds after Ctrl-C: longer than roslaunch gives its nodes (15, and 2 more after SIGTERM).
+GRACE = 30
 MARK = "   <- here"
 
 # What roslaunch prints about itself, which hides what the nodes say.
@@ -186,13 +188,18 @@ class Run:
         return max(n for n, (started, _) in enumerate(self.programs) if started.startswith(command))
 
     def end(self, command):
-        """End the newest program of a command, as Ctrl-C does, and wait for it."""
-        _, program = self.programs.pop(self._newest(command))
+        """End the newest program of a command, as Ctrl-C does, and wait for it.
+
+        A node in Python may hang if Ctrl-C comes while it publishes: rospy's handler closes the
+        topic, and waits for the lock that publish() holds (QueuedConnection in tcpros_pubsub.py).
+        """
+        command, program = self.programs.pop(self._newest(command))
         if program.poll() is None:
             os.killpg(program.pid, signal.SIGINT)
             try:
-                program.wait(DEADLINE)
+                program.wait(GRACE)
             except subprocess.TimeoutExpired:
+                self.say(f"{GRACE} s after Ctrl-C, it still runs, so it is killed: {command}")
                 os.killpg(program.pid, signal.SIGKILL)
                 program.wait()
 

@@ -206,8 +206,8 @@ class Places:
         """Return whether faulthandler printed that rospy's own handler of Ctrl-C waits, in no line
         of the package.
 
-        If Ctrl-C comes while rospy asks the master for something, such as in each line of log, its
-        handler waits for ever for the lock of the call that it has interrupted.
+        If Ctrl-C comes while rospy asks the master for something, such as in each line of log, or
+        publishes, its handler waits for ever for the lock of the call that it has interrupted.
         """
         for place, text in self._frames(lines):
             if place or text.endswith("in signal_shutdown"):
