@@ -19,8 +19,8 @@ from mrp_testing import compiler_cache, scratch
 pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("broken")]
 
 VARIANTS = [defect for defect in defects.read_all() if defect.fails]
-# Seconds that a test waits for what a broken variant never does. Before it comes to that, it may wait
-# for what each variant does, such as ten values, which take 6 s.
+# Seconds that a test waits for what a broken variant never does. Before it comes to that, it may
+# wait for what each variant does, such as ten values, which take 6 s.
 DEADLINE = "25"
 
 
