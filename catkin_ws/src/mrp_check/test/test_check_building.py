@@ -11,6 +11,7 @@ from mrp_check.build import compiler, configuring, cpp_words, linker, stubs
 from mrp_check.package import cmake
 from mrp_check.package.package import Package
 from mrp_check.rules.files import cmake as cmake_rule
+from mrp_check.rules.files import targets
 from mrp_check.rules.run import compile as compile_rule
 
 pytestmark = pytest.mark.quick
@@ -246,6 +247,16 @@ def test_a_second_catkin_package_moves_no_executable(tmp_path):
     assert found.message.startswith("catkin_package() comes after the target some")
     (tmp_path / "CMakeLists.txt").write_text(text.replace("add_executable", "add_library"))
     assert not check_rules.file_findings(cmake_rule, Package(tmp_path))
+
+
+def test_a_source_that_is_not_there_is_named_without_this_machines_folders(tmp_path):
+    """CMake's trace has the whole path of ${CMAKE_CURRENT_SOURCE_DIR}/src/some.cpp."""
+    target = f"add_executable(some {tmp_path}/src/sone.cpp)\n"
+    package = check_rules.make(
+        tmp_path, CMakeLists_DOT_txt=check_rules.CMAKE + target, src__some_DOT_cpp=""
+    )
+    (finding,) = check_rules.file_findings(targets, package)
+    assert finding.fix == "Write src/some.cpp for src/sone.cpp."
 
 
 @pytest.mark.parametrize(

@@ -303,7 +303,7 @@ class Model:
             paths = (self.path(name, call) for name in names)
             path = next((one for one in paths if one and (self.folder / one).is_file()), None)
             if path is None:
-                target.missing.append((source, call.file, call.line))
+                target.missing.append((self.path(source, call) or source, call.file, call.line))
             else:
                 target.sources.append(path)
 
