@@ -193,13 +193,13 @@ def test_a_header_that_this_machine_has_not_is_no_misspelt_one(tmp_path, monkeyp
         ("bind(f, _1);", "‘_1’ was not declared in this scope", "only in boost::placeholders"),
         ("#include <old/No.h>", "old/No.h: No such file or directory", "no header old/No.h"),
         ("", "some_pkg/SpedConfig.h: No such file or directory", "mean some_pkg/SpeedConfig.h?"),
-        ("", "some_pkg/SpeedConfig.h: No such file or directory", "generated from A.cfg"),
+        ("", "some_pkg/SpeedConfig.h: No such file or directory", "generated from Speed.cfg"),
     ],
     ids=range(6),
 )
 def test_the_compilers_error_has_another_cause(line, text, said, tmp_path):
     source = f"#include <ros/ros.h>\n{line}\n"
-    files = {"srv__Go_DOT_srv": "---\n", "cfg__A_DOT_cfg": "g.generate('some_pkg', 'a', 'Speed')"}
+    files = {"srv__Go_DOT_srv": "---\n", "cfg__Speed_DOT_cfg": ""}
     package = check_rules.make(tmp_path, src__a_DOT_cpp=source, **files)
     assert said in cpp_words.of(package, cpp_words.Problem("src/a.cpp", 2, text, "")).said
 

@@ -3,10 +3,9 @@
 
 from __future__ import annotations
 
-import ast
 import re
 import typing
-from typing import Callable, Iterator, Sequence
+from typing import Callable, Sequence
 
 from mrp_check.code import uses
 from mrp_check.contract.finding import Change
@@ -239,7 +238,9 @@ def _missing_header(error: Error) -> Words:
         return Words(f"there's no header {header}.{perhaps(near)}", fix)
     paths = package.of_kind(*uses.DEFINITIONS)
     own = {name: path for path in paths for name in uses.generated(path)}
-    own.update((name, path) for path in package.files for name in _of_cfg(package, path))
+    # dynamic_reconfigure's wiki: a header is called like the file it's generated from.
+    cfg = [path for path in package.files if path.endswith(".cfg")]
+    own.update((f"{last_part(path)[:-4]}Config", path) for path in cfg)
     name = last_part(header)[:-2]
     copy = f"include/{header}"
     if name in own and copy in package.files:  # gencpp-extras.cmake, "user-provided header"
@@ -248,34 +249,18 @@ def _missing_header(error: Error) -> Words:
             " and include_directories() has no include.",
             f"Remove {copy}: then the header is generated.",
         )
-    if name in own and own[name].endswith(".cfg"):
-        return Words(
-            f"there's no {header} yet: it's generated from {last_part(own[name])}, but the target"
-            " doesn't wait for that, or nothing generates it.",
-            "Look at generate_dynamic_reconfigure_options(), and at"
-            " add_dependencies(... ${PROJECT_NAME}_gencfg).",
-        )
     if name in own:
+        calls = f"add_{package.kind(own[name])}_files(), generate_messages()"
+        if own[name] in cfg:
+            calls = "generate_dynamic_reconfigure_options()"
         return Words(
             f"there's no {header} yet: it's generated from {last_part(own[name])}, but the target"
             " doesn't wait for that, or nothing generates it.",
-            f"Look at add_{package.kind(own[name])}_files(), generate_messages() and"
-            " add_dependencies().",
+            f"Look at {calls} and add_dependencies().",
         )
     near = nearest(name, own, 0.5)
     hint = perhaps(near and f"{package.name}/{near}.h")
     return Words(f"there's no header {header}.{hint}", "Correct the name of the header.")
-
-
-def _of_cfg(package: Package, path: str) -> Iterator[str]:
-    """Yield the name of the header that dynamic_reconfigure generates from a file: it's the last
-    argument of generate()."""
-    calls = ast.walk(package.tree(path)) if path.endswith(".cfg") else ()
-    for call in (one for one in calls if isinstance(one, ast.Call) and len(one.args) == 3):
-        name = call.args[2].value if isinstance(call.args[2], ast.Constant) else None
-        is_it = isinstance(call.func, ast.Attribute) and call.func.attr == "generate"
-        if is_it and isinstance(name, str):
-            yield f"{name}Config"
 
 
 def _short(name: str) -> str:
