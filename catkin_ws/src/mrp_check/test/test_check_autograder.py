@@ -69,21 +69,3 @@ def test_a_contract_that_is_not_there_is_said(tmp_path):
     done = subprocess.run(command, capture_output=True, text=True)
     assert (done.returncode, done.stdout) == (1, "")
     assert done.stderr == f"error: expected the file of a contract; there is no file {command[2]}\n"
-
-
-@pytest.mark.quick
-def test_it_has_lf_whatever_the_checkout_did(tmp_path):
-    shutil.copytree(WORKSPACE / "tools", tmp_path / "tools")
-    shutil.copytree(WORKSPACE / "apt", tmp_path / "apt")
-    checker = WORKSPACE / "src" / "mrp_check"
-    for name in ("contracts", "schema", "scripts", "src", "templates"):
-        ignore = shutil.ignore_patterns("__pycache__")
-        shutil.copytree(checker / name, tmp_path / "src" / "mrp_check" / name, ignore=ignore)
-    shutil.copy(checker / "package.xml", tmp_path / "src" / "mrp_check")
-    for path in (tmp_path / "tools" / "gradescope").iterdir():
-        path.write_bytes(path.read_bytes().replace(b"\n", b"\r\n"))
-    command = ["/usr/bin/python3", tmp_path / "tools" / MAKE.name, tmp_path / "autograder.zip"]
-    subprocess.run(command, check=True)
-    with zipfile.ZipFile(tmp_path / "autograder.zip") as archive:
-        assert not [name for name in archive.namelist() if b"\r\n" in archive.read(name)]
-        assert archive.read("run_autograder").startswith(b"#!/")
