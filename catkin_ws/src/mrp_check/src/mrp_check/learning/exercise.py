@@ -7,12 +7,12 @@ The student edits a copy of it. The patch, reversed, is the solution.
 
 from __future__ import annotations
 
-import difflib
 import pathlib
 import re
 import shutil
+import subprocess
 import tempfile
-from typing import Iterator, NamedTuple, Sequence
+from typing import NamedTuple, Sequence
 
 from mrp_check.contract import defects, packages, spec
 from mrp_check.contract.finding import NOTE, Finding
@@ -71,19 +71,13 @@ class Exercise(NamedTuple):
     def solution(self) -> list[str]:
         """Return the lines of a diff: what turns the broken package into the correct one."""
         with tempfile.TemporaryDirectory() as folder:
-            roots = pathlib.Path(folder, "a"), pathlib.Path(folder, "b")
-            self._lay_out_broken(roots[0])
-            packages.lay_out(self.defect.base, roots[1])
-            paths = {path.relative_to(root) for root in roots for path in root.rglob("*")}
-            return [line for path in sorted(paths) for line in _diff(path, *roots)]
-
-
-def _diff(path: pathlib.Path, *roots: pathlib.Path) -> Iterator[str]:
-    """Yield the lines of a file's diff: how it differs below the second of two folders."""
-    before, after = (
-        (root / path).read_text().splitlines() if (root / path).is_file() else [] for root in roots
-    )
-    return difflib.unified_diff(before, after, f"a/{path}", f"b/{path}", lineterm="")
+            self._lay_out_broken(pathlib.Path(folder, "a"))
+            packages.lay_out(self.defect.base, pathlib.Path(folder, "b"))
+            command = ["diff", "--unified", "--recursive", "--new-file", "a", "b"]
+            done = subprocess.run(command, cwd=folder, stdout=subprocess.PIPE, text=True)
+        text = re.sub(r"^diff .*\n", "", done.stdout, flags=re.MULTILINE)
+        times = re.compile(r"^([-+]{3} [ab]/.*)\t.*", re.MULTILINE)
+        return times.sub(r"\1", text).splitlines()
 
 
 def _name(defect: defects.Defect) -> str:

@@ -18,30 +18,6 @@ def say(*lines: str) -> None:
     print(*lines, sep="\n", flush=True)
 
 
-def show_task(exercise: exercises.Exercise, what_then: str) -> None:
-    say(f"{exercise.label}\n\n{exercise.defect.task}\n")
-    say(f"Open this file, fix it, save it, and {what_then}:", f"  {exercise.file}")
-
-
-def verdict(exercise: exercises.Exercise, check: Check) -> str:
-    return f"{exercise.label}, {exercise.name}: {'passed' if check.passed else 'not yet'}."
-
-
-def explanation(check: Check) -> list[str]:
-    """Return what the tools say, and what the checker says, as lines."""
-    tools = ["", "What the tools say:", *check.tools] if check.tools else []
-    return [*tools, *exercises.lines_of(check.findings, check.report)]
-
-
-def passed(course: exercises.Course, exercise: exercises.Exercise) -> list[str]:
-    """Return what a student reads who has passed an exercise."""
-    lines = [f"You've learned: {exercise.defect.learned}", f"{exercises.progress(course)}", ""]
-    if not course.open:
-        lines += [f"You have finished all {len(course.exercises)}. Well done!", ""]
-        lines += exercises.farewell(course)
-    return lines
-
-
 def run_once(folder: pathlib.Path, hint: bool = False, reset: bool = False) -> int:
     """Show the next exercise, or check it; return the exit code.
 
@@ -57,21 +33,30 @@ def run_once(folder: pathlib.Path, hint: bool = False, reset: bool = False) -> i
     if reset:
         exercise.remove()
     if exercise.prepare():
-        show_task(exercise, "call `make exercise` again")
-    elif hint:
+        say(exercise.label, "", exercise.defect.task, "")
+        say("Open this file, fix it, save it, and call `make exercise` again:")
+        say(f"  {exercise.file}")
+        return PASSED
+    if hint:
         say(exercise.defect.hint)
-    else:
-        shown = terminal.Progress(sys.stderr)
-        check = Check(exercise, say=shown.show)
-        check.run()
-        shown.clear()
-        if check.error:
-            raise CannotCheck(check.error)
-        say(verdict(exercise, check), *explanation(check))
-        if not check.passed:
-            say(f"\nThe task: {exercise.place / 'TASK.md'}", "A hint: make exercise HINT=1")
-            return NOT_YET
-        course.add(exercise)
-        say(*passed(course, exercise))
-        return run_once(folder) if course.open else PASSED
+        return PASSED
+    shown = terminal.Progress(sys.stderr)
+    check = Check(exercise, say=shown.show)
+    check.run()
+    shown.clear()
+    if check.error:
+        raise CannotCheck(check.error)
+    lines = [f"{exercise.label}, {exercise.name}: {'passed' if check.passed else 'not yet'}."]
+    if check.tools:
+        lines += ["", "What the tools say:", *check.tools]
+    say(*lines, *exercises.lines_of(check.findings, check.report))
+    if not check.passed:
+        say(f"\nThe task: {exercise.place / 'TASK.md'}", "A hint: make exercise HINT=1")
+        return NOT_YET
+    course.add(exercise)
+    say(f"You've learned: {exercise.defect.learned}", exercises.progress(course), "")
+    if course.open:
+        return run_once(folder)
+    say(f"You have finished all {len(course.exercises)}. Well done!", "")
+    say(*exercises.farewell(course))
     return PASSED
