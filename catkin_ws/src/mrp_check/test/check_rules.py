@@ -10,7 +10,7 @@ import types
 from mrp_check import sandbox
 from mrp_check.code import facts, python_facts, python_read, source_node, uses
 from mrp_check.confined import cpp_headers, crossing
-from mrp_check.confined.places import Answer, Task
+from mrp_check.confined.places import Said
 from mrp_check.contract import spec
 from mrp_check.contract.requirements import Rule
 from mrp_check.package import cmake, manifest
@@ -117,12 +117,10 @@ def case_of(package, folder, contract=PUB_SUB, **known):
 
 def said_by_clang(folder, headers="none", flags=(cpp_headers.STANDARD,)):
     """Return what cpp_facts.py says of src/a.cpp in a folder; headers: ROS's, read before."""
-    task = Task(str(folder), str(headers), [[str(folder / "src/a.cpp"), *flags]])
     program = pathlib.Path(cpp_headers.__file__).with_name("cpp_facts.py")
-    command = ["/usr/bin/python3", program, crossing.to_json(task)]
+    command = ["/usr/bin/python3", program, folder, headers, folder / "src/a.cpp", *flags]
     done = subprocess.run(command, stdout=subprocess.PIPE, check=True)
-    (said,) = crossing.from_json(Answer, done.stdout).values()
-    return said
+    return crossing.from_json(Said, done.stdout)
 
 
 def model_of(package):

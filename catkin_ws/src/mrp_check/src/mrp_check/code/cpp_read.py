@@ -9,7 +9,7 @@ from typing import Callable, Mapping, Sequence
 
 from mrp_check import sandbox
 from mrp_check.confined import cpp_headers, crossing
-from mrp_check.confined.places import Answer, Said, Task
+from mrp_check.confined.places import Said
 from mrp_check.contract.errors import CannotCheck
 from mrp_check.package.workspace import Workspace
 from mrp_check.sandbox import confine
@@ -34,18 +34,17 @@ class CppReader:
 
     def read(self, file: str) -> Said | None:
         """Return what a source says, or None if it cannot be read. Raises CannotCheck."""
-        workspace, unit = self.workspace, self._unit(file)
-        task = Task(str(workspace.package_folder), str(self.headers().result()), [unit])
-        reader = str(sandbox.code() / "cpp_facts.py")
+        workspace, reader = self.workspace, str(sandbox.code() / "cpp_facts.py")
+        given = str(workspace.package_folder), str(self.headers().result()), *self._unit(file)
         try:
-            command = "/usr/bin/python3", reader, crossing.to_json(task)
             # One may include any other.
-            done = workspace.run_once(*command, of=workspace.package.of_kind("cpp", "header"))
+            of = workspace.package.of_kind("cpp", "header")
+            done = workspace.run_once("/usr/bin/python3", reader, *given, of=of)
         except confine.ConfineError:
             return None
         try:
-            return crossing.from_json(Answer, done.output)[unit[0]]
-        except (crossing.CrossingError, KeyError):
+            return crossing.from_json(Said, done.output)
+        except crossing.CrossingError:
             self._see_whose_fault(file, done)
             return None
 

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Prints what C++ sources say. Runs confined: the sources may be anything.
+"""Prints what a C++ source says, as a places.Said. Runs confined: the source may be anything.
 
-Usage: cpp_facts.py TASK    (a places.Task, as JSON; a places.Answer is printed)
+Usage: cpp_facts.py FOLDER HEADERS SOURCE [ARGUMENT...]    (the package's folder, the file of
+cpp_headers.py, and what the compiler is called with)
 """
 
 from __future__ import annotations
@@ -22,7 +23,7 @@ from mrp_check.confined import crossing
 from mrp_check.confined.cpp_counters import Counters
 from mrp_check.confined.cpp_expressions import Cursor
 from mrp_check.confined.cpp_habits import SLEEPS, Habits
-from mrp_check.confined.places import Kind, Plain, Said, Task
+from mrp_check.confined.places import Kind, Plain, Said
 
 _LOG = re.compile(r"ROS_(?:DEBUG|INFO|WARN|ERROR|FATAL)(?:_STREAM)?(?:_\w+)?$")
 _HANDLES = tuple(
@@ -43,15 +44,12 @@ def main() -> None:
 
     # A source may be in any encoding, and clang's names are what it has read.
     cindex.c_interop_string.value = property(_text)
-    task = crossing.from_json(Task, sys.argv[1])
-    answer = {}
-    for file, *arguments in task.units:
-        try:
-            unit = parsed(cindex, file, arguments, task.headers)
-            answer[file] = _Source(cindex, task.folder, unit).answer()
-        except cindex.TranslationUnitLoadError as error:
-            answer[file] = Said(errors=[str(error)])
-    sys.stdout.write(crossing.to_json(answer))
+    folder, headers, file, *arguments = sys.argv[1:]
+    try:
+        said = _Source(cindex, folder, parsed(cindex, file, arguments, headers)).said()
+    except cindex.TranslationUnitLoadError as error:
+        said = Said(errors=[str(error)])
+    sys.stdout.write(crossing.to_json(said))
 
 
 def _text(name: ctypes.c_char_p) -> str | None:
@@ -71,7 +69,7 @@ def parsed(cindex: types.ModuleType, file: str, arguments: list[str], headers: s
 class _Source(Counters, Habits):
     """Finds the places of one source."""
 
-    def answer(self) -> Said:
+    def said(self) -> Said:
         for cursor in self.cursors:
             look = _LOOKS.get(cursor.kind.name)
             if look:

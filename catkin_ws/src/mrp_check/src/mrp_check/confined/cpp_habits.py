@@ -78,22 +78,6 @@ class Habits(Unit):
         if cursor.spelling in ("operator>>", "getline") and "cin" in named:
             self.add(cursor, Kind.KEYBOARD)
 
-    def seconds(self, call: Cursor) -> float:
-        """Return how long a call sleeps: 1 if that is not plain, 0 if it does not sleep."""
-        if call.kind != self.kinds.CALL_EXPR or call.spelling not in SLEEPS:
-            return 0
-        arguments = [*call.get_arguments()]
-        duration = arguments[0] if arguments else self.base(call)
-        made = self.peel(duration) if duration is not None else None
-        target = made.referenced if made is not None else None
-        initial = self.initial(target) if target is not None else None
-        rate = self.value(initial) if "Rate" in self.type_of(duration) else None
-        if isinstance(rate, (int, float)) and rate:
-            return 1 / rate
-        value = self.value(duration)
-        per_second = 1e6 if call.spelling == "usleep" else 1
-        return value / per_second if isinstance(value, (int, float)) else 1
-
     def look_at_loop(self, loop: Cursor) -> None:
         if not self.is_loop(loop):
             return

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What a source says: its Places; and what cpp_facts.py is asked and answers."""
+"""What a source says: its Places; and what cpp_facts.py prints."""
 
 import dataclasses
 import enum
-from typing import Dict, List, Optional, Union
+from typing import List, Optional, Union
 
 Plain = Union[bool, int, float, str, None]  # a value that a source says plainly
 
@@ -111,25 +111,9 @@ class Place:
 
 
 @dataclasses.dataclass
-class Task:
-    """What cpp_facts.py is to read.
-
-    folder: of the package; headers: the file of cpp_headers.py
-    units: each a source, and the compiler's arguments for it
-    """
-
-    folder: str
-    headers: str
-    units: List[List[str]]
-
-
-@dataclasses.dataclass
 class Said:
     """What a C++ source says. errors: what clang says against it; named: functions that it names"""
 
     places: List[Place] = dataclasses.field(default_factory=list)
     errors: List[str] = dataclasses.field(default_factory=list)
     named: List[str] = dataclasses.field(default_factory=list)
-
-
-Answer = Dict[str, Said]  # by the source's path
