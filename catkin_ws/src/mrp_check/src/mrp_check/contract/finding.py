@@ -35,7 +35,6 @@ class Finding:
     why: the entry of the page why about the text that a tool prints then, or empty
     change: (old, new), a part of the line and what to write for it, if that is certain to fix it;
             verdict/check.py makes the diff of it, and drops a change that is not certain
-    column: of the change in that line, from 1; verdict/check.py fills it in
     suppressed: the reason why a comment suppresses it, or empty
     consequence_of: the id of the finding that is the cause of this one, or None
     stage: which stage found it; verdict/check.py fills it in
@@ -58,6 +57,5 @@ class Finding:
     node: str | None = None
     packages: tuple[str, ...] = ()
     change: Change | None = None
-    column: int | None = None
     suppressed: str = ""
     severity: str = ""

@@ -11,7 +11,7 @@ from mrp_check.contract.verdict import Report
 from mrp_check.rules import REQUIREMENTS
 
 # What only the checker itself needs to know of a finding.
-_INNER = ("node", "packages", "change", "column", "suppressed")
+_INNER = ("node", "packages", "change", "suppressed")
 
 
 def data(report):

@@ -28,7 +28,6 @@ def data(report):
     run = {
         "tool": {"driver": {"name": "mrp_check", "rules": [_rule(id_) for id_ in rules]}},
         "automationDetails": {"id": f"mrp_check/{report.package}/"},
-        "columnKind": "unicodeCodePoints",
         "invocations": [_invocation(report)],
         "results": [_result(one, report, rules) for one in report.findings + report.suppressed],
     }
@@ -73,28 +72,9 @@ def _result(finding, report, rules):
         "suppressions": [reason] if finding.suppressed else [],
     }
     if finding.file:
-        place = {"artifactLocation": _artifact(finding, report)}
+        name = path_of(finding, report).encode("utf-8", "surrogateescape")
+        place = {"artifactLocation": {"uri": urllib.parse.quote(name), "uriBaseId": _BASE}}
         if finding.line:
             place["region"] = {"startLine": finding.line}
         result["locations"] = [{"physicalLocation": place}]
-    if finding.change:
-        result["fixes"] = [_fix(finding, report)]
     return result
-
-
-def _artifact(finding, report):
-    name = path_of(finding, report).encode("utf-8", "surrogateescape")
-    return {"uri": urllib.parse.quote(name), "uriBaseId": _BASE}
-
-
-def _fix(finding, report):
-    """Return the change of a part of one line."""
-    old, new = finding.change
-    region = {
-        "startLine": finding.line,
-        "startColumn": finding.column,
-        "endColumn": finding.column + len(old),
-    }
-    replacement = {"deletedRegion": region, "insertedContent": {"text": new}}
-    change = {"artifactLocation": _artifact(finding, report), "replacements": [replacement]}
-    return {"artifactChanges": [change]}

@@ -12,8 +12,6 @@ def add(package, finding):
     if finding.change and finding.file and finding.line:
         patch = of_change(package, finding.file, finding.line, finding.change)
     if patch:
-        line = package.lines(finding.file)[finding.line - 1]
-        finding.column = line.index(finding.change[0]) + 1
         finding.fix = "\n".join(part for part in (finding.fix, patch) if part)
     else:
         finding.change = None
