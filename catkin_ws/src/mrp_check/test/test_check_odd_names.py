@@ -83,7 +83,7 @@ def test_bubblewrap_s_own_first_line_is_said(monkeypatch, tmp_path):
 
 
 @pytest.mark.slow
-def test_a_class_with_such_names_gets_its_marks(tmp_path, monkeypatch):
+def test_a_class_with_such_names_gets_its_marks(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     folder = tmp_path / "class"
     for name in (b"Ann_11_assignsubmission_file_", b"J\xfcrgen_12_assignsubmission_file_"):
@@ -104,3 +104,5 @@ def test_a_class_with_such_names_gets_its_marks(tmp_path, monkeypatch):
     with open(written["moodle"], newline="") as file:
         assert "Participant 12" in file.read()
     assert moodle.left_out([class_table.Submission(ANN, {})]) == []
+    # Moodle knows a participant by number: who has none is said.
+    assert "check: Z%FC.tar isn't in table.moodle: its name has no" in capsys.readouterr().err

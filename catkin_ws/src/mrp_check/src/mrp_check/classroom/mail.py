@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+import re
+
 from mrp_check.classroom import class_table
 from mrp_check.report import terminal
 
@@ -11,6 +13,7 @@ def text(one, spec):
     """Return the text for the student of one submission."""
     report = one.shown(spec)
     said = terminal.text(report) if report.requirements else terminal.summary(report)
+    said = re.sub(r"\n  \w+: +file://.*", "", said)  # pages that are on this machine alone
     mark = f"{one.name}: {class_table.said_of_mark(one, spec)}"
     return terminal.plain("\n".join([spec.title, mark, report.reason, said])) + "\n"
 

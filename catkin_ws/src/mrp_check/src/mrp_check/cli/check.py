@@ -53,7 +53,7 @@ OF_CLASS = {  # of the submissions, the contract, and the folder of their pages
         lambda checked, contract, _: class_table.csv_text(checked, contract),
     ),
     "moodle": (
-        "with --class: write Moodle's grading worksheet, and beside it a zip of feedback files",
+        "with --class: write Moodle's grading worksheet, with each report as feedback",
         lambda checked, contract, _: moodle.text(checked, contract),
     ),
 }
@@ -194,22 +194,15 @@ def run_class(options):
         write(getattr(options, name), text, checked, contract, room.results)
     for sentence in mail.write(room.results, checked, contract):
         print(f"check: {sentence}", file=sys.stderr)
-    if options.moodle:
-        write_pages(options.moodle, checked, contract)
-    print(class_table.text(checked, contract))
-    all_met = all(submission.report["verdict"] == MET for submission in checked)
-    return MET if all_met else FINDINGS
-
-
-def write_pages(worksheet, checked, contract):
-    """Write the zip of Moodle's feedback files, and say whose mark Moodle cannot take."""
-    moodle.write_pages(pathlib.Path(worksheet).with_suffix(".zip"), checked, contract)
-    for name in moodle.left_out(checked):
+    for name in moodle.left_out(checked) if options.moodle else ():
         print(
-            f"check: {terminal.plain(name)} isn't in {worksheet}: its name has no participant"
+            f"check: {terminal.plain(name)} isn't in {options.moodle}: its name has no participant"
             " number of its own, as 'Full Name_12345_assignsubmission_file_' has.",
             file=sys.stderr,
         )
+    print(class_table.text(checked, contract))
+    all_met = all(submission.report["verdict"] == MET for submission in checked)
+    return MET if all_met else FINDINGS
 
 
 def unpacked(options, scratch):

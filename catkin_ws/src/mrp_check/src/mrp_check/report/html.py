@@ -26,11 +26,8 @@ def render(template, **values):
     return terminal.plain(page)
 
 
-def text(report, has_links=True):
-    """Return the page of one package's report.
-
-    has_links: whether it links to the tutorial's pages, which are on this machine alone
-    """
+def text(report):
+    """Return the page of one package's report."""
     return render(
         "package.html",
         report=report,
@@ -41,7 +38,7 @@ def text(report, has_links=True):
         why_not=terminal.why_not,
         pages=terminal.pages,
         suppressed_line=terminal.suppressed_line,
-        address_of=address_of if has_links else lambda page: "",
+        address_of=address_of,
     )
 
 
