@@ -144,12 +144,26 @@ def test_each_line_of_python_2_is_named(text, first, other, tmp_path):
         ("server.set_succeeded()", Kind.ENDS, 0),
         ("sys.exit(3)", Kind.EXIT, 3),
         ("raise SystemExit('usage')", Kind.EXIT, 1),
+        ("sys.argv[1:]", Kind.ARGUMENTS, 0),
+        ("lambda argv: argv[1]", Kind.ARGUMENTS, 0),
+        ("rospy.myargv()", Kind.ARGUMENTS, 0),
+        ("from serial import Serial", Kind.ELSEWHERE, 0),
+        ("port = f'/dev/tty{rospy}'", Kind.ELSEWHERE, 0),
+        ("rospy.get_param, '10.0.0.7'", Kind.ELSEWHERE, 0),
     ],
 )
-def test_facts_say_what_happens_to_programs_and_goals(code, kind, value, tmp_path):
+def test_facts_say_what_a_source_does(code, kind, value, tmp_path):
     text = f"import multiprocessing, os, rospy, subprocess, sys\n{code}\n"
     _, found = check_rules.python_facts_of(tmp_path, text)
     assert [(one.kind, one.line, one.value) for one in found.places] == [(kind, 2, value)]
+
+
+@pytest.mark.parametrize(
+    "code", ["sys.argv[0]", "'See /dev/ttyUSB0.'", "rospy.spin  # serial", "self.display"]
+)
+def test_facts_are_no_words(code, tmp_path):
+    _, found = check_rules.python_facts_of(tmp_path, f"import rospy, sys\n{code}\n")
+    assert found.places == []
 
 
 @pytest.mark.parametrize(("given", "latch"), [("", False), (", latch=True", True)])
@@ -293,12 +307,44 @@ def test_what_import_star_brings_is_known_of_messages_and_of_python(imports, nam
     assert sorted(text.split()[3].rstrip(":") for text in said) == names
 
 
-@pytest.mark.parametrize(("folder", "names"), [("src", ["a"]), ("test", [])])
-def test_a_test_of_the_package_s_library_is_no_node(folder, names, tmp_path):
+@pytest.mark.parametrize(
+    ("folder", "own", "names"),
+    [
+        ("src", "ros::NodeHandle n;", ["a"]),
+        ("test", "ros::NodeHandle n;", []),
+        ("src", "// {}", []),
+    ],
+)
+def test_a_test_of_the_package_s_library_is_no_node(folder, own, names, tmp_path):
     text = f"{check_rules.CMAKE}add_library(own src/own.cpp)\nadd_executable(a {folder}/a.cpp)\n"
     text += "target_link_libraries(a own)\n"
-    files = {f"{folder}__a_DOT_cpp": "", "src__own_DOT_cpp": "ros::NodeHandle node;\n"}
+    files = {f"{folder}__a_DOT_cpp": "", "src__own_DOT_cpp": own.format("ros::NodeHandle n;")}
     package = check_rules.make(tmp_path, CMakeLists_DOT_txt=text, **files)
+    assert [*executables.spec(package, check_rules.model_of(package)).nodes] == names
+
+
+@pytest.mark.parametrize(
+    ("code", "is_node"),
+    [
+        ("import rospy as r\nr.init_node('a')", True),
+        ("from rospy import *\ninit_node('a')", True),
+        ("from rospy import Publisher as P\nP('a')", True),
+        ("import rospy\nprint 'a'\nrospy.init_node('a')", True),  # Python can't read it
+        ("import rospy\nprint('rospy.init_node(1)')  # rospy.init_node(1)", False),
+        ("import rospy, unittest\nrospy.init_node('a')", False),
+        ("import rospy\nimport lib\nlib.Publisher('a')", False),
+    ],
+    ids=range(7),
+)
+def test_a_node_calls_something_of_rospy(code, is_node, tmp_path):
+    package = check_rules.make(tmp_path, src__odd_DOT_py=f"#!/usr/bin/env python3\n{code}\n")
+    assert executables.is_script(package, "src/odd.py") == is_node
+
+
+@pytest.mark.parametrize(("line", "names"), [("import odd", []), ("x = 'import odd'", ["odd.py"])])
+def test_what_another_file_imports_is_no_node(line, names, tmp_path):
+    files = {"src__odd_DOT_py": "import rospy\nrospy.Publisher('a')\n", "src__b_DOT_py": line}
+    package = check_rules.make(tmp_path, **files)
     assert [*executables.spec(package, check_rules.model_of(package)).nodes] == names
 
 

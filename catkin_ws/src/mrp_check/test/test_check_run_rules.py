@@ -158,35 +158,34 @@ def test_what_needs_a_header_that_is_not_here_is_not_blamed(header, found, tmp_p
     assert len([*check_rules.of(starts.RULE, known)]) == found
 
 
-# What a node runs into, its exit code, and a line of its source -> how sure it is that the package
+# What a node runs into, its exit code, and what its source does -> how sure it is that the package
 # is to blame: started by itself, and under its own launch file.
 ENDS = [
-    ("NameError: name 'a' is not defined", 1, "", SEEN, SEEN),
-    ("AttributeError: 'NoneType' object has no attribute 'a'", 1, "", HABIT, HABIT),
-    ("TypeError: main() missing 1 required argument", 1, "main(*sys.argv[1:])", HINT, SEEN),
-    ("KeyError: '~port'", 1, "", HABIT, SEEN),
-    ("FileNotFoundError: no file", 1, "", HABIT, HABIT),
-    ("EOFError: EOF when reading a line", 1, "", HINT, HINT),
-    ("termios.error: (25, 'Inappropriate ioctl for device')", 1, "", HINT, HINT),
-    ("socket.gaierror: [Errno -2] Name or service not known", 1, "", HABIT, HABIT),
-    ("LookupException: no frame", 1, "", HABIT, HABIT),  # nobody sends any
-    ("InvalidNameException: a b", -6, "", SEEN, SEEN),
-    ("invalid_argument: stof", -6, "", HABIT, SEEN),
-    ("", 1, "", HABIT, SEEN),
-    ("", 1, "open /dev/ttyUSB0", HABIT, HABIT),
-    ("", 1, "if len(sys.argv) < 2 or argv[1]", HINT, SEEN),
-    ("", -6, "", SEEN, SEEN),
-    ("", -11, "", SEEN, SEEN),
-    ("", -11, "cv::VideoCapture(0)", HABIT, HABIT),
+    ("NameError: name 'a' is not defined", 1, [], SEEN, SEEN),
+    ("AttributeError: 'NoneType' object has no attribute 'a'", 1, [], HABIT, HABIT),
+    ("TypeError: main() missing 1 required argument", 1, [Kind.ARGUMENTS], HINT, SEEN),
+    ("KeyError: '~port'", 1, [], HABIT, SEEN),
+    ("FileNotFoundError: no file", 1, [], HABIT, HABIT),
+    ("EOFError: EOF when reading a line", 1, [], HINT, HINT),
+    ("termios.error: (25, 'Inappropriate ioctl for device')", 1, [], HINT, HINT),
+    ("socket.gaierror: [Errno -2] Name or service not known", 1, [], HABIT, HABIT),
+    ("LookupException: no frame", 1, [], HABIT, HABIT),  # nobody sends any
+    ("InvalidNameException: a b", -6, [], SEEN, SEEN),
+    ("invalid_argument: stof", -6, [], HABIT, SEEN),
+    ("", 1, [], HABIT, SEEN),
+    ("", 1, [Kind.ELSEWHERE], HABIT, HABIT),
+    ("", 1, [Kind.ARGUMENTS], HINT, SEEN),
+    ("", -6, [], SEEN, SEEN),
+    ("", -11, [], SEEN, SEEN),
+    ("", -11, [Kind.ELSEWHERE], HABIT, HABIT),
 ]
 
 
-def blamed(error, code, source, file=None, lines=(), **seen):
+def blamed(error, code, kinds=(), file=None, lines=(), **seen):
     """Return how sure it is, by blame.certainty(); file: the launch file, if there is one."""
     kind, _, text = error.partition(": ")
-    package = types.SimpleNamespace(name="some_pkg", text=lambda file: source)
-    facts = Facts(sources={"a": ["src/a"]})
-    case = types.SimpleNamespace(package=package, facts=facts, launches=[])
+    facts = Facts([Place("src/a", 1, kind) for kind in kinds], {"a": ["src/a"]})
+    case = types.SimpleNamespace(package=PACKAGE, facts=facts, launches=[])
     seen.setdefault("subscriptions", [Registration("/a", "/talk", "std_msgs/String", 0)])
     result = LaunchResult("enough", 9, [(1, "err", line) for line in lines], Seen(**seen))
     launched = None if file is None else Launched(file, {"/a": "a"}, result)
@@ -194,14 +193,13 @@ def blamed(error, code, source, file=None, lines=(), **seen):
 
 
 @pytest.mark.parametrize(
-    ("error", "code", "source", "alone", "launched"), ENDS, ids=range(len(ENDS))
+    ("error", "code", "kinds", "alone", "launched"), ENDS, ids=range(len(ENDS))
 )
-def test_who_is_to_blame_for_an_end(error, code, source, alone, launched):
-    assert blamed(error, code, source) == alone
-    assert (
-        blamed(error, code, source, "") == alone
-    )  # all nodes together, which nobody has asked for
-    assert blamed(error, code, source, "a.launch") == launched
+def test_who_is_to_blame_for_an_end(error, code, kinds, alone, launched):
+    assert blamed(error, code, kinds) == alone
+    # All nodes together, which nobody has asked for.
+    assert blamed(error, code, kinds, "") == alone
+    assert blamed(error, code, kinds, "a.launch") == launched
 
 
 def test_a_node_that_lacks_what_another_one_offers_is_not_to_blame():
@@ -210,14 +208,14 @@ def test_a_node_that_lacks_what_another_one_offers_is_not_to_blame():
     talks = [Registration("/b", topic, "", 0) for topic in ("/talk", "/tf")]
     none = "AttributeError: 'NoneType' object has no attribute 'a'"
     absent = ["ERROR: cannot launch node of type [move_base/move_base]: move_base"]
-    assert blamed("KeyError: 'a'", 1, "", "a.launch", **asks) == HABIT
-    assert blamed("KeyError: 'a'", 1, "", "a.launch", services=add, **asks) == SEEN
-    assert blamed("KeyError: 'a'", 1, "", "a.launch", absent) == HABIT
-    assert blamed("NameError: a", 1, "", "a.launch", absent) == SEEN
+    assert blamed("KeyError: 'a'", 1, [], "a.launch", **asks) == HABIT
+    assert blamed("KeyError: 'a'", 1, [], "a.launch", services=add, **asks) == SEEN
+    assert blamed("KeyError: 'a'", 1, [], "a.launch", absent) == HABIT
+    assert blamed("NameError: a", 1, [], "a.launch", absent) == SEEN
     own = ["ERROR: cannot launch node of type [some_pkg/b]: no such file"]
-    assert blamed("KeyError: 'a'", 1, "", "a.launch", own) == SEEN
-    assert blamed(none, 1, "", "a.launch", publications=talks) == SEEN
-    assert blamed("LookupException: a", 1, "", "a.launch", publications=talks) == SEEN
+    assert blamed("KeyError: 'a'", 1, [], "a.launch", own) == SEEN
+    assert blamed(none, 1, [], "a.launch", publications=talks) == SEEN
+    assert blamed("LookupException: a", 1, [], "a.launch", publications=talks) == SEEN
 
 
 @pytest.mark.parametrize(

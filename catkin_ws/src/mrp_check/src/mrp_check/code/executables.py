@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import ast
 import re
 from typing import Iterator
 
@@ -13,15 +14,17 @@ from mrp_check.contract.spec import Spec
 from mrp_check.package.cmake import Model
 from mrp_check.package.package import Package
 
-# What a program does that is a node, or was meant to be one.
-_ROSPY = re.compile(
-    r"^[^#\n]*\b(?:init_node|rospy\.(?:Publisher|Subscriber|Service|ServiceProxy))\s*\(", re.M
+# What a program that is a node, or was meant to be one, calls of rospy.
+_OF_NODES = {"init_node", "Publisher", "Subscriber", "Service", "ServiceProxy"}
+# The same in what Python 3 can't read: it counts as a node, so that this is reported.
+_UNREAD = re.compile(
+    r"^[^#\n]*\b(init_node|rospy\.(?:Publisher|Subscriber|Service|ServiceProxy))\s*\(", re.M
 )
-_ROSCPP = re.compile(r"\bros::(?:init\b|NodeHandle\b)")
-_TESTS = re.compile(r"^[ \t]*(?:from|import)[ \t]+(?:rostest|rosunit|unittest)\b", re.M)
+_TESTS = {"rostest", "rosunit", "unittest"}
+# Which programs are nodes is asked before the messages are built, and without those, clang can't
+# read a source.
+_ROSCPP = re.compile(r"\bros\s*::\s*(?:init\b|NodeHandle\b)")
 _SECONDS = 5  # in which a node has to end on Ctrl-C
-# rospy's own, and no method of that name.
-_INIT = re.compile(r"^[^#\n]*(?:\br\w*\.|(?<![\w.])(?<!def ))init_node\s*\(", re.M)
 
 
 def spec(package: Package, model: Model) -> Spec:
@@ -33,16 +36,18 @@ def spec(package: Package, model: Model) -> Spec:
 
 def is_script(package: Package, path: str) -> bool:
     """Return whether a Python file is a node that can be started, not one that others import."""
-    if uses.is_test(path) or path == "setup.py" or not _ROSPY.search(package.text(path)):
+    called = _called(package, path)
+    if uses.is_test(path) or path == "setup.py" or not called & _OF_NODES:
         return False
-    if _TESTS.search(package.text(path)):
+    if _TESTS & _imported(package, path):
         return False
-    if not _INIT.search(package.text(path)) and _is_imported(package, path):
+    starts = "init_node" in called
+    if not starts and _is_imported(package, path):
         return False
     if package.shebang(path) or package.is_executable(path) and not _is_module(package, path):
         return True
     # In a Python package, it's a module that a script elsewhere imports and starts.
-    return not _is_module(package, path) and bool(_INIT.search(package.text(path)))
+    return not _is_module(package, path) and starts
 
 
 def is_tool(package: Package, path: str) -> bool:
@@ -60,9 +65,40 @@ def _is_module(package: Package, path: str) -> bool:
 
 def _is_imported(package: Package, path: str) -> bool:
     """Return whether another file of the package imports this one as a module."""
-    stem = re.escape(last_part(path).split(".")[0])
-    imports = re.compile(rf"^[ \t]*(?:from|import)\b[^\n]*\b{stem}\b", re.M)
-    return any(imports.search(package.text(o)) for o in package.of_kind("python") if o != path)
+    stem, others = last_part(path).split(".")[0], package.of_kind("python")
+    return any(stem in _imported(package, other) for other in others if other != path)
+
+
+def _imported(package: Package, path: str) -> set[str]:
+    """Return each part of the names of the modules that a Python file imports, and the names that
+    it takes from them."""
+    names = [module for module, _ in uses.imports(package, path)]
+    for node in ast.walk(package.tree(path)):
+        if isinstance(node, ast.ImportFrom):
+            names += [node.module or "", *(alias.name for alias in node.names)]
+    return {part for name in names for part in name.split(".")}
+
+
+def _called(package: Package, path: str) -> set[str]:
+    """Return the names of what a Python file calls of rospy."""
+    tree = package.tree(path)
+    if not tree.body:
+        return {name.split(".")[-1] for name in _UNREAD.findall(package.text(path))}
+    modules, names = {"rospy"}, {"init_node": "init_node"}
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Import):
+            modules |= {a.asname for a in node.names if a.asname and a.name == "rospy"}
+        elif isinstance(node, ast.ImportFrom) and node.module == "rospy":
+            taken = {alias.asname or alias.name: alias.name for alias in node.names}
+            names.update({name: name for name in _OF_NODES} if "*" in taken else taken)
+    called = set()
+    for node in ast.walk(tree):
+        function = node.func if isinstance(node, ast.Call) else None
+        if isinstance(function, ast.Name):
+            called.add(names.get(function.id, ""))
+        elif isinstance(function, ast.Attribute) and getattr(function.value, "id", "") in modules:
+            called.add(function.attr)
+    return called
 
 
 def _python(package: Package, model: Model) -> Iterator[specs.NodeSpec]:
@@ -75,6 +111,6 @@ def _python(package: Package, model: Model) -> Iterator[specs.NodeSpec]:
 def _cpp(package: Package, model: Model) -> Iterator[specs.NodeSpec]:
     for name, target in model.executables().items():
         sources = [file for file in model.all_sources(target) if file in package.files]
-        is_node = any(_ROSCPP.search(package.text(file)) for file in sources)
+        is_node = any(_ROSCPP.search(uses.code(package, file)) for file in sources)
         if is_node and not all(map(uses.is_test, target.sources or sources)):
             yield specs.NodeSpec(name, "cpp", executable=name)

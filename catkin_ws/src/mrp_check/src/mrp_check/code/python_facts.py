@@ -8,7 +8,7 @@ import re
 from typing import Any, Callable, Iterable, Iterator, Sequence, Union
 
 from mrp_check.code.python_source import GAP, UNKNOWN, Source
-from mrp_check.confined.places import Kind, Place
+from mrp_check.confined.places import ELSEWHERE, HOME, Kind, Place
 
 Definition = Union[ast.FunctionDef, ast.ClassDef]
 
@@ -32,6 +32,11 @@ _NAMED = {
     "rospy.Service": (Kind.OFFERS, 1, "service_class"),
     "actionlib.SimpleActionClient": (Kind.COMMANDS, 1, "ActionSpec"),
     "actionlib.SimpleActionServer": (Kind.SERVES, 1, "ActionSpec"),
+}
+# A part of the name of a module, or of what is in one -> what a program does that uses it.
+_MODULES = {
+    **dict.fromkeys(("argparse", "getopt", "myargv", "optparse"), Kind.ARGUMENTS),
+    **dict.fromkeys(("display", "serial", "VideoCapture"), Kind.ELSEWHERE),
 }
 _FAIL = ("wait_for_server", "wait_for_result")
 # What asks whether the node is to end, what ends the program, and what raises an error of rospy's
@@ -203,6 +208,32 @@ class _Node:
         if isinstance(self.source.value(key), str):
             yield self.place(kind, self.source.value(key))
 
+    def imported(self, node: ast.Import | ast.ImportFrom) -> Iterator[Place]:
+        names = [getattr(node, "module", None) or "", *(alias.name for alias in node.names)]
+        return self.of_modules(".".join(names))
+
+    def member(self, node: ast.Attribute) -> Iterator[Place]:
+        return self.of_modules(self.source.dotted(node) or "")
+
+    def of_modules(self, name: str) -> Iterator[Place]:
+        for part in name.split("."):
+            if part in _MODULES:
+                yield self.place(_MODULES[part])
+
+    def subscript(self, node: ast.Subscript) -> Iterator[Place]:
+        """Look for sys.argv[1] and the like, also in what is given to a function; sys.argv[0] is
+        the program."""
+        name = self.source.dotted(node.value) or getattr(node.value, "id", None)
+        if name in ("sys.argv", "argv") and self.source.value(node.slice) != 0:
+            yield self.place(Kind.ARGUMENTS)
+
+    def text(self, node: ast.Constant) -> Iterator[Place]:
+        is_docstring = isinstance(self.source.parents.get(node), ast.Expr)
+        if isinstance(node.value, str) and not is_docstring:
+            yield from (self.place(Kind.PATH, path) for path in HOME.findall(node.value))
+            if ELSEWHERE.search(node.value):
+                yield self.place(Kind.ELSEWHERE)
+
     def definition(self, node: Definition) -> Iterator[Place]:
         unused = True if is_unused(self.source, node) else None
         yield self.place(Kind.FUNCTION, node.name, end=last_line(node), unused=unused)
@@ -269,6 +300,10 @@ _LOOKS: Sequence[tuple[Any, Callable[[_Node, Any], Iterable[Place]]]] = (
     ((ast.While, ast.For), _Node.loop),
     (ast.Expr, _Node.statement),
     ((ast.FunctionDef, ast.ClassDef), _Node.definition),
+    ((ast.Import, ast.ImportFrom), _Node.imported),
+    (ast.Attribute, _Node.member),
+    (ast.Subscript, _Node.subscript),
+    (ast.Constant, _Node.text),
 )
 _CALLS = (
     (("rospy.init_node",), _Node.init),

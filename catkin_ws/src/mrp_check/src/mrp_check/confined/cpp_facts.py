@@ -298,6 +298,8 @@ _LOOKS = {
     **dict.fromkeys(("WHILE_STMT", "DO_STMT", "FOR_STMT"), _Source.look_at_loop),
     "RETURN_STMT": _Source.look_at_return,
     "STRING_LITERAL": _Source.look_at_text,
+    "ARRAY_SUBSCRIPT_EXPR": _Source.look_at_subscript,
+    **dict.fromkeys(("NAMESPACE_REF", "TYPE_REF"), _Source.look_at_name),
     **dict.fromkeys(("FUNCTION_DECL", "CXX_METHOD"), _Source.look_at_function),
 }
 # (scopes or None for any, names) of a call, what it is, and what looks at it
@@ -327,6 +329,7 @@ _CALLS = (
     (None, _GOAL_ENDS, Kind.ENDS, _Source.add_call),
     (("", "std"), ("fork", "vfork", "popen", "system"), Kind.STARTS, _Source.add_call),
     (("",), ("kill", "killpg"), Kind.KILLS, _Source.add_call),
+    (None, ("getopt", "getopt_long", "removeROSArgs"), Kind.ARGUMENTS, _Source.add_call),
     (None, _FAIL, Kind.IGNORED, _Source.look_at_ignored),
     (("ServiceClient",), ("call",), Kind.IGNORED, _Source.look_at_ignored),
     (("", "std"), ("printf", "puts"), Kind.PRINT, _Source.add_call),

@@ -8,12 +8,16 @@ import re
 from typing import Iterable, Sequence
 
 from mrp_check.confined.cpp_expressions import Cursor, Unit
-from mrp_check.confined.places import Kind
+from mrp_check.confined.places import ELSEWHERE, HOME, Kind
 
-HOME = re.compile(r"/(?:home|Users)/(?![A-Z_]+/)[\w.-]+/[^\s\"'<>;:]*")
 SLEEPS = {"sleep", "usleep", "nanosleep", "sleep_for", "sleep_until"}
 _ASKS_TO_END = {"ok", "isShuttingDown", "isStarted", "exit", "_exit", "abort"}
 _ASKS_TO_CANCEL = {"isPreemptRequested", "setPreempted", "registerPreemptCallback"}
+# The last part of a name -> what a program does that names it.
+_NAMES = {
+    "program_options": Kind.ARGUMENTS,
+    **dict.fromkeys(("serial", "serial_port", "VideoCapture"), Kind.ELSEWHERE),
+}
 _LEAVES = {"BREAK_STMT", "RETURN_STMT", "CXX_THROW_EXPR", "GOTO_STMT"}
 
 
@@ -57,6 +61,20 @@ class Habits(Unit):
         path = HOME.search(literal.spelling)
         if path:
             self.add(literal, Kind.PATH, path[0])
+        if ELSEWHERE.search(literal.spelling):
+            self.add(literal, Kind.ELSEWHERE)
+
+    def look_at_name(self, name: Cursor) -> None:
+        kind = _NAMES.get(re.split(r"::| ", name.spelling)[-1])
+        if kind:
+            self.add(name, kind)
+
+    def look_at_subscript(self, part: Cursor) -> None:
+        """Note argv[1] and the like, whatever they are called; argv[0] is the program."""
+        array, index = part.get_children()
+        type_ = self.peel(array).type.get_canonical().spelling
+        if type_ in ("char **", "const char **") and self.value(index) != 0:
+            self.add(part, Kind.ARGUMENTS)
 
     def look_at_ignored(self, kind: Kind, call: Cursor, arguments: Sequence[Cursor]) -> None:
         """Note a call whose result nobody looks at; of waitForResult(), the state says it, too."""

@@ -3,9 +3,16 @@
 
 import dataclasses
 import enum
+import re
 from typing import List, Optional, Union
 
 Plain = Union[bool, int, float, str, None]  # a value that a source says plainly
+
+# What a text may name: a path in somebody's home folder; a device, another computer, or a screen.
+HOME = re.compile(r"/(?:home|Users)/(?![A-Z_]+/)[\w.-]+/[^\s\"'<>;:]*")
+ELSEWHERE = re.compile(
+    r"/dev/\w|\bserial\b|VideoCapture|(?i:\bdisplay\b)|(?<![\d.])\d{1,3}(\.\d{1,3}){3}(?![\d.])"
+)
 
 
 class Kind(enum.Enum):
@@ -44,11 +51,13 @@ class Kind(enum.Enum):
     GOAL_LOOP = "goal loop"  # of an action's server, which does not ask whether it is cancelled
     IGNORED = "ignored"  # what a call returns that can fail
     KEYBOARD = "keyboard"  # somebody has to type
+    ARGUMENTS = "arguments"  # of the command line are read
+    ELSEWHERE = "elsewhere"  # a device, another computer or a screen is used
+    PATH = "path"  # a text that names a home folder
     # In C++ alone:
     HANDLE = "handle"
     GLOBAL = "global"  # a handle at file scope
     OWNER = "owner"  # of a handle, at file scope
-    PATH = "path"  # a text that names a home folder
     DISCARDED = "discarded"  # made, and kept nowhere
     LOCAL = "local"  # made, and kept in what ends too soon
 

@@ -10,6 +10,7 @@ import os
 import pathlib
 import re
 import stat
+import warnings
 import xml.etree.ElementTree as ElementTree
 from typing import Iterable, overload
 
@@ -80,6 +81,7 @@ class Package:
         if not self.root.is_dir():
             raise PackageError(f"{root} isn't a folder; expected the folder of a package.")
         self._bytes: dict[str, bytes] = {}
+        self._trees: dict[str, ast.Module] = {}
         self._large: set[str] = set()
         self.left_out: list[str] = []
         self.not_utf8: list[str] = []
@@ -169,10 +171,14 @@ class Package:
 
     def tree(self, path: str) -> ast.Module:
         """Return the syntax tree of a Python file: an empty one if Python cannot read it."""
-        try:
-            return ast.parse(self.text(path))
-        except (SyntaxError, ValueError, RecursionError, MemoryError):
-            return ast.Module(body=[], type_ignores=[])
+        if path not in self._trees:
+            try:
+                with warnings.catch_warnings():
+                    warnings.simplefilter("ignore")
+                    self._trees[path] = ast.parse(self.text(path))
+            except (SyntaxError, ValueError, RecursionError, MemoryError):
+                self._trees[path] = ast.Module(body=[], type_ignores=[])
+        return self._trees[path]
 
     def kind(self, path: str) -> str:
         """Return python, cpp, header, launch, message, service, action, cmake, or other."""

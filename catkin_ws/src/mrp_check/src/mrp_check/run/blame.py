@@ -17,7 +17,7 @@ import re
 import signal
 from typing import Iterator, NamedTuple
 
-from mrp_check.confined.places import Kind
+from mrp_check.confined.places import ELSEWHERE, Kind
 from mrp_check.contract.finding import HABIT, HINT, SEEN
 from mrp_check.run.case import Case
 from mrp_check.run.observing import Launched
@@ -38,12 +38,6 @@ _OF_OTHERS = {
 }
 _OF_FRAMES = {"LookupException", "ConnectivityException", "TransformException"}
 _BY_USER = {"EOFError", "termios.error", "_curses.error", "KeyboardInterrupt"}
-# How code reads its command line.
-_ARGUMENTS = re.compile(r"\bargv\[\s*\w|\b(myargv|argparse|optparse|getopt|program_options)\b")
-# How code and parameters name a device, another computer, or a screen.
-_ELSEWHERE = re.compile(
-    r"/dev/\w|\bserial\b|VideoCapture|(?i:\bdisplay\b)|(?<![\d.])\d{1,3}(\.\d{1,3}){3}(?![\d.])"
-)
 _NOT_STARTED = "cannot launch node of type ["  # what roslaunch says
 _CRASHES = {
     -one for one in (signal.SIGSEGV, signal.SIGFPE, signal.SIGILL, signal.SIGBUS, signal.SIGABRT)
@@ -75,8 +69,7 @@ def certainty(case: Case, node: str, end: End, launched: Launched | None = None)
     launched: what was seen under a launch file, if it ran under one
     """
     launch_file = launched.file if launched else ""
-    sources = [*map(case.package.text, case.facts.sources.get(node, ()))]
-    asks = not launch_file and any(map(_ARGUMENTS.search, sources))
+    asks = not launch_file and bool(case.facts.of(node, Kind.ARGUMENTS))
     # None is what says that something was not found, or has not come yet.
     is_given = "NoneType" in end.text or asks and end.kind == "TypeError"
     if end.kind in _MISTAKES and not is_given:
@@ -85,9 +78,11 @@ def certainty(case: Case, node: str, end: End, launched: Launched | None = None)
         return HINT
     if not launch_file and (end.kind or end.code not in _CRASHES):
         return HABIT
-    texts = [*end.words, *sources, *_given(case, node, launch_file)]
-    is_elsewhere = end.kind in _OF_OTHERS or any(map(_ELSEWHERE.search, texts))
-    return HABIT if is_elsewhere or launched and _lacks(case, node, end, launched) else SEEN
+    uses_others = end.kind in _OF_OTHERS or bool(case.facts.of(node, Kind.ELSEWHERE))
+    texts = [*end.words, *_given(case, node, launch_file)]
+    if uses_others or any(map(ELSEWHERE.search, texts)):
+        return HABIT
+    return HABIT if launched and _lacks(case, node, end, launched) else SEEN
 
 
 def _given(case: Case, node: str, launch_file: str) -> Iterator[str]:

@@ -3,14 +3,11 @@
 
 from __future__ import annotations
 
-import ast
 import re
 from typing import Iterable, Iterator
 
 from mrp_check.code import uses
-from mrp_check.code.python_source import Source
-from mrp_check.confined.cpp_habits import HOME
-from mrp_check.confined.places import Kind
+from mrp_check.confined.places import HOME, Kind
 from mrp_check.contract.finding import HABIT, Finding
 from mrp_check.contract.names import line_of
 from mrp_check.contract.requirements import ANY, Rule
@@ -21,12 +18,14 @@ _COMMENT = re.compile(r"(?m)(?:^|[ \t])#.*$")
 
 
 def _findings(case: Case) -> Iterator[Finding]:
-    package = case.package
-    for file in case.facts.relevant:
-        source = case.facts.python.get(file)
-        yield from _first_of_each(file, _in_python(source) if source else ())
-    for place in (one for one in case.facts.places if one.kind is Kind.PATH):
-        yield from _first_of_each(place.file, [(place.text or "", place.line)])
+    package, facts = case.package, case.facts
+    in_code: dict[str, list[tuple[str, int]]] = {}
+    for place in facts.places:
+        is_part = place.file in facts.relevant or place.file not in facts.python
+        if place.kind is Kind.PATH and is_part:
+            in_code.setdefault(place.file, []).append((place.text or "", place.line))
+    for file, found in in_code.items():
+        yield from _first_of_each(file, found)
     for file in package.of_kind("launch"):
         yield from _first_of_each(file, _in_text(uses.code(package, file)))
     for file in (one for one in package.files if one.endswith(_PARAMETERS)):
@@ -50,13 +49,6 @@ def _first_of_each(file: str, found: Iterable[tuple[str, int]]) -> Iterator[Find
                 seen=path,
                 fix="Put the file into the package, and start the path from the package's folder.",
             )
-
-
-def _in_python(source: Source) -> Iterator[tuple[str, int]]:
-    for node in source.nodes(ast.Constant):
-        is_docstring = isinstance(source.parents.get(node), ast.Expr)
-        if isinstance(node.value, str) and not is_docstring:
-            yield from ((path, node.lineno) for path in HOME.findall(node.value))
 
 
 def _in_text(text: str) -> Iterator[tuple[str, int]]:
