@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What follows from what the observer has seen of a package's nodes, and from what it has not."""
 
+import math
 import os
 import pathlib
 import subprocess
@@ -117,6 +118,33 @@ def test_a_node_that_registers_while_it_is_asked_for_is_not_settled(run):
     known.activity.last, known.activity.is_stuck = look, lambda _: False
     known.is_up = lambda *_: known.activity.is_up_or_stuck(known.name(), 1)
     assert not run.is_settled(known, *([] if run is alone.RunningNode else [node]))
+
+
+@pytest.mark.quick
+def test_a_node_that_was_not_sent_its_values_yet_is_not_settled():
+    """It is silent and idle, since the observer's publisher has still to be connected to it."""
+    node = object.__new__(alone.RunningNode)
+    node.plan = types.SimpleNamespace(
+        values=[2], paced=[], received="data = 2", publishes=0, is_wrap=False, example=None
+    )
+    node.program = types.SimpleNamespace(poll=lambda: None, pid=1)
+    node.activity = types.SimpleNamespace(last=lambda _: 1, is_idle=lambda _: True)
+    node.exchange = types.SimpleNamespace(is_done=lambda _: True)
+    subscribed = [("/node", "/topic")]
+    node.observer = types.SimpleNamespace(
+        seen=Seen(), most_of=lambda _: 0, is_subscribed=lambda *names: names in subscribed
+    )
+    node.publisher = types.SimpleNamespace(resolved_name="/topic")
+    node.name, node._is_watched = lambda: "/node", lambda: True
+    node.silence, node.sent, node.sent_at = 0, [], 0
+    assert not node.is_settled()
+    node.sent, node.sent_at = [2], math.inf  # just now: it may still log it
+    assert not node.is_settled()
+    node.sent_at = 0
+    assert node.is_settled()
+    # One that gave up its topic is waited for no longer.
+    node.sent, subscribed[:] = [], []
+    assert node.is_settled()
 
 
 def test_a_process_that_waits_for_the_disk_is_not_idle(tmp_path, monkeypatch):

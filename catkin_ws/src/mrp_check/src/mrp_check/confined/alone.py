@@ -204,8 +204,10 @@ class RunningNode:
             return self.exchange.is_done(name)
         if not self.plan.is_wrap and not self._is_watched():
             return False
-        silent = now - (self.activity.last(name) or now) > self.silence
-        if silent and self.activity.is_idle(self.program.pid):
+        if self._is_to_be_sent(name):
+            return False
+        last = max(self.activity.last(name) or now, self.sent_at)
+        if now - last > self.silence and self.activity.is_idle(self.program.pid):
             return True
         if self.plan.is_wrap:
             names = [event.event for event in self.events()]
@@ -215,6 +217,13 @@ class RunningNode:
         if self.plan.values:
             return self._has_heard(name)
         return bool(self.plan.publishes) or self.activity.is_calm(name)
+
+    def _is_to_be_sent(self, name: str) -> bool:
+        """Return whether it waits for messages of this process, which a busy machine may hold up:
+        they are sent once the two are connected."""
+        if self.publisher is None or self.sent:
+            return False
+        return self.observer.is_subscribed(name, self.publisher.resolved_name)
 
     def _has_heard(self, name: str) -> bool:
         """Return whether the node has logged all that it was sent, if it is to log it."""

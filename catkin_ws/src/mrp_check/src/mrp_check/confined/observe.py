@@ -160,6 +160,11 @@ class Observer:
         kinds = (handler.publishers, handler.subscribers, handler.services)
         return any(node in nodes for kind in kinds for nodes in handler.registered(kind).values())
 
+    def is_subscribed(self, node: str, topic: str) -> bool:
+        """Return whether the master knows a node as a subscriber of a topic."""
+        handler = self._handler
+        return node in handler.registered(handler.subscribers).get(topic, ())
+
     def offers(self, node: str, service: str) -> bool:
         """Return whether a node has announced a service."""
         return any((s.node, s.topic) == (node, service) for s in list(self.seen.services))
