@@ -321,19 +321,40 @@ def test_what_waits_for_messages_does_not_end(topic, calls, certainty):
     assert said.certainty == certainty
 
 
-def test_what_only_a_launch_file_kills_is_not_told_to_spin():
+@pytest.mark.parametrize(
+    ("alone", "logs", "says"),
+    [
+        (Alone(asked=9.0), [], "by itself, it keeps running."),
+        (Alone(code=0, ended_after=1.0), [], "by itself, it ends without an error."),
+        (Alone(code=0, ended_after=1.0), ["No port."], "Its last error: No port."),
+        (Alone(code=1, ended_after=1.0), [], None),  # it says so by itself
+    ],
+    ids=range(4),
+)
+def test_what_dies_only_under_a_launch_file(alone, logs, says):
+    """One finding says it, whatever the node does by itself; and not that it has to spin."""
     died = "[a-1] process has died [pid 7, exit code -11, cmd a __name:=a]."
-    seen = LaunchResult(ending="enough", asked=5, lines=[(4, "out", died)], seen=Seen())
-    facts = Facts(sources={"a": []})
-    places = types.SimpleNamespace(facts=facts, traceback=lambda lines: None)
-    node = types.SimpleNamespace(name="a", direct=Alone(code=0, ended_after=1.0), places=places)
-    node.errors, node.console = list, []
-    observed = Observed(launches=[Launched("a.launch", {"/a": "a"}, seen)])
-    known = {"facts": facts, "launches": [], "built": True, "observed": observed}
+    logged = [Log("/a", "ERROR", text, "", 0, 3) for text in logs]
+    seen = LaunchResult("enough", 5, [(4, "out", died)], Seen(logs=logged))
+    launches = [Launched("a.launch", {"/a": "a"}, seen)]
     said = Finding("spin", "a ends.", "src/a.cpp", 1, node="a", fix="Call ros::spin().")
-    starts.weigh_start(types.SimpleNamespace(package=PACKAGE, **known), node, said)
-    assert (said.id, said.certainty) == ("starts", SEEN) and "spin" not in said.fix
-    assert said.message.startswith("a dies under a.launch;") and "signal 11" in said.seen
+    facts = Facts(sources={"a": []})
+    places = types.SimpleNamespace(
+        facts=facts, traceback=lambda lines: None, of=lambda *_: (None, 1)
+    )
+    places.wrong_arguments, places.sources = places.traceback, list
+    node = types.SimpleNamespace(name="a", direct=alone, places=places, console=[], errors=list)
+    node.not_up = [said] if alone.ended_after else []
+    node.seen_alone = types.SimpleNamespace(subscriptions=[])
+    known = {"facts": facts, "places": places, "built": True, "nodes": {"a": node}}
+    known["observed"] = Observed(launches=launches)
+    case = types.SimpleNamespace(package=PACKAGE, launches=[], **known)
+    case.spec = types.SimpleNamespace(is_contract=False)
+    found = [*exceptions.under_launch_files(case)]
+    assert [one.seen for one in found] == ["killed by signal 11 (invalid memory)"] * bool(says)
+    assert all((one.certainty, one.id) == (SEEN, "starts") for one in found)
+    assert all(says in one.message and "spin" not in one.fix for one in found)
+    assert all(starts.weigh_start(case, node, one) == (not found) for one in node.not_up)
 
 
 @pytest.mark.parametrize(("code", "found"), [(0, WARNING), (1, WARNING), (-11, ERROR)])

@@ -10,6 +10,7 @@ from mrp_check.contract.finding import HINT, SEEN, Finding
 from mrp_check.contract.requirements import Rule
 from mrp_check.run import blame
 from mrp_check.run.case import Case
+from mrp_check.run.node import Node
 from mrp_check.run.observing import Launched
 from mrp_check.run.places import Traceback
 from mrp_check.run.starting import id_of_error, is_unanswered
@@ -23,9 +24,13 @@ def under_launch_files(case: Case) -> Iterator[Finding]:
         for name, found in raised.items():
             yield _error(case, name, found, launched)
         for name, code in launched.died().items() if launched.file else ():
-            # What ends by itself, too, has been said.
-            if code and name not in raised and not case.nodes[name].not_up:
+            if code and name not in raised and not _fails_alone(case.nodes[name]):
                 yield _died(case, launched, name, code)
+
+
+def _fails_alone(node: Node) -> bool:
+    """Return whether a node fails by itself, too: rules/run/starts.py says that."""
+    return bool(node.not_up) and not (node.direct and node.direct.code == 0)
 
 
 def _raised(case: Case, launched: Launched) -> dict[str, Traceback]:
@@ -45,9 +50,12 @@ def _raised(case: Case, launched: Launched) -> dict[str, Traceback]:
         file = found[0][0]
         names = [name for name in launched.nodes.values() if file in case.places.sources(name)]
         raised.update({name: found for name in names[:1] if name not in raised})
-    # That is Ctrl-C; or it has been said.
-    gone = [n for n, one in raised.items() if one[1] == "KeyboardInterrupt" or case.nodes[n].not_up]
-    return {name: one for name, one in raised.items() if name not in gone}
+    # Ctrl-C is no error.
+    return {
+        name: found
+        for name, found in raised.items()
+        if found[1] != "KeyboardInterrupt" and not _fails_alone(case.nodes[name])
+    }
 
 
 def _error(case: Case, name: str, found: Traceback, launched: Launched | None = None) -> Finding:
@@ -68,18 +76,21 @@ def _error(case: Case, name: str, found: Traceback, launched: Launched | None = 
 
 
 def _died(case: Case, launched: Launched, name: str, code: int) -> Finding:
+    """Return the finding about a node that dies under a launch file, but not by itself."""
     paths = [path for path, node in launched.nodes.items() if node == name]
     logs = [log for path in paths for log in launched.logs(path)]
     said = [log.text.strip()[:300] for log in logs if log.level in ("ERROR", "FATAL")]
     end = blame.of_lines([*said, *launched.seen.until_asked()], code)
+    alone = "ends without an error" if case.nodes[name].not_up else "keeps running"
     return Finding(
         "starts",
-        f"{name} ends {launched.where}, {code_text(code)}; by itself it keeps running."
+        f"{name} dies {launched.where}, {code_text(code)}; by itself, it {alone}."
         + (f" Its last error: {said[-1]}" if said else ""),
         *case.places.of(name, Kind.INIT, Kind.HANDLE),
         blame.certainty(case, name, end, launched),
         expected="a node that runs until Ctrl-C",
         seen=code_text(code),
+        fix="" if said else "Start that launch file, and look at what the node prints last.",
         node=name,
     )
 

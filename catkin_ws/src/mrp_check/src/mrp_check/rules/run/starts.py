@@ -38,9 +38,8 @@ def findings(case: Case) -> Iterator[Finding]:
             )
     for node in case.nodes.values():
         for finding in node.not_up:
-            if not case.spec.is_contract:
-                weigh_start(case, node, finding)
-            yield finding
+            if case.spec.is_contract or weigh_start(case, node, finding):
+                yield finding
 
 
 def _lacks_what_is_not_here(case: Case, node: Node) -> bool:
@@ -110,40 +109,35 @@ def _launch_place(package: Package, seen: Observed) -> Where:
     return ("CMakeLists.txt" if "CMakeLists.txt" in package.files else "package.xml"), 1
 
 
-def weigh_start(case: Case, node: Node, finding: Finding) -> None:
-    """Set how sure it is that the package is to blame for the end of a node by itself."""
+def weigh_start(case: Case, node: Node, finding: Finding) -> bool:
+    """Set how sure it is that the package is to blame for the end of a node by itself.
+
+    Return whether this is the finding to report: if the node only dies under its launch file,
+    rules/run/exceptions.py says how.
+    """
+    runs = (one for one in case.observed.launches if one.file)
+    launched = next((one for one in runs if one.died().get(node.name)), None)
+    code = node.direct.code if node.direct else None
+    if code == 0:
+        # It may have meant to end, unless it was waiting for messages.
+        if not _is_left_alone(node):
+            finding.certainty = HINT
+        elif node.places.facts.exits(node.name):
+            finding.certainty = HABIT
+        return launched is None
     own = rf"(No module named|cannot import name .* from) '{case.package.name}\b"
     if case.built is None and re.search(own, finding.seen):
         finding.certainty = HINT  # it is not made where CMake failed
     if finding.certainty == HINT:
-        return
-    runs = (one for one in case.observed.launches if one.file)
-    launched = next((one for one in runs if one.died().get(node.name)), None)
-    code = node.direct.code if node.direct else None
-    found = traceback_of(node)
-    if launched and code == 0:
-        code = launched.died()[node.name]
-        finding.id, finding.seen = "starts", code_text(code)
-        finding.message = f"{node.name} dies {launched.where}; by itself, it ends without an error."
-        finding.fix = "Start that launch file, and look at what the node prints last."
-    elif launched:
+        return True
+    if launched:
         finding.message = f"{finding.message.rstrip('.')}. It dies {launched.where}, too."
         add_name_that_is_set(case, finding)
-    elif code == 0:
-        _weigh_clean_end(node, finding)
-        return
+    found = traceback_of(node)
     end = blame.of_lines(node.errors(), code)
     end = end._replace(kind=found[1], text=found[2]) if found else end
     finding.certainty = blame.certainty(case, node.name, end, launched)
-
-
-def _weigh_clean_end(node: Node, finding: Finding) -> None:
-    """Lower the certainty for a node that ended with exit code 0: it may have meant to, unless it
-    was waiting for messages."""
-    if not _is_left_alone(node):
-        finding.certainty = HINT
-    elif node.places.facts.exits(node.name):
-        finding.certainty = HABIT
+    return True
 
 
 def add_name_that_is_set(case: Case, finding: Finding) -> None:
