@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import ast
+import functools
 import re
 from typing import Iterator
 
@@ -69,14 +70,15 @@ def _is_imported(package: Package, path: str) -> bool:
     return any(stem in _imported(package, other) for other in others if other != path)
 
 
-def _imported(package: Package, path: str) -> set[str]:
+@functools.lru_cache(maxsize=None)  # asked of each file for each of the others
+def _imported(package: Package, path: str) -> frozenset[str]:
     """Return each part of the names of the modules that a Python file imports, and the names that
     it takes from them."""
     names = [module for module, _ in uses.imports(package, path)]
     for node in ast.walk(package.tree(path)):
         if isinstance(node, ast.ImportFrom):
             names += [node.module or "", *(alias.name for alias in node.names)]
-    return {part for name in names for part in name.split(".")}
+    return frozenset(part for name in names for part in name.split("."))
 
 
 def _called(package: Package, path: str) -> set[str]:
