@@ -169,7 +169,7 @@ def run_of(tmp_path):
     ("old", "new", "checked"),
     [
         ("nodes:", "# a comment\nnodes:", []),
-        ("nodes:", "points: {wrap: 0}\nhidden: [spin]\nlate: {points: 1}\nnodes:", []),
+        ("nodes:", "points: {wrap: 0}\nhidden: [spin]\nnodes:", []),
         ("queue: 10", "queue: 11", ["anna"]),
     ],
 )

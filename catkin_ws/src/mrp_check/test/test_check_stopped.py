@@ -57,7 +57,7 @@ def test_one_that_hangs(tmp_path, seconds):
     table = tmp_path / "table.csv"
     page = tmp_path / "table.html"
     by_hand = tmp_path / "hand.csv"
-    by_hand.write_text("student,override,reason\nberta,3,I saw it.\n")
+    by_hand.write_text("student,points,reason\nberta,3,I saw it.\n")
     arguments = ("--class", tmp_path / "class", "--timeout", 5, "--csv", table, "--html", page)
     with command(*arguments, "--by-hand", by_hand) as checker:
         output, errors = checker.communicate()

@@ -26,14 +26,14 @@ class Submission:
     report: as in schema/report.json
     kept: whether it is the report of an earlier call
     depends_on: what the report depends on -> a text that changes with it
-    by_hand: what a person has set
+    by_hand: what a person has set, or None
     """
 
     name: str
     report: dict
     kept: bool = False
     depends_on: dict = dataclasses.field(default_factory=dict)
-    by_hand: ByHand = ByHand()
+    by_hand: ByHand | None = None
 
     def verdict_on(self, id_):
         """Return the verdict on one requirement: MET, BROKEN or UNCHECKED."""
@@ -44,8 +44,8 @@ class Submission:
         return sum(spec.points_of(id_) for id_ in OF_CONTRACT if self.verdict_on(id_) == MET)
 
     def mark(self, spec):
-        """Return the points with what a person has set."""
-        return self.by_hand.mark(self.points(spec))
+        """Return the points that a person has set, or else the measured ones."""
+        return self.by_hand.points if self.by_hand else self.points(spec)
 
     def shown(self, spec):
         """Return what the student may see of the Report."""
@@ -91,7 +91,7 @@ def csv_text(submissions, spec):
                 one.report["verdict"],
                 f"{one.points(spec):g}",
                 f"{most(spec):g}",
-                cell(str(one.by_hand)),
+                cell(str(one.by_hand or "")),
                 f"{one.mark(spec):g}",
                 *map(one.verdict_on, asked),
                 cell(" | ".join(one.causes()[:_MOST_CAUSES])),
@@ -138,7 +138,7 @@ def html_text(submissions, spec, pages):
         page_of=page_of,
         broken=broken_in(submissions),
         address_of=html.address_of,
-        has_marks=any(str(submission.by_hand) for submission in submissions),
+        has_marks=any(submission.by_hand for submission in submissions),
         isolations=isolations(submissions),
     )
 
@@ -154,7 +154,7 @@ def text(submissions, spec):
         lines.append(
             f"{one.name:{width}}  {one.report['verdict']:9}  {points:>7}  {reason}".rstrip()
         )
-    lines += [f"{one.name}: {said_of_mark(one, spec)}" for one in submissions if str(one.by_hand)]
+    lines += [f"{one.name}: {said_of_mark(one, spec)}" for one in submissions if one.by_hand]
     return terminal.plain("\n".join([*lines, *isolations(submissions)]))
 
 
@@ -172,4 +172,4 @@ def isolations(submissions):
 def said_of_mark(one, spec):
     """Return a submission's mark, and what a person has set."""
     said = f"mark {one.mark(spec):g} of {most(spec):g}"
-    return f"{said}, by hand: {one.by_hand}" if str(one.by_hand) else said
+    return f"{said}, by hand: {one.by_hand}" if one.by_hand else said

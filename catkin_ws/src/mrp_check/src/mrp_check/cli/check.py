@@ -101,7 +101,7 @@ def parser(contract="pub_sub"):
         parser.add_argument(f"--{option}", metavar="FILE", help=text)
     for flag, text in FLAGS.items():
         parser.add_argument(f"--{flag.replace('_', '-')}", action="store_true", help=text)
-    set_ = "with --class: take late days, maxima and overrides of students' points from this CSV"
+    set_ = "with --class: take the points of some students from this CSV"
     parser.add_argument("--by-hand", metavar="FILE", help=set_)
     number = (
         f"with --class: run N checks in parallel, 1 to {classroom.MOST_JOBS} (default:"
@@ -180,8 +180,7 @@ def run_class(options):
     set_ = {}
     if options.by_hand:
         names = [printable(entry.name) for entry in room.entries]
-        points = class_table.most(contract)
-        set_ = by_hand.read(options.by_hand, names, points, contract.late)
+        set_ = by_hand.read(options.by_hand, names, class_table.most(contract))
     try:
         with cluster.reached(options.scheduler, progress.show) as machines:
             say_how_apart(machines)
@@ -189,7 +188,7 @@ def run_class(options):
     finally:
         progress.clear()
     for one in checked:
-        one.by_hand = set_.get(one.name, one.by_hand)
+        one.by_hand = set_.get(one.name)
     for name, (_, text) in OF_CLASS.items():
         write(getattr(options, name), text, checked, contract, room.results)
     for sentence in mail.write(room.results, checked, contract):

@@ -208,15 +208,3 @@ class Shutdown:
     signal: str = default("signal", "shutdown")
     exit_code: int = default("exit_code", "shutdown")
     seconds: float = default("seconds", "shutdown")
-
-
-@dataclasses.dataclass(frozen=True)
-class Late:
-    """What each day takes off a mark: points, or percent of the contract's points."""
-
-    points: float = 0
-    percent: float = 0
-
-    def off(self, days: float, most: float) -> float:
-        """Return what so many days take off; most: the contract's points."""
-        return days * (self.points + most * self.percent / 100)

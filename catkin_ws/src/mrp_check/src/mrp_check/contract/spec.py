@@ -18,7 +18,6 @@ from mrp_check.contract.parts import SCHEMA as SCHEMA
 from mrp_check.contract.parts import SCHEMA_DATA, default
 from mrp_check.contract.parts import Call as Call
 from mrp_check.contract.parts import Example as Example
-from mrp_check.contract.parts import Late as Late
 from mrp_check.contract.parts import Launch as Launch
 from mrp_check.contract.parts import Message as Message
 from mrp_check.contract.parts import NodeSpec as NodeSpec
@@ -48,7 +47,6 @@ class Spec:
     points: dict[str, float] = dataclasses.field(default_factory=dict)
     not_asked: tuple[str, ...] = ()  # requirements that do not count
     hidden: tuple[str, ...] = ()  # requirements that count, and that no student sees
-    late: Late | None = None
     services: dict[str, Service] = dataclasses.field(default_factory=dict)
     is_contract: bool = True  # if not, it only lists the nodes of a package
 
@@ -70,7 +68,7 @@ class Spec:
 
     def without_marks(self) -> Spec:
         """Return all that a check depends on: a report does not change with the rest."""
-        return dataclasses.replace(self, points={}, hidden=(), late=None)
+        return dataclasses.replace(self, points={}, hidden=())
 
 
 def find(name: str) -> pathlib.Path:
@@ -167,7 +165,6 @@ class _Reader:
             points=data.get("points", {}),
             not_asked=tuple(data.get("not_asked", ())),
             hidden=tuple(data.get("hidden", ())),
-            late=Late(**data["late"]) if "late" in data else None,
         )
         for node in spec.nodes.values():
             self.numbers(node)
