@@ -3,8 +3,6 @@
 
 from __future__ import annotations
 
-import re
-
 from mrp_check.classroom import class_table
 from mrp_check.report import terminal
 
@@ -12,8 +10,8 @@ from mrp_check.report import terminal
 def text(one, spec):
     """Return the text for the student of one submission."""
     report = one.shown(spec)
-    said = terminal.text(report) if report.requirements else terminal.summary(report)
-    said = re.sub(r"\n  \w+: +file://.*", "", said)  # pages that are on this machine alone
+    summary = terminal.summary(report)
+    said = terminal.text(report, is_sent=True) if report.requirements else summary
     mark = f"{one.name}: {class_table.said_of_mark(one, spec)}"
     return terminal.plain("\n".join([spec.title, mark, report.reason, said])) + "\n"
 

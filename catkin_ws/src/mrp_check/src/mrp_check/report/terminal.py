@@ -65,10 +65,11 @@ def has_colours(stream):
     return stream.isatty() and "NO_COLOR" not in os.environ and os.environ.get("TERM") != "dumb"
 
 
-def text(report, colours=False, everything=False):
+def text(report, colours=False, everything=False, is_sent=False):
     """Return the whole report: errors, then warnings, then a summary.
 
     everything: with notes, with what follows from other findings, and with each requirement
+    is_sent: without the addresses of pages that are on this machine alone
     """
 
     def paint(text, colour):
@@ -87,7 +88,7 @@ def text(report, colours=False, everything=False):
             continue
         for finding in (cause, *(following if everything else ())):
             is_short = finding.severity == WARNING and not (has_contract or everything)
-            first, *rest = finding_lines(finding, report, is_short)
+            first, *rest = finding_lines(finding, report, is_short, is_sent)
             head, mark, message = first.partition(f" {finding.severity}: ")
             lines += ["", f"{head} {paint(mark.strip(), finding.severity)} {message}", *rest]
         if others:
@@ -166,11 +167,12 @@ def plain(text):
     return _UNFIT.sub("\ufffd", text)
 
 
-def finding_lines(finding, report, is_short=False):
+def finding_lines(finding, report, is_short=False, is_sent=False):
     """Return a finding as lines, without colours.
 
     is_short: without what another line says, too: what is expected where there is a fix, and the
         page about the requirement where there is one about this very text
+    is_sent: as of text()
     """
     lines = _wrapped(f"{where(finding, report)}: {finding.severity}: ", finding.message, "  ")
     has_fix = is_short and finding.fix
@@ -179,7 +181,8 @@ def finding_lines(finding, report, is_short=False):
     if cause:
         return [*lines, f"  This follows from: {REQUIREMENTS[cause].title} ({cause})"]
     links = pages(finding)[-1:] if is_short else pages(finding)
-    return lines + [f"  {name + ':':<10}{address_of(page)}" for name, page in links]
+    shown = [f"  {name + ':':<10}{address_of(page)}" for name, page in links]
+    return lines + [line for line in shown if not is_sent or "file://" not in line]
 
 
 def pages(finding):
