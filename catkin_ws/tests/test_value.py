@@ -78,5 +78,3 @@ def test_a_picture_says_in_words_what_it_draws():
     assert of(picture.Queue).alt(9, {"one": {1, 2, 3, 9}, "two": {4}}) == (
         "Messages 1 to 9. one received 1 to 3, 9. two received 4."
     )
-    events = [{"node": "/one", "what": "published", "value": value} for value in "21"]
-    assert of(picture.Timeline).alt(events) == "/one published 2, 1."

@@ -2,10 +2,9 @@
 """Directives that draw what was recorded from running nodes, and say it in words for a reader who
 does not see the picture.
 
-.. ros-graph:: NAME the nodes and topics under NAME in recorded/graphs.json, drawn by Graphviz
-.. timeline:: NAME   who published and who received which value when, in the lines under NAME in
+.. ros-graph:: NAME  the nodes and topics under NAME in recorded/graphs.json, drawn by Graphviz
+.. queue:: NAME      which of the published values were received, in the lines under NAME in
                      recorded/outputs.json
-.. queue:: NAME      which of the values that were published in those lines were received
 """
 
 import html
@@ -15,10 +14,6 @@ import subprocess
 from docutils import nodes
 from sphinx.util.docutils import SphinxDirective
 from terminal import recorded
-
-_LINE = re.compile(
-    r"\[ ?INFO\] \[(?P<time>[\d.]+)\]: (?P<node>/\S+) (?P<what>published|received) (?P<value>\d+)"
-)
 
 
 class Picture(SphinxDirective):
@@ -98,38 +93,6 @@ class Graph(Picture):
         return " ".join(sentences)
 
 
-class Timeline(Picture):
-    def draw(self, lines):
-        events = [match.groupdict() for match in map(_LINE.match, lines) if match]
-        names = sorted({event["node"] for event in events})
-        begin = min(float(event["time"]) for event in events)
-        end = max(float(event["time"]) for event in events)
-        left, width, row = 190, 720, 44
-        scale = (width - left - 30) / max(end - begin, 0.001)
-        height = row * len(names) + 40
-        parts = []
-        for index, name in enumerate(names):
-            y = row * index + 26
-            parts.append(f'<text x="0" y="{y + 4}" class="label">{name}</text>')
-            parts.append(f'<line x1="{left}" y1="{y}" x2="{width}" y2="{y}" class="axis"/>')
-        for event in events:
-            x = left + 15 + (float(event["time"]) - begin) * scale
-            y = row * names.index(event["node"]) + 26
-            parts.append(f'<circle cx="{x:.1f}" cy="{y}" r="11" class="{event["what"]}"/>')
-            parts.append(f'<text x="{x:.1f}" y="{y + 4}" class="value">{event["value"]}</text>')
-        for second in range(int(end - begin) + 1):
-            x = left + 15 + second * scale
-            parts.append(f'<text x="{x:.1f}" y="{height - 6}" class="label">{second} s</text>')
-        return self.svg(width, height, parts, self.alt(events))
-
-    def alt(self, events):
-        """Say which node published or received which values, in their order."""
-        values = {}
-        for event in events:
-            values.setdefault(f"{event['node']} {event['what']}", []).append(event["value"])
-        return " ".join(f"{who} {', '.join(its)}." for who, its in sorted(values.items()))
-
-
 class Queue(Picture):
     def draw(self, lines):
         text = "\n".join(lines)
@@ -169,6 +132,5 @@ class Queue(Picture):
 
 def setup(app):
     app.add_directive("ros-graph", Graph)
-    app.add_directive("timeline", Timeline)
     app.add_directive("queue", Queue)
     return {"parallel_read_safe": False}
