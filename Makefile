@@ -244,10 +244,6 @@ release: packages-release  ## tag VERSION=1.2.3 of all packages, to be published
 release-dry-run: need-docker packages-release  ## do in a clone what publishing VERSION at REPOSITORY does, and list what it makes
 	@catkin_ws/tools/try_release.sh "$(VERSION)" "$(REPOSITORY)"
 
-.PHONY: release-check
-release-check: packages-release  ## list what a release still lacks
-	@catkin_ws/tools/release.py --check
-
 .PHONY: release-notes
 release-notes:
 	@catkin_ws/tools/install_packages.sh catkin_ws/apt/release.txt >&2

@@ -3,11 +3,9 @@
 """Release all packages in one version, by the rules of catkin_prepare_release.
 
 release.py VERSION REPOSITORY [WEBSITE]   write the addresses, commit, and tag
-release.py --check                        list what a release still lacks
-release.py --notes                        print the changelogs of a complete release as Markdown
+release.py --notes                        print the changelogs of a release as Markdown
 """
 
-import contextlib
 import pathlib
 import re
 import subprocess
@@ -24,15 +22,6 @@ URLS = ("website", "repository", "bugtracker")
 def git(*arguments):
     """Return what git prints."""
     return subprocess.check_output(["git", "-C", ROOT, *arguments], text=True).strip()
-
-
-def changes(folder, version):
-    """Return the lines of a package's changelog about a version, or None."""
-    changelog = get_changelog_from_path(folder)
-    try:
-        return [str(item) for item in changelog.get_content_of_version(version)]
-    except (AttributeError, KeyError):
-        return None
 
 
 def has_forthcoming(folder):
@@ -88,43 +77,24 @@ def release(version, repository, website=""):
         git("tag", version)
 
 
-def check():
-    """Print what is there and what is missing; return whether all is there."""
-    packages = {folder.name: parse_package(folder) for folder in FOLDERS}
-    versions = {package.version for package in packages.values()}
-    version = min(versions)
-    results = {f"all packages have one version ({', '.join(sorted(versions))})": len(versions) == 1}
-    for folder in FOLDERS:
-        title = f"{folder.name}/CHANGELOG.rst has a section {version}"
-        results[title] = bool(changes(folder, version))
-    for kind in URLS:
-        has = all(kind in {url.type for url in p.urls} for p in packages.values())
-        results[f'every package.xml has <url type="{kind}">'] = has
-    results["everything is committed"] = not git("status", "--porcelain", "--untracked-files=no")
-    results[f"the tag {version} is here"] = version in git("tag", "--points-at", "HEAD").split()
-    for title, is_there in results.items():
-        print("[OK]     " if is_there else "[MISSING]", title)
-    if not all(results.values()):
-        print(f"fix: make release VERSION={version} REPOSITORY=https://github.com/OWNER/NAME")
-    return all(results.values())
-
-
 def notes():
-    """Print the release notes."""
-    version = parse_package(FOLDERS[0]).version
+    """Print the release notes; exit if `make release` hasn't made this commit a release."""
+    package = parse_package(FOLDERS[0])
+    if not package.urls or package.version not in git("tag", "--points-at", "HEAD").split():
+        sys.exit(
+            f"error: expected the addresses in package.xml, and the tag {package.version} here\n"
+            f"fix: make release VERSION={package.version} REPOSITORY=https://github.com/OWNER/NAME"
+        )
     for folder in FOLDERS:
+        changes = get_changelog_from_path(folder).get_content_of_version(package.version)
         print(f"### {folder.name}\n")
-        print("\n".join(changes(folder, version) or []) + "\n")
+        print("\n".join(map(str, changes)) + "\n")
 
 
 def main():
     arguments = sys.argv[1:]
-    if arguments == ["--check"]:
-        sys.exit(not check())
     if arguments == ["--notes"]:
-        with contextlib.redirect_stdout(sys.stderr):
-            is_complete = check()
-        return notes() if is_complete else sys.exit(1)
+        return notes()
     is_version = bool(arguments) and re.fullmatch(r"\d+\.\d+\.\d+", arguments[0])
     if not is_version or len(arguments) not in (2, 3) or "://" not in arguments[1]:
         sys.exit(
