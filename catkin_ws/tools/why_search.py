@@ -116,8 +116,9 @@ _NAME = re.compile(
     r"|(?<=command not found: )\S+"
 )
 _CMAKE_RULE = re.compile(r"'[^'\s]*CMakeFiles/[^'\s]+\.dir/build'")  # no name of the reader's
-# Python 2 has no quotes. That of generated code isn't only a name.
-_NO_MODULE = re.compile(r"No module named '?([\w.]+?)(\.msg|\.srv)?(?![\w.])'?")
+# Python 2 has other errors, and no quotes. The module of generated code isn't only a name.
+_NO_MODULE = re.compile(r"(?:\w+Error: )?No module named '?([\w.]+?)(\.msg|\.srv)?(?![\w.])'?")
+_OS_ERROR = re.compile(r"\b(?:[A-Z]\w*Error|socket\.error): (?=\[Errno)")
 _KIND = re.compile("'(module|NoneType)' object")  # no name, though in quotes
 # How much of an entry's words a text must have, or how much of the text's words the entry must
 # explain; and the least sum of the two.
@@ -327,7 +328,8 @@ def _outdoes(better, answer):
 
 def _text(text, **more):
     """Return the words of a text, with pairs of words, and the words of its names."""
-    readable = _NO_MODULE.sub(r"No module named '\1' \2", text)
+    readable = _NO_MODULE.sub(r"ModuleNotFoundError: No module named '\1' \2", text)
+    readable = _OS_ERROR.sub("OSError: ", readable)
     readable = _KIND.sub(r"\1 object", readable)
     readable = _CMAKE_RULE.sub("CMakeFiles dir build", readable)
     readable = _ROS2.sub(f" {_OF_ROS2} ", readable)
