@@ -430,7 +430,7 @@ def test_what_the_checker_and_the_doctor_name_is_there():
     modules = map(vars, (configuring, cpp_words, launch_file, python_read))
     tables = (module.get("_WHY") or module["_WORDS"] for module in modules)
     named |= {row[-1] for table in (*tables, doctor.CHECKS) for row in table}
-    assert {"script-crlf", "bad-callback", "undefined-main", "not-declared", "logs-large"} <= named
+    assert {"script-crlf", "bad-callback", "undefined-main", "not-declared", "port-in-use"} <= named
     assert named - {entry.name for entry in ENTRIES} == {""}
 
 

@@ -258,17 +258,6 @@ def check_spaces(machine):
     return ok("catkin_make built build and devel")
 
 
-def check_logs(machine):
-    """The log files, which ROS never deletes, are less than 1 GB: from there on roslaunch warns."""
-    folder = machine.env.get("ROS_LOG_DIR", machine.env.get("ROS_HOME", "~/.ros") + "/log")
-    size = 0
-    for path, _, files in os.walk(os.path.expanduser(folder)):
-        with contextlib.suppress(OSError):  # a node may just have renamed one
-            size += sum(os.lstat(os.path.join(path, name)).st_size for name in files)
-    found = f"{size / 2**30:.1f} GB in {folder}"
-    return ok(found) if size < 2**30 else fail("less than 1 GB of logs", found, "rosclean purge")
-
-
 def check_shell(machine):
     """The workspace is sourced in this shell, and its packages come first.
 
@@ -313,7 +302,6 @@ CHECKS = [
     ("scripts", check_scripts, None, "script-not-executable"),
     ("build", check_build, "packages", "setup-not-there"),
     ("build spaces", check_spaces, None, "mixed-builders"),
-    ("log files", check_logs, None, "logs-large"),
     ("shell", check_shell, "build", "package-not-found"),
 ]
 
