@@ -129,11 +129,9 @@ _FAR = 0.45  # of the score of the first answer, to other lines
 _RARE, _CANDIDATES = 80, 60  # texts of entries
 _TOGETHER = 2  # lines: messages are broken into that many
 _LONG = 2000  # characters: a line is cut there
-_MANY = 500  # lines: of a longer text, only those around an error are searched
-_MOST = 100_000  # characters around errors, at each end of a very long text
-_AT_EACH_END = 2_000  # places of a word, at each end of a very long text
+_MANY = 500  # lines: of a longer text, only those around an error are searched, and as many errors
 _NO_DIGITS = dict.fromkeys(map(ord, "0123456789"))
-_PROBLEMS = ("rror", "RROR", "xception", "ail", "atal", "FATAL", "arning", "WARN", "not ", "died")
+_PROBLEM = re.compile(r"[Ee]rror|ERROR|xception|[Ff]ail|atal|FATAL|arning|WARN|not |died")
 # Why the system refuses something, or which signal ended a program. A text and an entry that give
 # different reasons aren't near, and a reason that both have doesn't make them so.
 _REASON = re.compile(
@@ -351,41 +349,18 @@ def _words(text):
 
 
 def _near_problems(text):
-    """Return the lines of a text; of a very long one, those with an error and those around them."""
-    if len(text) <= _MANY * 100:
-        return _cut(text)
-    found, end = {}, 0
-    for at in sorted(set().union(*(_places(text, word) for word in _PROBLEMS))):
-        if at < end:
-            continue
-        before, after = text[max(at - _LONG, 0) : at].split("\n"), text[at : at + _LONG].split("\n")
-        line, end = before[-1] + after[0], at + len(after[0])
-        found.setdefault(line.translate(_NO_DIGITS), [*before[-3:-1], line, *after[1:3]])
-    parts = [*found.values()] or [_cut(text[-_MANY * 100 :])]
-    first = _fitting(parts)
-    last = _fitting(parts[: len(first) - 1 : -1])[::-1]
-    return [*itertools.chain.from_iterable(first + last)]
-
-
-def _fitting(parts):
-    """Return the first parts of a long text: those that can be searched within a second."""
-    sizes = itertools.accumulate(sum(map(len, part)) for part in parts)
-    return [part for part, size in zip(parts, sizes) if size < _MOST][: _MANY // 2]
-
-
-def _cut(text):
-    """Return the lines of a text, none of them long: the patterns would take minutes."""
-    return [line[:_LONG] for line in text.splitlines()]
-
-
-def _places(text, word):
-    """Return where a word is in a text: at most its first and its last places."""
-    first, last = [text.find(word)], [text.rfind(word)]
-    while first[-1] >= 0 and len(first) < _AT_EACH_END:
-        first.append(text.find(word, first[-1] + 1))
-    while last[-1] > first[-1] >= 0 and len(last) < _AT_EACH_END:
-        last.append(text.rfind(word, 0, last[-1]))
-    return {*first, *last} - {-1}
+    """Return the lines of a text, none of them long: the patterns would take minutes. Of a very
+    long text, only those with an error and those around them."""
+    lines = [line[:_LONG] for line in text.splitlines()]
+    if len(lines) <= _MANY:
+        return lines
+    near = {}  # what differs only in its numbers is searched once
+    for at, line in enumerate(lines):
+        if _PROBLEM.search(line):
+            near.setdefault(line.translate(_NO_DIGITS), lines[max(at - 2, 0) : at + 3])
+    parts = [*near.values()] or [lines[-_MANY:]]
+    ends = parts if len(parts) <= _MANY else parts[: _MANY // 2] + parts[-_MANY // 2 :]
+    return [*itertools.chain.from_iterable(ends)]
 
 
 def _passages(lines):
