@@ -14,10 +14,14 @@ mrp_check/defects/. Its fields:
     General: yes                   right for any name, where other entries need a certain one
     Ros: yes                       other programs print this, too: only right if the text shows ROS
     Try: rostopic list             the commands that make ROS print it
+    Launch: <launch><nod/></launch>
+                                   or a launch file that roslaunch is given; Python: a script, Cpp:
+                                   for g++, CMake: the last lines of a CMakeLists.txt
     Needs: master                  what they need: see tests/test_why.py, or docker/test/test_why.py
 
-There may be several fields Shows and Also. A line of Shows that begins with "12| " or "13| " is
-from one Debian release. tests/test_why.py runs Try, and compares Shows with what is printed.
+There may be several fields Shows and Also, and several files. A line of Shows that begins with
+"12| " or "13| " is from one Debian release. tests/test_why.py runs Try, or gives each file to its
+program, and compares Shows with what is printed.
 """
 
 import dataclasses
@@ -31,8 +35,18 @@ sys.path.insert(0, str(WORKSPACE / "src" / "mrp_check" / "src"))
 from mrp_check.contract import defects  # noqa: E402
 
 FOLDER = WORKSPACE / "src" / "mrp" / "doc" / "why"
-REQUIRED, SEVERAL = ("Shows", "Why", "Fix", "Try"), ("Shows", "Also")
-FIELDS = (*REQUIRED, "Also", "Page", "Above", "General", "Ros", "Needs")
+# The file that a field's text is written into, and the command that reads it.
+FILES = {
+    "Python": ("a.py", "/usr/bin/python3 a.py"),
+    "Cpp": ("a.cpp", "g++ -fsyntax-only a.cpp"),
+    "CMake": ("CMakeLists.txt", "cmake -B build ."),
+    "Launch": ("a.launch", "roslaunch -p $PORT a.launch"),
+}
+_PROJECT = "cmake_minimum_required(VERSION 3.10)\nproject(a C)\n"
+_OF_CATKIN = "find_package(catkin REQUIRED)\n"
+REQUIRED, TEXTS = ("Shows", "Why", "Fix"), ("Shows", "Also")
+SEVERAL = (*TEXTS, *FILES)
+FIELDS = (*REQUIRED, "Also", "Page", "Above", "General", "Ros", "Needs", "Try", *FILES)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -81,15 +95,28 @@ def _of_file(path):
 
 def _entry(name, theme, found, **more):
     missing = [field for field in REQUIRED if field not in found]
+    missing += [] if {"Try", *FILES} & {*found} else ["Try"]
     unknown = [field for field in found if field not in FIELDS]
     twice = [field for field in found if len(found[field]) > 1 and field not in SEVERAL]
     if missing or unknown or twice:
         what = f"missing {missing}, unknown {unknown}, more than once {twice}"
         raise EntryError(f"{name}: expected fields among {', '.join(FIELDS)}; {what}.")
     once = {field: values[0] for field, values in found.items() if field not in SEVERAL}
-    texts = {field.lower(): tuple(map(_dedent, found.get(field, ()))) for field in SEVERAL}
+    texts = {field.lower(): tuple(map(_dedent, found.get(field, ()))) for field in TEXTS}
     plain = {field.lower(): " ".join(once[field].split()) for field in once if field != "Try"}
-    return Entry(name=name, theme=theme, try_=once["Try"], **texts, **plain, **more)
+    commands = once.get("Try") or _commands(found, plain.get("needs", ""))
+    return Entry(name=name, theme=theme, try_=commands, **texts, **plain, **more)
+
+
+def _commands(found, needs):
+    """Return the commands that write each file of an entry, and give it to its program."""
+    commands = ""
+    for field, (path, command) in FILES.items():
+        above = _PROJECT if field == "CMake" else ""
+        above += _OF_CATKIN if above and "package" in needs.split() else ""
+        for text in found.get(field, ()):
+            commands += f"cat > {path} << 'END'\n{above}{text}\nEND\n{command}\n"
+    return commands
 
 
 def _dedent(text):
