@@ -66,7 +66,7 @@ def replace_tests(copy, text):
     tests = copy / "catkin_ws/tests"
     shutil.rmtree(tests)
     tests.mkdir()
-    (tests / "rostests.txt").write_text("")
+    (copy / "catkin_ws/build/CTestTestfile.cmake").write_text("")  # no rostests
     (tests / "test_one.py").write_text(f"import pytest\n\n{text}")
     return make("test", root=copy)
 
