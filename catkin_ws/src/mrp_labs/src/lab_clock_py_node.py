@@ -15,7 +15,6 @@ def main():
     sys.stdout.reconfigure(line_buffering=True)  # print each line at once, also into a pipe
     rospy.init_node("lab_clock_py_node")
     factor = rospy.get_param("~factor", 1)  # how much faster it goes
-    period = rospy.get_param("~period", 0.01)  # seconds between two messages
     jump = rospy.get_param("~jump", 0)  # seconds: forward, then back, forward, ...
     jump_every = rospy.get_param("~jump_every", 5)  # seconds, not simulated
 
@@ -31,7 +30,7 @@ def main():
             rospy.loginfo(f"{rospy.get_name()} jumps {jump} s {direction}")
         now = BEGIN + elapsed * factor + jump * (jumps % 2)
         publisher.publish(rospy.Time.from_sec(now))
-        time.sleep(period)  # rospy.sleep would wait for the clock, which is this one
+        time.sleep(0.01)  # rospy.sleep would wait for the clock, which is this one
 
 
 if __name__ == "__main__":

@@ -1,12 +1,11 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Runs loops instead of timers: which ones drift, and which are faster than spinOnce or the clock?
+"""Runs loops instead of timers: which ones drift, and which call spinOnce too seldom?
 
 The test itself moves the clock, and waits for the nodes each time: so nothing depends on how
 fast the machine is.
 """
 
-import collections
 import unittest
 
 import rospy
@@ -21,8 +20,6 @@ MESSAGES = 63
 PERIOD = 0.25  # seconds between two messages of the lab with spinOnce
 TOPIC = "/loop_spin_once/great_topic"
 QUEUE_SIZE = 4  # messages, of each subscriber
-COARSE = 1.0  # seconds by which the clock is turned for loops with a period of 0.1
-COARSE_TURNS = 8
 TURNS = 400  # ten times as many as it takes until the slow loop has missed messages
 
 
@@ -89,28 +86,6 @@ class TestLoop(unittest.TestCase):
             # The last one may still be on its way to the console.
             for batch in batches(lab.values(seldom))[:-1]:
                 self.assertEqual(len(batch), QUEUE_SIZE, str(lab))
-
-    def test_a_loop_faster_than_the_clock(self):
-        nodes = ("/coarse_clock/rate_cpp", "/coarse_clock/rate_py")
-        with TurnedClock() as clock, Lab("loop_coarse_clock.launch", "clock:=false") as lab:
-
-            def rounds(node):
-                """Return how often the node has published at each time of the clock."""
-                logged = filter(None, map(log_line.parse, list(lab.lines)))
-                mine = (line for line in logged if line.text.startswith(f"{node} published "))
-                return collections.Counter(line.simulated for line in mine if line.simulated)
-
-            clock.begin(lab, len(nodes), COARSE, lambda: all(map(rounds, nodes)))
-            while min(len(rounds(node)) for node in nodes) < COARSE_TURNS:
-                before = {node: sum(rounds(node).values()) for node in nodes}
-                # Twice at once, as the second sleep finds its time over.
-                clock.turn_until(
-                    lab,
-                    COARSE,
-                    lambda: all(sum(rounds(node).values()) >= before[node] + 2 for node in nodes),
-                )
-            for node in nodes:
-                self.assertEqual(set(rounds(node).values()) - {1}, {2}, rounds(node))
 
 
 def times(lab, node):
