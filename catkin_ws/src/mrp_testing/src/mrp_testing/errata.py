@@ -36,9 +36,3 @@ def replace(path, old, new):
     text = path.read_text()
     assert text.count(old) == 1, f"{old!r} in {path}"
     path.write_text(text.replace(old, new))
-
-
-def line_of(path, text):
-    """Return the one line of a file that has the text."""
-    (line,) = [line for line in path.read_text().splitlines() if text in line]
-    return line.strip()
