@@ -24,7 +24,6 @@ from typing import NamedTuple
 WORKSPACE = pathlib.Path(__file__).resolve().parents[4]
 ROOT = WORKSPACE.parent
 RESULTS = WORKSPACE / "build" / "test_results"
-PASSED = pathlib.Path(__file__).resolve().parents[1] / "proofs" / "passed_on"
 _FILES = {
     "broken": ["catkin_ws/src/mrp_check/defects/{}.patch"],
     "docker": ["docker/test/{}.py"],
@@ -128,11 +127,6 @@ def is_of_test_all(name):
     marks = re.findall(r"\bmark\.(quick|slow|sets)\b", case.source)
     of_file = re.findall(r"^pytestmark = .*\bmark\.(\w+)", case.path.read_text(), re.MULTILINE)
     return "sets" not in (marks or of_file)
-
-
-def recorded(name):
-    """Return the day of the last complete `make test-all`, "" if that did not run this test."""
-    return PASSED.read_text().strip() if is_of_test_all(name) else ""
 
 
 @functools.lru_cache
