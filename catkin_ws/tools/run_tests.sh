@@ -18,7 +18,7 @@ at_once=$((2 * processors))
 
 # Those of make test, as ctest calls them: all of the tutorial, and what most labs and the viewer rest on.
 matter_most="^_ctest_(mrp_rostest_.*|mrp_labs_rostest_test_roscpp|mrp_view_rostest_python__name_view|\
-mrp_labs_rostest_python__name_(idioms|output|slow_subscriber|type_mismatch))\.test\$"
+mrp_labs_rostest_python__name_(idioms|output|slow_subscriber))\.test\$"
 chosen=(ctest --test-dir build --tests-regex "$matter_most")
 [ "$level" = quick ] || chosen=(ctest --test-dir build --exclude-regex "$matter_most")
 rostests=$("${chosen[@]}" --show-only | sed -n 's/^ *Test .*: //p')

@@ -38,9 +38,7 @@ class Lab(Process):
     """A lab that runs, and the lines that it has printed so far.
 
     launch_file: such as "latch.launch"
-    arguments: those of roslaunch, such as "period:=1", or the paths of more launch files: several
-        labs at once take less time than one after another
-
+    arguments: those of roslaunch, such as "period:=1"
     traceback: whether one belongs to the claim
 
     Use it in a `with`: on leaving without an error, the lab is ended as by Ctrl-C, unless it has
@@ -102,15 +100,6 @@ class Lab(Process):
         """Return the texts of the values that a subscriber node has received, of one publisher or
         of all."""
         return [r.value for r in self.received(node) if publisher in (None, r.publisher)]
-
-    def wait_until_received(self, node, *values, publisher=None):
-        """Wait until a subscriber node has received each of these values; return all it has."""
-        wanted = set(map(str, values))
-        self.wait_for(
-            lambda: wanted <= set(self.values(node, publisher)),
-            lambda: f"{node} received {wanted}, not only {self.values(node, publisher)}",
-        )
-        return self.values(node, publisher)
 
     def wait_for_count(self, node, count, publisher=None):
         """Wait until a subscriber node has received that many values, whichever; return all that it
