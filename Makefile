@@ -224,7 +224,7 @@ docs-record: packages-test-all  ## do what the pages say, and record what they s
 	@$(IN_WORKSPACE) $(WITH_TESTING) /usr/bin/python3 tools/record_pages.py $(PAGE)
 
 # What else runs on this machine shows in the figures: end it before. The page on speed shows a whole
-# run: copy catkin_ws/build/bench/results.json to catkin_ws/src/mrp/doc/recorded.
+# run: copy the tables in catkin_ws/build/bench to catkin_ws/src/mrp/doc/recorded/speed.
 .PHONY: bench
 bench: packages-bench $(BUILT_WHOLE)  ## measure how fast nodes are; QUICK=1: less of it
 	@$(IN_WORKSPACE) $(ALONE) source devel/setup.bash; \

@@ -20,7 +20,6 @@ extensions = [
     "terminal",
     "proofs",
     "listing",
-    "bench",
     "picture",
     "error_texts",
     "contract_keys",

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Measures how fast this machine publishes and subscribes: `make bench` calls it.
 
-It brings a master of its own, on a free port of this machine alone.
+It brings a master of its own, on a free port.
 """
 
 import argparse
@@ -11,8 +11,8 @@ import signal
 import sys
 import time
 
-from mrp_bench import figures, robots, tables
-from mrp_bench.programs import Master, ProgramError
+from mrp_bench import figures, robots
+from mrp_bench.running import ProgramError, master
 
 ROUNDS = 6
 ROBOTS = (1, 2, 5, 10, 20, 50)
@@ -20,7 +20,7 @@ ROBOTS = (1, 2, 5, 10, 20, 50)
 
 def arguments():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("folder", type=pathlib.Path, help="where the results go")
+    parser.add_argument("folder", type=pathlib.Path, help="where the tables go")
     parser.add_argument("--quick", action="store_true", help="one round, and no robots")
     return parser.parse_args()
 
@@ -38,17 +38,22 @@ def main():
     log = args.folder / "programs.log"
     log.unlink(missing_ok=True)
     try:
-        with Master(log):
-            rows = figures.measure(1 if args.quick else ROUNDS, log, say)
-            many = [] if args.quick else [robots.measure(count, log, say) for count in ROBOTS]
+        with master(log):
+            tables = figures.tables(figures.measure_all(1 if args.quick else ROUNDS, log, say))
+            if not args.quick:
+                rows = [robots.measure(count, log, say) for count in ROBOTS]
+                tables["robots"] = [robots.HEAD, *rows]
     except ProgramError as error:
         sys.exit(f"error: {error}")
     except KeyboardInterrupt:
         sys.exit("ended before all was measured")
-    content = {"machine": figures.machine(), "robots": many, "rows": rows}
-    (args.folder / "results.json").write_text(figures.as_text(content))
-    print(tables.markdown(content))
-    say(f"these figures are in {args.folder}/results.json")
+    machine = figures.machine()
+    (args.folder / "machine.txt").write_text(f"{machine}\n")
+    print(machine)
+    for name, table in tables.items():
+        figures.write(table, args.folder / f"{name}.csv")
+        print(f"\n{figures.aligned(table)}")
+    say(f"these tables are in {args.folder}")
 
 
 if __name__ == "__main__":

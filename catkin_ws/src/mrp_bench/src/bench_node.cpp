@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The measured node in C++: a publisher, a subscriber, or both in one process. Its queues are
-// unlimited, so nothing is lost. Arguments:
-//   publish=N     publishes as soon as N subscribers are there
-//   subscribe=1   subscribes
-//   shared=1      publishes shared pointers: within the process there is no copy
-//   direct=1      calls back in the receiving thread
-//   no_delay=1    asks the publisher for TCP_NODELAY
-//   async=N       spins in N threads
-//   batch=N       messages of 8 bytes go N at a time, in one message
+// unlimited, so nothing is lost. Private parameters:
+//   publish    publishes as soon as so many subscribers are there
+//   subscribe  true: subscribes
+//   size, rate, count: bytes of a message, messages per second (0: as fast as it goes), how many
+//   shared     true: publishes shared pointers, so within the process there is no copy
+//   direct     true: calls back in the receiving thread
+//   no_delay   true: asks the publisher for TCP_NODELAY
+//   batch      so many stamps go in one message
 
 #include <mrp_bench/Batch.h>
 #include <mrp_bench/Stamped.h>
@@ -17,177 +17,187 @@
 #include <ros/ros.h>
 #include <std_msgs/UInt64.h>
 
-#include <memory>
-#include <string>
+#include <iostream>
 
-using mrp_bench::Answers;
 using mrp_bench::Batch;
-using mrp_bench::now;
-using mrp_bench::Options;
 using mrp_bench::Stamped;
+using std_msgs::UInt64;
 
-class NodeReceiver
+namespace
+{
+// Writes a stamp into a message; returns whether the message can go.
+bool write(UInt64& message, int64_t stamp, size_t)
+{
+  message.data = stamp;
+  return true;
+}
+
+bool write(Stamped& message, int64_t stamp, size_t)
+{
+  message.stamp = stamp;
+  return true;
+}
+
+bool write(Batch& message, int64_t stamp, size_t batch)
+{
+  if (message.stamps.size() == batch)
+  {
+    message.stamps.clear();
+  }
+  message.stamps.push_back(stamp);
+  return message.stamps.size() == batch;
+}
+
+void read(const UInt64& message, int64_t arrival, mrp_bench::Samples& samples)
+{
+  samples.add(message.data, arrival);
+}
+
+void read(const Stamped& message, int64_t arrival, mrp_bench::Samples& samples)
+{
+  samples.add(message.stamp, arrival);
+}
+
+void read(const Batch& message, int64_t arrival, mrp_bench::Samples& samples)
+{
+  for (const uint64_t stamp : message.stamps)
+  {
+    samples.add(stamp, arrival);
+  }
+}
+
+// message: what is sent, but for its stamp
+template <class Message>
+class BenchNode
 {
 public:
-  NodeReceiver(const Options& options, Answers& answers, ros::NodeHandle nh)
-      : options_(options), samples_(answers), nh_(nh)
+  explicit BenchNode(const Message& message)
+      : private_nh_("~"), message_(message), samples_(private_nh_.param("count", 0))
   {
-    small_ = subscribe<std_msgs::UInt64>(
-        "small", [this](const auto& message) { samples_.add(message->data, now()); });
-    large_ = subscribe<Stamped>(
-        "large", [this](const auto& message) { samples_.add(message->stamp, now()); });
-    batches_ = subscribe<Batch>("batches",
-                                [this](const auto& message)
-                                {
-                                  const int64_t arrival = now();
-                                  for (const uint64_t stamp : message->stamps)
-                                  {
-                                    samples_.add(stamp, arrival);
-                                  }
-                                });
-  }
-
-private:
-  template <class Message, class Callback>
-  ros::Subscriber subscribe(const std::string& topic, Callback callback)
-  {
-    const boost::function<void(const boost::shared_ptr<Message const>&)> function = callback;
-    ros::SubscribeOptions subscription;
-    subscription.init<Message>(topic, 0, function);
-    if (options_.number("direct", 0) != 0)
+    if (private_nh_.param("subscribe", false))
     {
-      subscription.callback_queue = &direct_queue_;
-    }
-    if (options_.number("no_delay", 0) != 0)
-    {
-      subscription.transport_hints = ros::TransportHints().tcpNoDelay();
-    }
-    return nh_.subscribe(subscription);
-  }
-
-  const Options options_;
-  mrp_bench::Samples samples_;
-  mrp_bench::DirectQueue direct_queue_;
-  ros::NodeHandle nh_;
-  ros::Subscriber small_, large_, batches_;
-};
-
-class NodeSender
-{
-public:
-  NodeSender(const Options& options, ros::NodeHandle nh)
-      : shared_(options.number("shared", 0) != 0), batch_size_(options.number("batch", 0))
-  {
-    small_ = nh.advertise<std_msgs::UInt64>("small", 0);
-    large_ = nh.advertise<Stamped>("large", 0);
-    batches_ = nh.advertise<Batch>("batches", 0);
-  }
-
-  void waitForSubscribers(unsigned count)
-  {
-    for (const ros::Publisher* publisher : {&small_, &large_, &batches_})
-    {
-      while (ros::ok() && publisher->getNumSubscribers() < count)
-      {
-        ros::WallDuration(0.01).sleep();
-      }
+      subscribe();
     }
   }
 
-  void resize(size_t size)
+  // Does its work, and prints the processor time that it took, and what has arrived.
+  void run()
   {
-    size_ = size;
-    large_message_.data.assign(size > OVERHEAD ? size - OVERHEAD : 0, 0);
-  }
-
-  // A shared message belongs to its subscribers: the next one is another.
-  void next()
-  {
-    if (shared_ && size_ > 8)
+    int64_t cpu;
+    const int subscribers = private_nh_.param("publish", 0);
+    if (subscribers == 0)
     {
-      shared_message_ = boost::make_shared<Stamped>(large_message_);
-    }
-  }
-
-  void send(int64_t stamp)
-  {
-    if (size_ > 8 && shared_)
-    {
-      shared_message_->stamp = stamp;
-      large_.publish(shared_message_);
-    }
-    else if (size_ > 8)
-    {
-      large_message_.stamp = stamp;
-      large_.publish(large_message_);
-    }
-    else if (batch_size_ > 0)
-    {
-      batch_.stamps.push_back(stamp);
-      if (stamp == 0 || static_cast<int>(batch_.stamps.size()) == batch_size_)
-      {
-        batches_.publish(batch_);
-        batch_.stamps.clear();
-      }
-    }
-    else if (shared_)
-    {
-      const auto message = boost::make_shared<std_msgs::UInt64>();
-      message->data = stamp;
-      small_.publish(message);
+      mrp_bench::spin();
+      cpu = samples_.cpu();
     }
     else
     {
-      std_msgs::UInt64 message;
-      message.data = stamp;
-      small_.publish(message);
+      publisher_ = nh_.advertise<Message>("messages", 0);
+      while (ros::ok() && static_cast<int>(publisher_.getNumSubscribers()) < subscribers)
+      {
+        ros::WallDuration(0.01).sleep();
+      }
+      ros::AsyncSpinner spinner(1);  // beside the main thread, which publishes
+      spinner.start();
+      cpu = -mrp_bench::now(CLOCK_PROCESS_CPUTIME_ID);
+      publish();
+      if (subscriber_)
+      {
+        ros::waitForShutdown();
+      }
+      else
+      {
+        mrp_bench::waitForReceivers();
+      }
+      cpu += mrp_bench::now(CLOCK_PROCESS_CPUTIME_ID);
     }
+    std::cout << cpu << "\n";
+    samples_.print();
   }
 
 private:
-  static const size_t OVERHEAD = 12;  // of Stamped: the stamp, and the length of its data
+  void subscribe()
+  {
+    ros::SubscribeOptions options;
+    options.init<Message>("messages", 0,
+                          [this](const boost::shared_ptr<Message const>& message)
+                          {
+                            read(*message, mrp_bench::now(), samples_);
+                            if (samples_.full())
+                            {
+                              ros::requestShutdown();
+                            }
+                          });
+    if (private_nh_.param("direct", false))
+    {
+      options.callback_queue = &direct_queue_;
+    }
+    if (private_nh_.param("no_delay", false))
+    {
+      options.transport_hints = ros::TransportHints().tcpNoDelay();
+    }
+    subscriber_ = nh_.subscribe(options);
+  }
 
-  const bool shared_;
-  const int batch_size_;
-  size_t size_ = 8;
-  ros::Publisher small_, large_, batches_;
-  Stamped large_message_;
-  mrp_bench::StampedPtr shared_message_;
-  Batch batch_;
+  void publish()
+  {
+    const bool shared = private_nh_.param("shared", false);
+    const size_t batch = private_nh_.param("batch", 0);
+    auto message = boost::make_shared<Message>(message_);
+    mrp_bench::sendAll(private_nh_.param("count", 0), private_nh_.param("rate", 0.0),
+                       [&](int64_t stamp)
+                       {
+                         if (!write(*message, stamp, batch))
+                         {
+                           return;
+                         }
+                         if (shared)
+                         {
+                           // It belongs to its subscribers: the next one is another.
+                           publisher_.publish(message);
+                           message = boost::make_shared<Message>(message_);
+                         }
+                         else
+                         {
+                           publisher_.publish(*message);
+                         }
+                       });
+  }
+
+  ros::NodeHandle nh_, private_nh_;
+  const Message message_;
+  mrp_bench::Samples samples_;
+  mrp_bench::DirectQueue direct_queue_;
+  ros::Publisher publisher_;
+  ros::Subscriber subscriber_;
 };
+
+template <class Message>
+void run(const Message& message)
+{
+  BenchNode<Message>(message).run();
+}
+}  // namespace
 
 int main(int argc, char* argv[])
 {
-  Answers answers;
   ros::init(argc, argv, "bench_node", ros::init_options::AnonymousName);
-  ros::NodeHandle nh;
-  const Options options(argc, argv);
-
-  std::unique_ptr<NodeReceiver> receiver;
-  if (options.number("subscribe", 0) != 0)
+  ros::NodeHandle private_nh("~");
+  const size_t OVERHEAD = 12;  // of Stamped: the stamp, and the length of its data
+  const size_t size = private_nh.param("size", 8);
+  if (private_nh.param("batch", 0) > 0)
   {
-    receiver = std::make_unique<NodeReceiver>(options, answers, nh);
-    answers.write("subscribed");
+    run(Batch());
   }
-  const int subscribers = options.number("publish", 0);
-  if (subscribers == 0)
+  else if (size > OVERHEAD)
   {
-    if (options.number("async", 0) == 0)
-    {
-      mrp_bench::spin();
-      return 0;
-    }
-    ros::AsyncSpinner spinner(options.number("async", 0));
-    spinner.start();
-    ros::waitForShutdown();
-    return 0;
+    Stamped message;
+    message.data.resize(size - OVERHEAD);
+    run(message);
   }
-
-  NodeSender sender(options, nh);
-  ros::AsyncSpinner spinner(1);  // beside the main thread, which obeys
-  spinner.start();
-  sender.waitForSubscribers(subscribers);
-  answers.write("ready");
-  mrp_bench::obey(sender, answers);
+  else
+  {
+    run(UInt64());
+  }
   return 0;
 }

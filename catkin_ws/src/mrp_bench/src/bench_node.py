@@ -1,122 +1,112 @@
 #!/usr/bin/env python
 # SPDX-License-Identifier: BSD-3-Clause
-"""The measured node in Python: a publisher or a subscriber. Its queues are unlimited. Arguments:
+"""The measured node in Python: a publisher or a subscriber. Its queues are unlimited.
 
-publish=N     publishes as soon as N subscribers are there
-subscribe=1   subscribes
-timer_slack=N what rospy's time.sleep(0) after each message may take longer; nanoseconds
-unqueued=1    publishes with queue_size=None: in the thread that calls publish
-no_delay=1    asks the publisher for TCP_NODELAY
-buff_size=N   of the subscriber; bytes
-serialised=1  publishes bytes that are a message already
-batch=N       messages of 8 bytes go N at a time, in one message
+Private parameters:
+publish      publishes as soon as there are so many subscribers; without it, subscribes
+size, rate, count: bytes of a message, messages per second (0: as fast as it goes), how many
+timer_slack  how much later rospy's time.sleep(0) after each message may end; nanoseconds
+unqueued     true: publishes with queue_size=None, in the thread that calls publish
+batch        so many stamps go in one message
 """
 
 import ctypes
-import io
-import struct
+import sys
+import threading
 import time
 
 import rospy
 from mrp_bench.msg import Batch, Stamped
-from mrp_bench.program import Answers, Samples, obey, options
 from std_msgs.msg import UInt64
 
 PR_SET_TIMERSLACK = 29  # of prctl(2)
 OVERHEAD = 12  # of Stamped: the stamp, and the length of its data
-STAMP_AND_LENGTH = struct.Struct("<QI")
 
 
-class SerialisedStamped(Stamped):
-    """A Stamped that is made of its bytes, which publish() sends as they are."""
-
-    def __init__(self, size):
-        self.bytes = bytearray(size)
-        STAMP_AND_LENGTH.pack_into(self.bytes, 0, 0, size - OVERHEAD)
-
-    def serialize(self, buff: io.BytesIO):
-        buff.write(self.bytes)
+def parameter(name, default=0):
+    return rospy.get_param(f"~{name}", default)
 
 
-class NodeSender:
-    def __init__(self, options):
-        self.serialised = options.get("serialised")
-        self.batch_size = options.get("batch")
-        queue = None if options.get("unqueued") else 0
-        self.batch = []
-        self.small = rospy.Publisher("small", UInt64, queue_size=queue)
-        self.large = rospy.Publisher("large", Stamped, queue_size=queue)
-        self.batches = rospy.Publisher("batches", Batch, queue_size=queue)
+def message_type():
+    if parameter("batch"):
+        return Batch
+    return Stamped if parameter("size") > OVERHEAD else UInt64
 
-    def wait_for_subscribers(self, count):
-        for publisher in (self.small, self.large, self.batches):
-            while publisher.get_num_connections() < count and not rospy.is_shutdown():
-                time.sleep(0.01)
 
-    def resize(self, size):
-        self.size = size
-        if size > 8 and self.serialised:
-            self.message = SerialisedStamped(size)
-        elif size > 8:
-            self.message = Stamped(data=bytes(size - OVERHEAD))
+class Sender:
+    """Call it with the stamp of a message to publish that."""
 
-    def send(self, stamp):
-        if self.size > 8 and self.serialised:
-            struct.pack_into("<Q", self.message.bytes, 0, stamp)
-            self.large.publish(self.message)
-        elif self.size > 8:
-            self.message.stamp = stamp
-            self.large.publish(self.message)
-        elif self.batch_size:
-            self.batch.append(stamp)
-            if stamp == 0 or len(self.batch) == self.batch_size:
-                self.batches.publish(self.batch)
-                self.batch = []
+    def __init__(self, publisher):
+        self.publisher = publisher
+        self.batch = parameter("batch")
+        self.stamps = []
+        self.data = bytes(max(0, parameter("size") - OVERHEAD))
+
+    def __call__(self, stamp):
+        if self.batch:
+            self.stamps.append(stamp)
+            if len(self.stamps) == self.batch:
+                self.publisher.publish(self.stamps)
+                self.stamps = []
+        elif self.data:
+            self.publisher.publish(stamp, self.data)
         else:
-            self.small.publish(UInt64(stamp))
+            self.publisher.publish(stamp)
 
 
-class NodeReceiver:
-    def __init__(self, options, answers):
-        self.samples = Samples(answers)
-        settings = {
-            "queue_size": None,
-            "tcp_nodelay": bool(options.get("no_delay")),
-            "buff_size": options.get("buff_size", 65536),
-        }
-        self.small = rospy.Subscriber("small", UInt64, self.small_callback, **settings)
-        self.others = [
-            rospy.Subscriber("large", Stamped, self.large_callback, **settings),
-            rospy.Subscriber("batches", Batch, self.batch_callback, **settings),
-        ]
+def publish():
+    queue_size = None if parameter("unqueued") else 0
+    publisher = rospy.Publisher("messages", message_type(), queue_size=queue_size)
+    send, rate, count = Sender(publisher), parameter("rate"), parameter("count")
+    while publisher.get_num_connections() < parameter("publish") and not rospy.is_shutdown():
+        time.sleep(0.01)
+    if parameter("timer_slack"):
+        # Of this thread, which calls publish().
+        ctypes.CDLL(None).prctl(PR_SET_TIMERSLACK, parameter("timer_slack"))
+    cpu = time.process_time_ns()
+    start = time.monotonic_ns()
+    for i in range(count):
+        if rate:
+            time.sleep(max(0, start + i * 1e9 / rate - time.monotonic_ns()) / 1e9)
+        send(time.monotonic_ns())
+    sys.stdin.read()  # it is closed when the receivers have all messages
+    print(time.process_time_ns() - cpu)
 
-    def small_callback(self, msg):
-        self.samples.add(msg.data, time.monotonic_ns())
 
-    def large_callback(self, msg):
-        self.samples.add(msg.stamp, time.monotonic_ns())
+def subscribe():
+    count = parameter("count")
+    samples, cpus, full = [], [], threading.Event()
 
-    def batch_callback(self, msg):
+    def callback(msg):
         arrival = time.monotonic_ns()
-        for stamp in msg.stamps:
-            self.samples.add(stamp, arrival)
+        if not samples:
+            cpus.append(time.process_time_ns())
+        for stamp in batch_of(msg):
+            samples.append((stamp, arrival))
+        if len(samples) >= count:
+            cpus.append(time.process_time_ns())
+            full.set()
+
+    kind = message_type()
+    batch_of = {
+        Batch: lambda msg: msg.stamps,
+        Stamped: lambda msg: (msg.stamp,),
+        UInt64: lambda msg: (msg.data,),
+    }[kind]
+    subscriber = rospy.Subscriber("messages", kind, callback)
+    rospy.on_shutdown(full.set)
+    full.wait()
+    print(cpus[-1] - cpus[0])
+    for sample in samples:
+        print(*sample)
 
 
 def main():
-    answers = Answers()
     rospy.init_node("bench_node", anonymous=True)
-    if options().get("subscribe"):
-        receiver = NodeReceiver(options(), answers)
-        answers.write("subscribed")
-        rospy.spin()
-        return
-    if options().get("timer_slack"):
-        # Of this thread, which calls publish().
-        ctypes.CDLL(None).prctl(PR_SET_TIMERSLACK, options()["timer_slack"])
-    sender = NodeSender(options())
-    sender.wait_for_subscribers(options()["publish"])
-    answers.write("ready")
-    obey(sender, answers)
+    if parameter("publish"):
+        publish()
+    else:
+        subscribe()
 
 
 if __name__ == "__main__":

@@ -1,147 +1,94 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The limit: messages in ROS's framing (a length of four bytes, then the message) over one TCP
-// connection, with nothing in between. Arguments: send=PORT or receive=1.
+// connection, with nothing in between. Arguments: "send" or "receive", the connection's file
+// descriptor, the size of a message in bytes, the rate, and the number of messages.
 
-#include <arpa/inet.h>
 #include <mrp_bench/program.h>
-#include <netinet/in.h>
-#include <netinet/tcp.h>
-#include <sys/socket.h>
 #include <unistd.h>
 
-#include <algorithm>
-#include <cstdint>
 #include <cstdlib>
 #include <cstring>
 #include <iostream>
+#include <string>
 #include <vector>
-
-using mrp_bench::Answers;
 
 namespace
 {
 const size_t LENGTH_SIZE = 4;
-const size_t STAMP_SIZE = 8;
 
-[[noreturn]] void fail(const char* what)
+void send(int connection, size_t size, double rate, int count)
 {
-  perror(what);
-  std::exit(1);
+  std::vector<char> frame(LENGTH_SIZE + size);
+  const uint32_t length = size;
+  memcpy(frame.data(), &length, LENGTH_SIZE);
+  const int64_t cpu = mrp_bench::now(CLOCK_PROCESS_CPUTIME_ID);
+  mrp_bench::sendAll(count, rate,
+                     [&](int64_t stamp)
+                     {
+                       memcpy(frame.data() + LENGTH_SIZE, &stamp, sizeof(stamp));
+                       for (size_t sent = 0; sent < frame.size();)
+                       {
+                         const ssize_t written =
+                             write(connection, frame.data() + sent, frame.size() - sent);
+                         if (written <= 0)
+                         {
+                           perror("write");
+                           std::exit(1);
+                         }
+                         sent += written;
+                       }
+                     });
+  mrp_bench::waitForReceivers();
+  std::cout << mrp_bench::now(CLOCK_PROCESS_CPUTIME_ID) - cpu << std::endl;
 }
 
-sockaddr_in loopback(int port)
+void receive(int connection, size_t size, int count)
 {
-  sockaddr_in address = {};
-  address.sin_family = AF_INET;
-  address.sin_port = htons(port);
-  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  return address;
-}
-
-class RawSender
-{
-public:
-  explicit RawSender(int port) : socket_(socket(AF_INET, SOCK_STREAM, 0))
-  {
-    const sockaddr_in address = loopback(port);
-    if (connect(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) != 0)
-    {
-      fail("connect");
-    }
-    const int yes = 1;
-    setsockopt(socket_, IPPROTO_TCP, TCP_NODELAY, &yes, sizeof(yes));
-    resize(STAMP_SIZE);
-  }
-
-  void resize(size_t size)
-  {
-    frame_.assign(LENGTH_SIZE + size, 0);
-    const uint32_t length = size;
-    memcpy(frame_.data(), &length, LENGTH_SIZE);
-  }
-
-  void next()
-  {
-  }
-
-  void send(int64_t stamp)
-  {
-    memcpy(frame_.data() + LENGTH_SIZE, &stamp, STAMP_SIZE);
-    for (size_t sent = 0; sent < frame_.size();)
-    {
-      const ssize_t written = write(socket_, frame_.data() + sent, frame_.size() - sent);
-      if (written <= 0)
-      {
-        fail("write");
-      }
-      sent += written;
-    }
-  }
-
-private:
-  int socket_;
-  std::vector<char> frame_;
-};
-
-void receive(Answers& answers)
-{
-  const int listener = socket(AF_INET, SOCK_STREAM, 0);
-  sockaddr_in address = loopback(0);
-  socklen_t address_size = sizeof(address);
-  if (bind(listener, reinterpret_cast<sockaddr*>(&address), address_size) != 0 ||
-      listen(listener, 1) != 0 ||
-      getsockname(listener, reinterpret_cast<sockaddr*>(&address), &address_size) != 0)
-  {
-    fail("listen");
-  }
-  answers.write("port", {ntohs(address.sin_port)});
-  const int connection = accept(listener, nullptr, nullptr);
-
-  mrp_bench::Samples samples(answers);
-  std::vector<char> buffer(1 << 16);
+  mrp_bench::Samples samples(count);
+  const size_t frame_size = LENGTH_SIZE + size;
+  std::vector<char> buffer(std::max<size_t>(frame_size, 1 << 16));
   size_t filled = 0;
-  while (true)
+  while (!samples.full())
   {
     const ssize_t received = read(connection, buffer.data() + filled, buffer.size() - filled);
     if (received <= 0)
     {
-      return;
+      perror("read");
+      std::exit(1);
     }
     const int64_t arrival = mrp_bench::now();
     filled += received;
     size_t begin = 0;
-    while (filled - begin >= LENGTH_SIZE)
+    for (; filled - begin >= frame_size; begin += frame_size)
     {
-      uint32_t length;
-      memcpy(&length, buffer.data() + begin, LENGTH_SIZE);
-      const size_t end = begin + LENGTH_SIZE + length;
-      if (end > filled)
-      {
-        buffer.resize(std::max(buffer.size(), LENGTH_SIZE + length));
-        break;
-      }
       int64_t stamp;
-      memcpy(&stamp, buffer.data() + begin + LENGTH_SIZE, STAMP_SIZE);
+      memcpy(&stamp, buffer.data() + begin + LENGTH_SIZE, sizeof(stamp));
       samples.add(stamp, arrival);
-      begin = end;
     }
-    std::copy(buffer.begin() + begin, buffer.begin() + filled, buffer.begin());
+    memmove(buffer.data(), buffer.data() + begin, filled - begin);
     filled -= begin;
   }
+  std::cout << samples.cpu() << "\n";
+  samples.print();
 }
 }  // namespace
 
 int main(int argc, char* argv[])
 {
-  const mrp_bench::Options options(argc, argv);
-  Answers answers;
-  if (options.number("receive", 0) != 0)
+  if (argc != 6)
   {
-    receive(answers);
-    return 0;
+    return 2;
   }
-  RawSender sender(options.number("send", 0));
-  answers.write("ready");
-  mrp_bench::obey(sender, answers);
+  const int connection = std::atoi(argv[2]);
+  const size_t size = std::atoi(argv[3]);
+  const int count = std::atoi(argv[5]);
+  if (std::string(argv[1]) == "send")
+  {
+    send(connection, size, std::atof(argv[4]), count);
+  }
+  else
+  {
+    receive(connection, size, count);
+  }
   return 0;
 }

@@ -1,167 +1,116 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""make bench: its figures and tables of known measurements, and what the page on speed says."""
+"""make bench: its tables of known measurements, and what the page on speed says of a run's."""
 
-import json
+import csv
 
 import numpy
 import pytest
-from mrp_bench import figures, tables
-from mrp_bench.programs import Measurement
-from mrp_bench.ways import PLAN, WAYS, steps
+from mrp_bench import figures
+from mrp_bench.running import Measurement
+from mrp_bench.ways import PAIRS, PLAN, WAYS, size_text
 from mrp_testing.workspace import WORKSPACE
 
 pytestmark = pytest.mark.quick
 
-NODES = ("cpp_cpp", "cpp_py", "py_cpp", "py_py")
+RECORDED = WORKSPACE / "src" / "mrp" / "doc" / "recorded" / "speed"
 
 
-def test_percentiles_are_values_that_were_measured():
-    hundred = numpy.random.default_rng(1).permutation(range(1, 101))
-    assert figures.percentiles(hundred) == {"p50": 50, "p90": 90, "p99": 99, "max": 100}
-    assert figures.percentiles([3, 1, 2]) == {"p50": 2, "p90": 3, "p99": 3, "max": 3}
-    assert figures.percentiles([7]) == {"p50": 7, "p90": 7, "p99": 7, "max": 7}
-
-
-@pytest.mark.parametrize(
-    ("received", "latencies", "lost", "disordered"),
-    [
-        ([10, 15, 20, 26, 30, 37], [5, 6, 7], 0, 0),
-        ([10, 15, 30, 37], [5, 7], 1, 0),
-        ([10, 40, 30, 41, 20, 42], [30, 11, 22], 0, 1),
-        ([10, 40, 20, 41, 20, 42], [30, 21, 22], 1, 1),
-    ],
-    ids=["all", "lost", "late", "twice"],
-)
-def test_delivery(received, latencies, lost, disordered):
-    found = figures.delivery([10, 20, 30], received)
-    assert (list(found.latencies), found.lost, found.disordered) == (latencies, lost, disordered)
-
-
-def test_delivery_of_what_was_not_sent_is_an_error():
-    with pytest.raises(ValueError, match="found 25, which was not"):
-        figures.delivery([10, 20], [10, 11, 25, 26])
-
-
-def measurement(latency, lost=(), receiver_cpu=0.02):
-    """Return a Measurement of 100 messages, one each millisecond. latency: in ns"""
-    sent = [1_000_000 * (i + 1) for i in range(100)]
-    pairs = [(stamp, stamp + latency) for i, stamp in enumerate(sent) if i not in lost]
-    return Measurement(sent, [[number for pair in pairs for number in pair]], 0.01, receiver_cpu)
+def measurement(latency, throughput, receiver_cpu):
+    return Measurement(numpy.full(50, latency), throughput, 1.5, receiver_cpu)
 
 
 @pytest.fixture
-def content(monkeypatch):
-    """What results.json says of three ways, which are measured in three rounds."""
-    known = {
-        "raw": measurement(10_000),
-        "cpp_cpp": measurement(25_000, (3, 50)),
-        "cpp_shared": measurement(5_000, receiver_cpu=None),
+def tables():
+    found = {}
+    for rate in (1000, 0):
+        found["cpp_cpp", 8, rate] = [measurement(*of) for of in ((20, 900, 2), (30, 1234, 4))]
+        found["cpp_shared", 8, rate] = [measurement(5, 4000, None)]
+        found["raw", 8, rate] = [measurement(10, 2000, 1)]
+    return figures.tables(found)
+
+
+def test_tables_of_known_measurements(tables):
+    raw, cpp, shared = tables["latency"][1:]
+    assert raw[:-2] == ["raw TCP", "8 B", "1000", "10.0", "10.0", "10.0", "1.0"]
+    assert cpp == ["C++ to C++", "8 B", "1000", "25.0", "30.0", "30.0", "2.5", "1.50", "3.00"]
+    assert shared[-3:] == ["0.5", "1.50", "the same"]
+    assert tables["throughput"][2] == ["C++ to C++", "8 B", "1 067", "0.53", "1.50", "3.00"]
+    assert tables["summary"][2] == ["C++ to C++", "25.0", "30.0", "2.5", "1 067"]
+
+
+def test_table_is_written_and_shown(tables, tmp_path):
+    figures.write(tables["summary"], tmp_path / "table.csv")
+    with open(tmp_path / "table.csv") as file:
+        assert list(csv.reader(file)) == tables["summary"]
+    assert figures.aligned([["a", "b"], ["long", "c"]]) == "a     b\nlong  c"
+
+
+# The page on speed says what the recorded tables say.
+
+
+def recorded(name):
+    """Return the rows of a table, without its head."""
+    with open(RECORDED / f"{name}.csv") as file:
+        return list(csv.reader(file))[1:]
+
+
+def numbers(cells):
+    return [float(cell.replace(" ", "")) for cell in cells]
+
+
+def latency(way, size):
+    """Return p50, p99, the longest latency, the ratio and the sender's processor time."""
+    (row,) = (row for row in recorded("latency") if row[:2] == [WAYS[way].text, size])
+    return numbers(row[3:8])
+
+
+def per_second(way):
+    (row,) = (row for row in recorded("throughput") if row[:2] == [WAYS[way].text, "8 B"])
+    return numbers(row[2:3])[0]
+
+
+def test_recorded_rows_are_those_of_the_plan():
+    planned = {
+        name: {
+            (WAYS[way].text, size_text(stream.size))
+            for way, stream in PLAN
+            if bool(stream.rate) == has_rate
+        }
+        for name, has_rate in (("latency", True), ("throughput", False))
     }
-
-    class Running:
-        def __init__(self, way, log):
-            self.name = way.name
-
-        def __enter__(self):
-            return self
-
-        def __exit__(self, *exception):
-            pass
-
-        def measure(self, stream):
-            return known[self.name]
-
-    monkeypatch.setattr(figures, "Running", Running)
-    plan = steps([*known], (8, 1000, 100), (8, 0, 100))
-    facts = ("processor", "system", "kernel", "roscpp", "python", "cores", "gigabytes")
-    robots = {"robots": 4, **dict.fromkeys(tables.ROBOTS, 30), "lost": 3}
-    return {
-        "machine": dict.fromkeys(facts, "some"),
-        "robots": [robots],
-        "rows": figures.measure(3, None, print, plan),
-    }
+    assert {name: {tuple(row[:2]) for row in recorded(name)} for name in planned} == planned
+    assert [row[0] for row in recorded("summary")] == [WAYS[way].text for way in PAIRS]
 
 
-def test_rows_of_known_measurements(content):
-    limit, cpp, shared = content["rows"][-3:]
-    assert [row["way"] for row in (limit, cpp, shared)] == ["raw", "cpp_cpp", "cpp_shared"]
-    assert cpp["latency"] == {"p50": 25, "p90": 25, "p99": 25, "max": 25}
-    assert (cpp["sent"], cpp["lost"], cpp["disordered"]) == (300, 6, 0)
-    assert (cpp["latency_ratio"], limit["latency_ratio"]) == (2.5, 1)
-    # From the first message's stamp to the last one's arrival: 99 ms and the latency.
-    assert limit["throughput"] == pytest.approx(100 / 0.09901)
-    assert cpp["throughput"] == pytest.approx(98 / 0.099025)
-    assert (cpp["sender_cpu"], cpp["receiver_cpu"]) == pytest.approx((100, 200))
-    assert shared["receiver_cpu"] is None
-
-
-def test_table_says_what_was_measured(content):
-    text = tables.markdown(content)
-    same = "6 of 300 | kept | 100.00 | 200.00 |\n"
-    assert f"| C++ to C++ | 25.0 | 25.0 | 25.0 | 25.0 | 2.50 | {same}" in text
-    assert f"| C++ to C++ | 990 | 0.98 | {same}" in text
-    assert text.endswith("| 4 | 30.00 | 30.00 | 30.00 | 30.00 | 30.00 | 30 | 30 | 3 |")
-
-
-def test_results_have_one_record_per_line(content):
-    text = figures.as_text(content)
-    assert json.loads(text) == content
-    assert sum('"way"' in line for line in text.splitlines()) == 6
-
-
-# The page on speed says what the recorded figures say, recorded/results.json.
-
-
-@pytest.fixture(scope="module")
-def recorded():
-    return json.loads((WORKSPACE / "src/mrp/doc/recorded/results.json").read_text())
-
-
-@pytest.fixture(scope="module")
-def rows(recorded):
-    """(way, size, rate) -> what was measured. A rate of 0 is as fast as it goes."""
-    return {(row["way"], row["size"], row["rate"]): row for row in recorded["rows"]}
-
-
-def test_recorded_rows_are_those_of_the_plan(rows):
-    assert list(rows) == sorted(
-        ((way, *stream[:2]) for way, stream in PLAN),
-        key=lambda key: (key[1:], [*WAYS].index(key[0])),
-    )
-
-
-def test_small_messages(rows):
-    small = {way: rows[way, 8, 1000] for way in NODES}
-    assert max(row["latency"]["p99"] for row in small.values()) < 300
-    # To one decimal, as the table has it.
-    ratios = [round(row["latency_ratio"], 1) for row in small.values()]
+def test_small_messages():
+    small = {way: latency(way, "8 B") for way in PAIRS[1:]}
+    assert max(p99 for _, p99, *_ in small.values()) < 300
+    ratios = [ratio for *_, ratio, _ in small.values()]
     assert 2 <= min(ratios) and max(ratios) <= 5
-    assert small["cpp_py"]["latency"]["p50"] < small["cpp_cpp"]["latency"]["p50"]
+    assert small["cpp_py"][0] < small["cpp_cpp"][0]
 
 
-def test_messages_per_second(rows):
-    fast = {
-        way: row["throughput"] for (way, size, rate), row in rows.items() if (size, rate) == (8, 0)
-    }
-    assert min(fast["cpp_cpp"], fast["cpp_py"]) > 10 * max(fast["py_cpp"], fast["py_py"])
-    assert fast["py_timer_slack"] > 2 * fast["py_py"]
-    assert fast["py_unqueued"] > 10 * fast["py_py"]
-    assert fast["cpp_batch"] > 20 * fast["cpp_cpp"]
+def test_messages_per_second():
+    slow = max(per_second("py_cpp"), per_second("py_py"))
+    assert min(per_second("cpp_cpp"), per_second("cpp_py")) > 10 * slow
+    assert per_second("py_timer_slack") > 2 * per_second("py_py")
+    assert per_second("py_unqueued") > 10 * per_second("py_py")
+    assert per_second("cpp_batch") > 20 * per_second("cpp_cpp")
 
 
-def test_tcp_no_delay(rows):
-    for plain, hinted in (("cpp_cpp", "cpp_no_delay"), ("py_py", "py_no_delay")):
-        p50 = [rows[way, 8, 1000]["latency"]["p50"] for way in (plain, hinted)]
-        assert p50[1] / p50[0] == pytest.approx(1, abs=0.1)
-    assert rows["cpp_cpp", 1024, 1000]["latency"]["p99"] > 10_000
-    assert rows["cpp_no_delay", 1024, 1000]["latency"]["max"] < 10_000
+def test_tcp_no_delay():
+    ratio = latency("cpp_no_delay", "8 B")[0] / latency("cpp_cpp", "8 B")[0]
+    assert ratio == pytest.approx(1, abs=0.1)
+    assert latency("cpp_cpp", "1 kB")[1] > 10_000
+    assert latency("cpp_no_delay", "1 kB")[2] < 10_000
 
 
-def test_four_subscribers(rows):
+def test_four_subscribers():
     for one, four in (("cpp_cpp", "cpp_to_4"), ("py_py", "py_to_4")):
-        assert rows[four, 8, 1000]["sender_cpu"] < 4 * rows[one, 8, 1000]["sender_cpu"]
+        assert latency(four, "8 B")[4] < 4 * latency(one, "8 B")[4]
 
 
-def test_memory_of_a_node(recorded):
-    (fifty,) = (robots for robots in recorded["robots"] if robots["robots"] == 50)
-    assert fifty["py"] > 20 * fifty["cpp"]
+def test_memory_of_a_node():
+    (fifty,) = (row for row in recorded("robots") if row[0] == "50")
+    cpp, py = numbers(fifty[4:])
+    assert py > 20 * cpp

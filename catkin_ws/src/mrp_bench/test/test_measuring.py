@@ -3,16 +3,16 @@
 
 import os
 import signal
-import sys
 import threading
-import uuid
 
+import psutil
 import pytest
 import rosgraph
-from mrp_bench import figures, robots
-from mrp_bench.programs import Master, ProgramError, Running, cpu
+from mrp_bench import figures, robots, running
 from mrp_bench.ways import LIMIT, PLAN, WAYS, Stream, Way, steps
-from mrp_testing.process import Process, processes_with
+from mrp_testing.master import master, uri_of
+from mrp_testing.ports import free_port
+from mrp_testing.process import Process
 from mrp_testing.waiting import wait_until
 from rospy.impl import tcpros_pubsub
 
@@ -30,120 +30,103 @@ def test_every_way_is_measured_beside_the_limit():
     )
 
 
-@pytest.fixture
-def master(tmp_path, monkeypatch):
-    monkeypatch.setenv("ROS_MASTER_URI", os.environ.get("ROS_MASTER_URI", ""))
-    with Master(tmp_path / "master.log"):
-        yield
+@pytest.fixture(scope="module")
+def core():
+    """A master for these tests."""
+    port = free_port()
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("ROS_MASTER_URI", uri_of(port))
+        with master(port) as process:
+            yield process
 
 
 @pytest.mark.slow
-def test_every_way_delivers_every_message_in_order(master, tmp_path):
-    for way in WAYS.values():
-        with Running(way, tmp_path / "log") as running:
-            for stream in (Stream(8, 200, 10), Stream(70000, 0, 3)):
-                found = running.measure(stream)
-                assert len(found.received) == way.receivers
-                for pairs in found.received:
-                    assert pairs[::2] == found.sent, way.name
-                    assert all(arrival > stamp for stamp, arrival in zip(pairs[::2], pairs[1::2]))
-                assert found.sender_cpu > 0
-                assert way.receiver is None or found.receiver_cpu > 0
+@pytest.mark.parametrize("way", WAYS)
+def test_every_way_delivers_every_message_in_order(core, tmp_path, way):
+    """What is lost, or comes too late, is an error."""
+    # A small and a large message, if the way is measured with it.
+    sizes = {8 if stream.size == 8 else 70000 for name, stream in PLAN if name == way}
+    for stream in (Stream(size, 500, 100) for size in sizes):
+        found = running.measure(way, stream, tmp_path / "log")
+        assert len(found.latencies) == 90 * WAYS[way].subscribers
+        assert min(found.latencies) > 0 and found.throughput > 0 and found.sender_cpu > 0
+        assert WAYS[way].subscriber is None or found.receiver_cpu > 0
+
+
+@pytest.mark.parametrize("received", [[1, 3], [1, 3, 2], [1, 2, 2]])
+def test_message_that_is_lost_or_late_is_an_error(monkeypatch, tmp_path, received):
+    class Program(running.Program):
+        def result(self):
+            cpu, pairs = super().result()
+            return cpu, pairs[[stamp - 1 for stamp in received]] if pairs.size else pairs
+
+    monkeypatch.setattr(running, "Program", Program)
+    with pytest.raises(running.ProgramError, match="expected 3 messages in order in raw"):
+        running.measure(LIMIT, Stream(8, 100, 3), tmp_path / "log")
 
 
 @pytest.mark.slow
-def test_ways_are_measured_in_turns(master, tmp_path):
+def test_ways_are_measured_in_turns(core, tmp_path):
     lines = []
-    plan = steps(TWO, (8, 200, 10), (70000, 0, 3))
-    rows = figures.measure(4, tmp_path / "log", lines.append, plan)
-    assert [line.split(" of 4")[0][-1] for line in lines] == [*"1111222233334444"]
-    assert [line.split(": ")[1].split(",")[0] for line in lines] == [
-        name for name in TWO for _ in range(2)
-    ] * 4
+    plan = steps(TWO, 8, 200, 10)
+    found = figures.measure_all(3, tmp_path / "log", lines.append, plan)
+    assert [line.split(": ")[1].split(",")[0] for line in lines] == [*TWO] * 3
     assert all(line.endswith(" s left") for line in lines)
-    assert lines[-1].startswith("[16/16] round 4 of 4: py_py, 68 kB as fast as it goes")
-    assert [(row["way"], row["size"], row["rounds"]) for row in rows] == [
-        (name, size, 4) for size in (8, 70000) for name in TWO
-    ]
+    assert lines[-1].startswith("[6/6] round 3 of 3: py_py, 8 B at 200 Hz")
+    assert {key: len(rounds) for key, rounds in found.items()} == {
+        (name, 8, 200): 3 for name in TWO
+    }
 
 
 @pytest.mark.slow
-def test_program_that_ends_is_an_error(tmp_path):
-    ends = Way("ends", "ends", ("bench_raw", "send=1"), ("bench_raw", "receive=1"))
-    with pytest.raises(ProgramError, match="expected of 'bench_raw send=.*' the answer 'ready'"):
-        with Running(ends, tmp_path / "log"):
-            pass
+def test_program_that_fails_is_an_error(monkeypatch, tmp_path):
+    monkeypatch.setitem(WAYS, "fails", Way("fails", "bench_raw", "bench_raw"))
+    with pytest.raises(running.ProgramError, match="expected exit code 0, found 2 of bench_raw"):
+        running.measure("fails", Stream(8, 0, 1), tmp_path / "log")
+
+
+def test_master_is_that_of_what_is_started(monkeypatch, tmp_path):
+    monkeypatch.setenv("ROS_MASTER_URI", "")
+    with running.master(tmp_path / "log"):
+        assert rosgraph.is_master_online()
+    assert not rosgraph.is_master_online()
 
 
 @pytest.mark.slow
-def test_robots_start_and_stop(master, tmp_path):
-    found = robots.measure(2, tmp_path / "log", print)
-    assert found["up"] > 0 and found["down"] > 0 and found["cores"] > 0
-    assert 0 < found["cpp"] < found["py"]
-    assert 0 < found["p50"] <= found["p99"]
-    assert found["lost"] == 0
-
-
-@pytest.fixture
-def mark(monkeypatch):
-    """An environment variable that no process has but those that are started from now on.
-
-    What is left of them at the end is killed.
-    """
-    variable = f"MRP_TEST_MARK={uuid.uuid4()}"
-    monkeypatch.setenv(*variable.split("="))
-    yield variable
-    for pid in processes_with(variable):
-        os.kill(pid, signal.SIGKILL)
+def test_robots_start_and_stop(core, tmp_path):
+    table = [robots.HEAD, robots.measure(2, tmp_path / "log", print)]
+    row = dict(zip(*table))
+    assert row.pop("robots") == "2"
+    assert float(row.pop("cores in use")) >= 0
+    assert all(float(cell) > 0 for cell in row.values())
+    assert float(row["MB per C++ node"]) < float(row["MB per Python node"])
 
 
 @pytest.mark.slow
-def test_ros_spin_takes_a_core_while_its_node_ends(master):
+def test_ros_spin_takes_a_core_while_its_node_ends(core):
     """mrp_bench's own spin() doesn't. A master that stands still keeps both from ending."""
-    core = rosgraph.Master("/test_bench")
+    state = rosgraph.Master("/test_bench").getSystemState
     with Process("rosrun", "mrp", "subscriber_cpp_node") as plain:
-        with Process("rosrun", "mrp_bench", "bench_node", "subscribe=1") as calm:
+        with Process("rosrun", "mrp_bench", "bench_node", "_subscribe:=true") as calm:
             wait_until(
-                lambda: (
-                    {"/great_topic", "/small"} <= {name for name, _ in core.getSystemState()[1]}
-                ),
+                lambda: {"/great_topic", "/messages"} <= {name for name, _ in state()[1]},
                 "both have subscribed",
             )
-            pid = core.getPid()
-            os.kill(pid, signal.SIGSTOP)
+            os.kill(core.pid, signal.SIGSTOP)
             try:
-                begin = cpu([plain.pid]), cpu([calm.pid])
+                begin = cpu(plain), cpu(calm)
                 for node in (plain, calm):
                     os.kill(node.pid, signal.SIGINT)
-                wait_until(lambda: cpu([plain.pid]) - begin[0] > 1, "a second of processor time")
-                assert cpu([calm.pid]) - begin[1] < 0.1
+                wait_until(lambda: cpu(plain) - begin[0] > 1, "a second of processor time")
+                assert cpu(calm) - begin[1] < 0.1
             finally:
-                os.kill(pid, signal.SIGCONT)
+                os.kill(core.pid, signal.SIGCONT)
             assert [plain.wait(), calm.wait()] == [0, 0]
 
 
-BENCH_THAT_WAITS = """
-import pathlib, signal, sys
-from mrp_bench.programs import Master, Running
-from mrp_bench.ways import WAYS
-
-log = pathlib.Path(sys.argv[1])
-with Master(log), Running(WAYS["py_cpp"], log) as running:
-    print("connected", flush=True)
-    signal.pause()
-"""
-
-
-@pytest.mark.slow
-def test_nothing_outlives_a_bench_that_is_killed(mark, tmp_path):
-    """A master with a child of its own, and programs that wait for orders."""
-    with Process(sys.executable, "-c", BENCH_THAT_WAITS, str(tmp_path / "log")) as bench:
-        bench.wait_for(lambda: "connected" in bench.lines, "the programs are connected")
-        commands = processes_with(mark).values()
-        for name in ("rosmaster", "bench_node", "bench_node.py"):
-            assert any(name in command for command in commands), (name, commands)
-        os.kill(bench.pid, signal.SIGKILL)
-        wait_until(lambda: not processes_with(mark), "all have ended")
+def cpu(process):
+    """Return the processor time that a process has used, in seconds."""
+    return sum(psutil.Process(process.pid).cpu_times()[:2])
 
 
 def test_rospy_sleeps_after_each_message_that_it_queues(monkeypatch):

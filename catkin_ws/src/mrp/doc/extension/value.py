@@ -4,14 +4,12 @@
 :value:`contract.QUEUE_SIZE`                    the contract: mrp_testing/contract.py
 :value:`loop_spin_once.publisher_cpp.period`    a launch file: NODE.PARAMETER, or an argument
 :value:`rospy.topics.DEFAULT_BUFF_SIZE`         ROS's own default, in a module of ROS
-:value:`results.machine.cores`                  a recording: recorded/results.json
 
 The text is an expression in Python, such as `contract.QUEUE_SIZE + 1` or `len(latch.nodes)`. There
 `word(...)` writes a number as a word.
 """
 
 import importlib
-import json
 import logging
 import re
 import sys
@@ -23,7 +21,7 @@ from sphinx.util.docutils import SphinxRole
 
 ROS = ("rospy", "rosmaster")
 WORDS = "zero one two three four five six seven eight nine ten eleven twelve".split()
-FILES = ("mrp/launch/*.launch", "mrp_labs/launch/*.*", "mrp/doc/recorded/*.json")
+FILES = ("mrp/launch/*.launch", "mrp_labs/launch/*.*")
 
 
 class Names(dict):
@@ -56,9 +54,7 @@ class Sources(dict):
 
 
 def read(path):
-    """Return what a recording or a launch file says."""
-    if path.suffix == ".json":
-        return json.loads(path.read_text(), object_hook=Names)
+    """Return what a launch file says."""
     root = ElementTree.parse(path).getroot()
     args = {one.get("name"): _typed(one.get("default", "")) for one in root.iter("arg")}
     found = Names(args, nodes=[])

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Measures all ways in turns, and works out what results.json says of them."""
+"""Measure all ways in turns, and make the tables of the page on speed: lists of rows of texts."""
 
 import collections
-import json
+import csv
 import os
 import pathlib
 import platform
@@ -13,148 +13,109 @@ import time
 
 import numpy
 
-from mrp_bench.programs import Running
-from mrp_bench.ways import LIMIT, PLAN, WAYS, size_text
+from mrp_bench.running import measure
+from mrp_bench.ways import LIMIT, PAIRS, PLAN, WAYS, size_text
 
-# The percentiles that tables show, and their names.
-PERCENTILES = {"p50": 50, "p90": 90, "p99": 99, "max": 100}
-
-# The share of a stream's messages that arrive first and are left out of its latencies: until then
-# the programs have been woken up, and their caches filled.
-_WARM_UP = 0.1
-
-Delivery = collections.namedtuple("Delivery", "latencies lost disordered")
+_CPU = ["CPU: sender", "receiver"]
+LATENCY = ["way", "size", "Hz", "p50, µs", "p99, µs", "max, µs", "x", *_CPU]
+THROUGHPUT = ["way", "size", "per second", "x", *_CPU]
+SUMMARY = ["way", "p50, µs", "p99, µs", "x raw TCP", "messages per second"]
 
 
-def machine():
-    """Return a dictionary of texts: the processor, the system, and ROS's version."""
-    cpuinfo = pathlib.Path("/proc/cpuinfo").read_text()
-    model = re.search(r"^model name\s*: (.*)$", cpuinfo, re.MULTILINE)
-    memory = re.search(r"\d+", pathlib.Path("/proc/meminfo").read_text())
-    release = pathlib.Path("/etc/os-release").read_text()
-    version = subprocess.run(["rosversion", "roscpp"], stdout=subprocess.PIPE, text=True).stdout
-    return {
-        "processor": model.group(1) if model else platform.machine(),
-        "cores": str(len(os.sched_getaffinity(0))),
-        "gigabytes": f"{int(memory.group()) / 1e6:.0f}",
-        "system": re.search(r'^PRETTY_NAME="?([^"\n]*)', release, re.MULTILINE).group(1),
-        "kernel": platform.release().split("-")[0],
-        "python": platform.python_version(),
-        "roscpp": version.strip() or "unknown",
-    }
-
-
-def measure(rounds, log, say, plan=PLAN):
-    """Measure a plan, all ways in turns, round after round; return the rows of results.json.
+def measure_all(rounds, log, say, plan=PLAN):
+    """Measure a plan, all ways in turns, round after round.
 
     This way, whatever else the machine does meanwhile affects all ways alike.
     log: a file for what the programs print; say: called with a line after each measurement
+    Returns (way, size, rate) -> a running.Measurement of each round.
     """
     begin, done, count = time.monotonic(), 0, rounds * len(plan)
     found = collections.defaultdict(list)
     for number in range(rounds):
-        for name in dict.fromkeys(way for way, _ in plan):
-            with Running(WAYS[name], log) as running:
-                for stream in (stream for way, stream in plan if way == name):
-                    found[name, stream.size, stream.rate].append(Round(running.measure(stream)))
-                    done += 1
-                    left = (time.monotonic() - begin) / done * (count - done)
-                    rate = f"at {stream.rate} Hz" if stream.rate else "as fast as it goes"
-                    say(
-                        f"[{done}/{count}] round {number + 1} of {rounds}: {name}, "
-                        f"{size_text(stream.size)} {rate}; {left:.0f} s left"
-                    )
-    order = list(WAYS)
-    keys = sorted(found, key=lambda key: (key[1:], order.index(key[0])))
-    return [_row(*key, found) for key in keys]
+        for name, stream in plan:
+            found[name, stream.size, stream.rate].append(measure(name, stream, log))
+            done += 1
+            left = (time.monotonic() - begin) / done * (count - done)
+            rate = f"at {stream.rate} Hz" if stream.rate else "as fast as it goes"
+            say(
+                f"[{done}/{count}] round {number + 1} of {rounds}: {name}, "
+                f"{size_text(stream.size)} {rate}; {left:.0f} s left"
+            )
+    return found
 
 
-class Round:
-    """What a programs.Measurement says.
-
-    latencies: in us; throughput: messages per second; cpu: seconds per million messages
-    """
-
-    def __init__(self, measurement):
-        sent = measurement.sent
-        deliveries = [delivery(sent, pairs) for pairs in measurement.received]
-        warm_up = int(len(sent) * _WARM_UP)
-        self.latencies = numpy.concatenate([one.latencies[warm_up:] for one in deliveries]) / 1e3
-        self.sent = len(sent) * len(deliveries)
-        self.lost = sum(one.lost for one in deliveries)
-        self.disordered = sum(one.disordered for one in deliveries)
-        seconds = (max(pairs[-1] for pairs in measurement.received) - sent[0]) / 1e9
-        self.throughput = (self.sent - self.lost) / len(deliveries) / seconds
-        self.sender_cpu = measurement.sender_cpu / len(sent) * 1e6
-        cpu = measurement.receiver_cpu
-        self.receiver_cpu = None if cpu is None else cpu / self.sent * 1e6
-
-
-def _row(name, size, rate, found):
-    """Return what results.json says of a way and a stream, beside the limit."""
-
-    def latency(of):
-        return statistics.median(numpy.median(round_.latencies) for round_ in of)
-
-    def throughput(of):
-        return statistics.median(round_.throughput for round_ in of)
-
-    rounds = found[name, size, rate]
-    limit = found[LIMIT, size, rate]
-    cpus = [round_.receiver_cpu for round_ in rounds]
+def tables(found):
+    """Return name -> table, a list of rows with the head first, of what measure_all() returned."""
+    keys = sorted(found, key=lambda key: (key[1:], [*WAYS].index(key[0])))
+    late = {key: numpy.concatenate([round_.latencies for round_ in found[key]]) for key in keys}
+    latency, throughput = [LATENCY], [THROUGHPUT]
+    for way, size, rate in keys:
+        # As fast as it goes, messages wait in queues: how long says nothing of the way itself.
+        if rate:
+            p50, p99, most = numpy.percentile(late[way, size, rate], (50, 99, 100))
+            ratio = p50 / numpy.median(late[LIMIT, size, rate])
+            latency.append(
+                [
+                    *(WAYS[way].text, size_text(size), str(rate)),
+                    *(f"{value:.1f}" for value in (p50, p99, most, ratio)),
+                    *_cpu(found[way, size, rate]),
+                ]
+            )
+        else:
+            per_second = _median(found[way, size, rate], "throughput")
+            ratio = per_second / _median(found[LIMIT, size, rate], "throughput")
+            count = f"{per_second:,.0f}".replace(",", " ")
+            cells = WAYS[way].text, size_text(size), count, f"{ratio:.2f}"
+            throughput.append([*cells, *_cpu(found[way, size, rate])])
     return {
-        "way": name,
-        "size": size,
-        "rate": rate,
-        "rounds": len(rounds),
-        "latency": percentiles(numpy.concatenate([round_.latencies for round_ in rounds])),
-        # As fast as it goes, messages wait in queues: that says nothing of the way itself.
-        "latency_ratio": latency(rounds) / latency(limit) if rate else None,
-        "throughput": throughput(rounds),
-        "throughput_ratio": throughput(rounds) / throughput(limit),
-        "sender_cpu": statistics.median(round_.sender_cpu for round_ in rounds),
-        "receiver_cpu": None if None in cpus else statistics.median(cpus),
-        "sent": sum(round_.sent for round_ in rounds),
-        "lost": sum(round_.lost for round_ in rounds),
-        "disordered": sum(round_.disordered for round_ in rounds),
+        "summary": _summary(latency, throughput),
+        "latency": latency,
+        "throughput": throughput,
     }
 
 
-def delivery(sent, received):
-    """Compare what was sent with what one receiver got.
-
-    sent: the stamps of all messages, in ns, each of them another
-    received: pairs of a stamp and the time of arrival, in the order of arrival
-    Returns the latencies in ns, in the order of arrival; how many messages were lost; and how many
-    arrived after one that was sent later, or for a second time.
-    Raises ValueError if something was received that was not sent.
-    """
-    pairs = numpy.asarray(received, dtype=numpy.int64).reshape(-1, 2)
-    stamps = pairs[:, 0]
-    unknown = numpy.setdiff1d(stamps, sent)
-    if unknown.size:
-        raise ValueError(f"expected stamps that were sent, found {unknown[0]}, which was not")
-    newest_before = numpy.maximum.accumulate(stamps)[:-1]
-    disordered = int((stamps[1:] <= newest_before).sum())
-    lost = len(sent) - numpy.unique(stamps).size
-    return Delivery(pairs[:, 1] - stamps, int(lost), disordered)
+def _median(rounds, name):
+    return statistics.median(getattr(round_, name) for round_ in rounds)
 
 
-def percentiles(values):
-    """Return name -> value of each of PERCENTILES: the smallest one that was measured and is not
-    below that share of all."""
-    values = numpy.sort(values)
-    # Whole numbers, rounded up.
-    ranks = {name: -(-share * values.size // 100) for name, share in PERCENTILES.items()}
-    return {name: float(values[rank - 1]) for name, rank in ranks.items()}
+def _cpu(rounds):
+    if rounds[0].receiver_cpu is None:
+        return [f"{_median(rounds, 'sender_cpu'):.2f}", "the same"]
+    return [f"{_median(rounds, name):.2f}" for name in ("sender_cpu", "receiver_cpu")]
 
 
-def as_text(content):
-    """Return results.json: one record per line, so that a change shows which ones it changed."""
-    parts = []
-    for name, value in content.items():
-        text = json.dumps(value)
-        if isinstance(value, list):
-            text = "[\n" + ",\n".join(map(json.dumps, value)) + "\n]"
-        parts.append(f"{json.dumps(name)}: {text}")
-    return "{\n" + ",\n".join(parts) + "\n}\n"
+def _summary(latency, throughput):
+    """Return the table of the plain nodes beside the limit: messages of 8 bytes."""
+    at_rate = {row[0]: row for row in latency if row[1] == "8 B"}
+    fast = {row[0]: row for row in throughput if row[1] == "8 B"}
+    plain = [text for text in (WAYS[way].text for way in PAIRS) if {text} <= {*at_rate, *fast}]
+    return [SUMMARY, *([way, *at_rate[way][3:5], at_rate[way][6], fast[way][2]] for way in plain)]
+
+
+def machine():
+    """Return a sentence: the processor, the system, and the versions."""
+    cpuinfo = pathlib.Path("/proc/cpuinfo").read_text()
+    model = re.search(r"^model name\s*: (.*)$", cpuinfo, re.MULTILINE)
+    memory = re.search(r"\d+", pathlib.Path("/proc/meminfo").read_text())
+    release = pathlib.Path("/etc/os-release").read_text()
+    system = re.search(r'^PRETTY_NAME="?([^"\n]*)', release, re.MULTILINE)[1]
+    version = subprocess.run(["rosversion", "roscpp"], stdout=subprocess.PIPE, text=True).stdout
+    return (
+        f"Measured on {len(os.sched_getaffinity(0))} cores of "
+        f"{model[1] if model else platform.machine()}, {int(memory[0]) / 1e6:.0f} GB, {system}, "
+        f"Linux {platform.release().split('-')[0]}, roscpp {version.strip() or 'unknown'}, "
+        f"Python {platform.python_version()}."
+    )
+
+
+def write(table, path):
+    """Write a table as CSV."""
+    with path.open("w", newline="") as file:
+        csv.writer(file, lineterminator="\n").writerows(table)
+
+
+def aligned(table):
+    """Return a table for a terminal."""
+    widths = [max(map(len, column)) for column in zip(*table)]
+    lines = ("  ".join(map(str.ljust, row, widths)).rstrip() for row in table)
+    return "\n".join(lines)

@@ -1,29 +1,29 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Starts and stops the four nodes for many robots: what each costs."""
 
-import os
-import pathlib
 import signal
+import statistics
 import subprocess
 import time
 
+import psutil
 import rosgraph
 
-from mrp_bench.figures import delivery, percentiles
-from mrp_bench.programs import ProgramError, Running, cpu, megabytes, tree, with_parent
-from mrp_bench.ways import WAYS, Stream
+from mrp_bench.running import ProgramError
 
 # Seconds in which all nodes must be up, or have ended: on two cores, those of 50 robots take less
 # than a minute.
 _DEADLINE = 300
+_WHILE = 3  # seconds for which the processor time is taken
 
-# Beside the robots, whose own messages have no stamp: a node that sends for two seconds, and one
-# that receives. So long the robots' processor time is taken, too.
-_PAIR, _STREAM = WAYS["cpp_cpp"], Stream(size=8, rate=100, count=200)
+HEAD = [
+    *("robots", "all nodes ready, s", "Ctrl-C to the end, s", "cores in use"),
+    *("MB per C++ node", "MB per Python node"),
+]
 
 
 def measure(count, log, say):
-    """Start that many robots with roslaunch, and stop them with SIGINT; return their figures.
+    """Start that many robots with roslaunch, and stop them with SIGINT; return a row of a table.
 
     log: a file for what the programs print; say: is called with a line
     Raises ProgramError if a node does not come up, or roslaunch does not end.
@@ -34,10 +34,10 @@ def measure(count, log, say):
         f'<arg name="group" value="robot{number}"/></include>'
         for number in range(1, count + 1)
     )
+    begin = time.monotonic()
     with log.open("ab") as file:
-        begin = time.monotonic()
-        roslaunch = subprocess.Popen(
-            with_parent(["roslaunch", "-"], signal.SIGINT),
+        roslaunch = psutil.Popen(
+            ["roslaunch", "-"],
             stdin=subprocess.PIPE,
             stdout=file,
             stderr=file,
@@ -51,36 +51,26 @@ def measure(count, log, say):
                 raise ProgramError(f"expected {4 * count} nodes, found {_nodes()}: see {log}")
             time.sleep(0.05)
         up = time.monotonic() - begin
-        pids = [pid for pid in tree(roslaunch.pid) if pid != roslaunch.pid]
-        memory = {"cpp": [], "py": []}
-        for pid in pids:
-            memory["py" if _is_python(pid) else "cpp"].append(megabytes(pid))
-        with Running(_PAIR, log) as pair:
-            before, moment = cpu(pids), time.monotonic()
-            found = pair.measure(_STREAM)
-            cores = (cpu(pids) - before) / (time.monotonic() - moment)
+        nodes = [node for node in roslaunch.children() if "__name:=rosout" not in node.cmdline()]
+        memory = {True: [], False: []}
+        for node in nodes:
+            memory["python" in node.exe()].append(node.memory_full_info().pss / 2**20)
+        cpu = -_cpu(nodes)
+        time.sleep(_WHILE)
+        cores = (cpu + _cpu(nodes)) / _WHILE
         stop = time.monotonic()
         roslaunch.send_signal(signal.SIGINT)
         roslaunch.wait(_DEADLINE)
-    except subprocess.TimeoutExpired:
+    except psutil.TimeoutExpired:
         raise ProgramError(f"expected roslaunch to end within {_DEADLINE} s of SIGINT") from None
     finally:
         if roslaunch.poll() is None:
-            for pid in reversed(tree(roslaunch.pid)):
-                os.kill(pid, signal.SIGKILL)
+            for process in [*roslaunch.children(recursive=True), roslaunch]:
+                process.kill()
             roslaunch.wait()
-    arrived = delivery(found.sent, found.received[0])
-    latency = percentiles(arrived.latencies / 1e3)
-    return {
-        "robots": count,
-        "up": up,
-        "down": time.monotonic() - stop,
-        "cores": cores,
-        **{language: sum(of) / len(of) for language, of in memory.items()},
-        "p50": latency["p50"],
-        "p99": latency["p99"],
-        "lost": arrived.lost,
-    }
+    down = time.monotonic() - stop
+    means = (statistics.mean(memory[is_python]) for is_python in (False, True))
+    return [str(count), *(f"{value:.2f}" for value in (up, down, cores, *means))]
 
 
 def _nodes():
@@ -94,5 +84,5 @@ def _nodes():
     }
 
 
-def _is_python(pid):
-    return "python" in pathlib.Path(f"/proc/{pid}/exe").resolve().name
+def _cpu(nodes):
+    return sum(sum(node.cpu_times()[:2]) for node in nodes)
