@@ -13,7 +13,7 @@ LOOK = 0.5  # seconds from one look at the master to the next
 ASK = 1.0  # seconds from one question to a node to the next
 TIMEOUT = 1.0  # seconds that a node, or the master, may take to answer
 PATIENCE = 3  # questions in a row that must fail before a node is called dead
-_STATISTICS = 25  # questions a second for counts, of all nodes together
+_MOST = 25  # nodes that are asked in a second
 _WORKERS = 16
 
 
@@ -38,7 +38,7 @@ class Watcher:
         self._on_look = on_look
         self.proxy = rpc.Proxy(master_uri, TIMEOUT)
         self._proxies = {}  # node -> rpc.Proxy
-        self._asked = {}  # node -> when it was asked last, and when for its counts
+        self._asked = {}  # node -> when it was asked last
         self._being_asked = set()
         self._end = threading.Event()
         self._pool = concurrent.futures.ThreadPoolExecutor(_WORKERS)
@@ -120,23 +120,21 @@ class Watcher:
 
     def _ask_nodes(self):
         now = time.monotonic()
-        counts_every = max(ASK, len(self._proxies) / _STATISTICS)
+        every = max(ASK, len(self._proxies) / _MOST)
         for node, proxy in list(self._proxies.items()):
-            asked, counted = self._asked.get(node, (0, 0))
             if (
                 node == self.observation.viewer
                 or node in self._being_asked
-                or now - asked < ASK - LOOK / 2
+                or now - self._asked.get(node, 0) < every - LOOK / 2
             ):
                 continue
-            with_counts = now - counted >= counts_every - LOOK / 2
-            self._asked[node] = (now, now if with_counts else counted)
+            self._asked[node] = now
             self._being_asked.add(node)
-            self._pool.submit(self._ask, node, proxy, with_counts)
+            self._pool.submit(self._ask, node, proxy)
 
-    def _ask(self, node, proxy, with_counts):
+    def _ask(self, node, proxy):
         try:
-            state, why, ends = self._answer(node, proxy, with_counts)
+            state, why, ends = self._answer(node, proxy)
             with self.lock:
                 report = self.observation.reports.get(node)
                 if report is not None and self._proxies.get(node) is proxy:
@@ -146,40 +144,20 @@ class Watcher:
                         return
                     report.state, report.why = state, why
                     if ends is not None:
-                        if with_counts:
-                            report.sent_before = {
-                                (connection.topic, connection.peer): connection.messages or 0
-                                for connection in report.outbound
-                            }
+                        report.sent_before = {
+                            (connection.topic, connection.peer): connection.messages or 0
+                            for connection in report.outbound
+                        }
                         report.outbound, report.inbound = ends
         finally:
             self._being_asked.discard(node)
 
-    def _answer(self, node, proxy, with_counts):
+    def _answer(self, node, proxy):
         """Return (state, why, ends or None)."""
         try:
             info = proxy.call("getBusInfo")
         except rpc.ERRORS as error:
             return self._failed(node, proxy, error)
-        if not with_counts:
-            # Who is connected is always new, the counts are those of before.
-            with self.lock:
-                before = self.observation.reports.get(node, NodeReport())
-                known = {
-                    (connection.topic, connection.peer): connection
-                    for connection in before.outbound + before.inbound
-                }
-            return (
-                ALIVE,
-                "",
-                tuple(
-                    [
-                        known.get((connection.topic, connection.peer), connection)
-                        for connection in side
-                    ]
-                    for side in reports.ends(info, [])
-                ),
-            )
         try:
             stats = proxy.call("getBusStats")
         except rpc.ERRORS:
