@@ -123,20 +123,6 @@ def test_link_whose_refusal_was_heard():
     assert edges == {("/pub", "/t"): "mismatch", ("/t", "/sub"): "mismatch"}
 
 
-def test_type_of_a_subscriber_is_that_of_the_publisher_it_hears():
-    observation = observed(
-        sender_types={("/t", "/pub"): "std_msgs/Int32", ("/t", "/two"): "std_msgs/Bool"}
-    )
-    observation.publishers["/t"].append("/two")
-    observation.reports["/two"] = NodeReport("http://two:1/", ALIVE)
-    assert graph.link(observation, "/t", "/two", "/sub") == (
-        "mismatch",
-        "/two publishes std_msgs/Bool, and /sub expects std_msgs/Int32",
-    )
-    (topic,) = graph.build(observation)["topics"]
-    assert topic["types"] == ["std_msgs/Bool", "std_msgs/Int32"]
-
-
 OPTIONS = feed.options_of({}, "/mrp_view")
 
 
@@ -161,14 +147,6 @@ def test_log_and_viewer_are_hidden_unless_they_are_asked_for():
 )
 def test_options_of_anything(said):
     assert feed.options_of(said, "/mrp_view") == OPTIONS
-
-
-def test_changes_are_sent_once():
-    changes = feed.Changes("name")
-    one, other = {"name": "a", "n": 1}, {"name": "b", "n": 1}
-    assert changes.update([one, other]) == ([one, other], [])
-    assert changes.update([one, other]) == ([], [])
-    assert changes.update([{"name": "a", "n": 2}]) == ([{"name": "a", "n": 2}], [["b"]])
 
 
 def test_log_lines_after_a_number():

@@ -6,8 +6,7 @@ What is known, and what is only inferred, is kept apart:
 - who publishes and subscribes what: the master knows;
 - who is connected to whom: the nodes know (getBusInfo), and say so while they live;
 - a publisher's type: the viewer knows, as it is itself connected to the publisher;
-- a subscriber's type: nobody says. It is that of a publisher to which it is connected, or the one
-  that stands in the line with which a publisher refuses it.
+- a subscriber's type: nobody says, but for the line with which a publisher refuses it.
 """
 
 import collections
@@ -136,18 +135,6 @@ class Observation:
         }
 
 
-def subscriber_type(observation, topic, subscriber):
-    """Return the type that a subscriber expects, as far as it can be known; or None."""
-    for publisher in observation.publishers.get(topic, []):
-        type_name = observation.sender_types.get((topic, publisher))
-        if type_name and observation.connected(topic, publisher, subscriber):
-            return type_name
-    for refused in observation.refusals.values():
-        if (refused.topic, refused.subscriber) == (topic, subscriber):
-            return refused.wanted
-    return None
-
-
 def link(observation, topic, publisher, subscriber):
     """Return (state, why) of what should be a connection.
 
@@ -167,12 +154,9 @@ def link(observation, topic, publisher, subscriber):
             f"{publisher} refuses {subscriber}: it publishes {refused.has}, "
             f"and {subscriber} expects {refused.wanted}"
         )
-    wanted = subscriber_type(observation, topic, subscriber)
-    has = observation.sender_types.get((topic, publisher))
-    if wanted and has and wanted != has:
-        return "mismatch", f"{publisher} publishes {has}, and {subscriber} expects {wanted}"
     if observation.age.get((topic, publisher, subscriber), 0) < PATIENCE:
         return "waiting", "not connected yet"
+    has = observation.sender_types.get((topic, publisher))
     of_type = f" ({has})" if has else ""
     return "none", (
         f"{subscriber} isn't connected to {publisher}{of_type}, though both answer. Perhaps the "

@@ -21,51 +21,40 @@ End = collections.namedtuple("End", "topic peer messages dropped")
 def ends(bus_info, bus_stats):
     """Return (those of publishers, those of subscribers) of a node's connections: lists of End.
 
-    What does not have the form that it should have is left out: any node may answer anything.
+    Any node may answer anything: what has another form is left out.
     """
-    stats = _stats(bus_stats)
-    outbound, inbound = [], []
-    for connection in _lists(bus_info, 5):
-        number, peer, direction, _, topic = connection[:5]
-        if not isinstance(peer, str) or not isinstance(topic, str):
-            continue
-        if direction == "o":
-            outbound.append(End(topic, peer, *stats.get(("o", topic, _key(number)), (None, None))))
-        elif direction == "i":
-            inbound.append(End(topic, peer, *stats.get(("i", topic, _key(number)), (None, None))))
-    return outbound, inbound
+    sides = {"o": [], "i": []}
+    try:
+        stats = _stats(bus_stats)
+    except (TypeError, ValueError, IndexError):
+        stats = {}
+    try:
+        for number, peer, direction, _, topic, *_ in bus_info:
+            counts = stats.get((direction, topic, str(number)), (None, None))
+            if direction in sides:
+                sides[direction].append(End(topic, peer, *counts))
+    except (TypeError, ValueError):
+        pass
+    return sides["o"], sides["i"]
 
 
 def _stats(bus_stats):
     """Return (direction, topic, connection) -> (messages, dropped)."""
     found = {}
-    parts = bus_stats if isinstance(bus_stats, list) else []
-    for direction, part in zip("oi", parts):
-        for topic in _lists(part, 2):
-            # rospy's publishers have the bytes of all connections before the connections.
-            for connection in _lists(topic[-1], 4):
-                key = (direction, str(topic[0]), _key(connection[0]))
+    for direction, topics in zip("oi", bus_stats):
+        # rospy's publishers have the bytes of all connections before the connections.
+        for topic, *_, connections in topics:
+            for connection in connections:
+                dropped = None
                 if direction == "i":
-                    dropped = connection[3] if _is_count(connection[3]) else None
-                    messages = connection[2]
+                    messages, dropped = connection[2:4]
                 else:
                     # roscpp: id, bytes, bytes of messages, messages, 0; rospy: id, bytes, messages,
                     # whether it is connected
-                    dropped = None
-                    messages = connection[3] if len(connection) == 5 else connection[2]
-                found[key] = (messages if _is_count(messages) else None, dropped)
+                    messages = connection[3 if len(connection) == 5 else 2]
+                found[direction, topic, str(connection[0])] = _count(messages), _count(dropped)
     return found
 
 
-def _lists(value, length):
-    """Return the lists of at least that length in a list."""
-    value = value if isinstance(value, list) else []
-    return [item for item in value if isinstance(item, list) and len(item) >= length]
-
-
-def _key(number):
-    return str(number)
-
-
-def _is_count(value):
-    return isinstance(value, int) and not isinstance(value, bool) and value >= 0
+def _count(value):
+    return value if isinstance(value, int) and value >= 0 else None
