@@ -66,4 +66,4 @@ def test_it_finds_nothing_where_there_is_nothing(browser, address):
 
 def test_the_server_listens_on_loopback_alone(addresses):
     port = int(addresses["served"].rsplit(":")[-1].strip("/"))
-    assert listening(port) == {"0100007F"}
+    assert listening(port) == {"127.0.0.1"}

@@ -103,7 +103,7 @@ class TestView(unittest.TestCase):
             self.assertEqual(answer(at, "/socket", Host=at, **UPGRADE)[0], 403)
             self.assertEqual(answer(at, "/socket", Host=at, Origin="null", **UPGRADE)[0], 403)
             self.assertNotEqual(answer(at, "/../package.xml", Host=at)[0], 200)
-            self.assertEqual(listening(int(port)), {"0100007F"})
+            self.assertEqual(listening(int(port)), {"127.0.0.1"})
 
 
 def answer(host, path, **headers):

@@ -1,13 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """TCP ports of this machine: one that is free, who listens at one, and at which a process does."""
 
-import contextlib
-import os
-import pathlib
 import socket
 
-_LISTENS = "0A"  # the state in the kernel's table: see proc(5)
-
+import psutil
 
 _kept = []
 
@@ -27,24 +23,16 @@ def free_port():
 
 
 def listening(port):
-    """Return the addresses at which anything listens at a port, in the kernel's notation."""
-    return {address for address, number, _ in _listeners() if number == port}
+    """Return the addresses at which anything listens at a port."""
+    return {address.ip for address, _ in _listeners() if address.port == port}
 
 
 def ports_of(pid):
     """Return the ports at which a process listens, sorted."""
-    files = []
-    for descriptor in pathlib.Path(f"/proc/{pid}/fd").iterdir():
-        with contextlib.suppress(FileNotFoundError):  # the process has closed it just now
-            files.append(os.readlink(descriptor))
-    return sorted({number for _, number, inode in _listeners() if f"socket:[{inode}]" in files})
+    return sorted({address.port for address, owner in _listeners() if owner == pid})
 
 
 def _listeners():
-    """Yield (address, port, inode) of each socket that listens."""
-    for table in ("/proc/net/tcp", "/proc/net/tcp6"):
-        for line in pathlib.Path(table).read_text().splitlines()[1:]:
-            fields = line.split()
-            address, number = fields[1].split(":")
-            if fields[3] == _LISTENS:
-                yield address, int(number, 16), fields[9]
+    """Return (address, process id) of each TCP socket that listens."""
+    sockets = psutil.net_connections("tcp")
+    return [(entry.laddr, entry.pid) for entry in sockets if entry.status == psutil.CONN_LISTEN]
