@@ -308,13 +308,6 @@ def test_there_is_no_master_yet(browser):
     browser.open("about:blank")
 
 
-def test_browser_is_offline_for_a_while(each_page):
-    each_page.run("dispatchEvent(new Event('offline'))")
-    wait_for_text(each_page, "#status", "connection to the viewer is lost")
-    each_page.run("dispatchEvent(new Event('online'))")
-    wait_for_text(each_page, "#status", "Master http")
-
-
 def test_what_is_seen_leads_to_the_tutorial(page, viewer):
     publisher = rospy.Publisher("latched", UInt32, queue_size=1, latch=True)
     publisher.publish(1)

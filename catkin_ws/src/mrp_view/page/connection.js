@@ -14,8 +14,6 @@ export class Connection {
     this.wait = FIRST_WAIT;
     this.paused = false;
     this.open();
-    addEventListener("online", () => this.again(0));
-    addEventListener("offline", () => this.socket.close());
     setInterval(() => this.check(), 1000);
   }
 
@@ -34,30 +32,29 @@ export class Connection {
       this.onMessage(JSON.parse(event.data));
     };
     socket.onclose = () => {
-      if (this.socket !== socket) return;
+      if (this.socket !== socket || this.paused) return;
       this.onState("lost");
-      this.again(this.wait);
+      setTimeout(() => {
+        if (this.socket === socket && !this.paused) this.open();
+      }, this.wait);
       this.wait = Math.min(this.wait * 2, LONGEST_WAIT);
     };
   }
 
-  again(milliseconds) {
-    clearTimeout(this.timer);
-    this.timer = setTimeout(() => {
-      if (this.socket.readyState === WebSocket.CLOSED) this.open();
-    }, milliseconds);
-  }
-
   check() {
     const silent = performance.now() - this.heard > SILENCE;
-    if (this.socket.readyState === WebSocket.OPEN && silent && !this.paused) this.socket.close();
+    if (this.socket.readyState === WebSocket.OPEN && silent) this.socket.close();
   }
 
   tell() {
     if (this.socket.readyState !== WebSocket.OPEN) return;
-    const options = this.options();
-    this.paused = options.paused;
-    this.heard = performance.now();
-    this.socket.send(JSON.stringify(options));
+    this.socket.send(JSON.stringify(this.options()));
+  }
+
+  // While it is paused, there is no connection.
+  pause(paused) {
+    this.paused = paused;
+    if (paused) this.socket.close();
+    else this.open();
   }
 }

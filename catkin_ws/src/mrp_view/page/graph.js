@@ -17,7 +17,6 @@ export class Graph {
     this.pulses = [];
     this.items = [];
     this.edges = new Map();
-    this.badges = new Map();
     this.size = null;
     addEventListener("resize", () => this.fit());
   }
@@ -26,7 +25,6 @@ export class Graph {
   draw({ graph, layout }) {
     this.pulses = [];
     this.edges.clear();
-    this.badges.clear();
     const instead = layout.error ? html("p", { class: "fault" }, layout.error)
       : !graph.nodes.length && html("p", {}, "No nodes to show.");
     if (instead) {

@@ -6,7 +6,7 @@ import { byId, html, setText } from "./dom.js";
 import { count, Graph } from "./graph.js";
 import { LogView } from "./log.js";
 import { History, showPlot } from "./plot.js";
-import { keyOfLink, keyOfSender, showLinks, showSenders } from "./tables.js";
+import { keyOfSender, showLinks, showSenders } from "./tables.js";
 
 const NARROW = matchMedia("(max-width: 700px)");
 const LOG_TOPICS = ["/rosout", "/rosout_agg"];
@@ -14,14 +14,13 @@ const LOG_TOPICS = ["/rosout", "/rosout_agg"];
 const graph = new Graph();
 const log = new LogView();
 const history = new History();
-const senders = new Map();
-const links = new Map();
 const shown = new Map(); // key of a sender -> [[now, count, samples], ...] of the last two seconds
 const hidden = new Set(); // topics
+let senders = [];
+let links = [];
 let findings = [];
 let latest = null; // the last graph
 let now = 0;
-let viewerId = null;
 let state = "connecting";
 let paused = false;
 
@@ -30,9 +29,18 @@ const options = () => ({
   viewer: byId("show-viewer").checked,
   hidden: [...hidden],
   rankdir: NARROW.matches ? "TB" : "LR",
-  paused,
 });
-const connection = new Connection(take, (value) => { state = value; showStatus(); }, options);
+const connection = new Connection(take, onState, options);
+
+function onState(value) {
+  state = value;
+  if (state === "live") {
+    // The viewer sends its last lines again.
+    log.clear();
+    shown.clear();
+  }
+  showStatus();
+}
 
 function isShown(topic) {
   return !hidden.has(topic) && (byId("show-log").checked || !LOG_TOPICS.includes(topic));
@@ -49,35 +57,22 @@ function take(message) {
     showCounts();
     return;
   }
-  if (message.all) begin(message);
   now = message.now;
-  for (const row of message.rows) receive(row);
-  for (const [topic, from] of message.gone ?? []) senders.delete(keyOfSender({ topic, from }));
-  for (const link of message.links) links.set(keyOfLink(link), link);
-  for (const [topic, from, to] of message.links_gone ?? []) links.delete(keyOfLink({ topic, from, to }));
-  if (message.findings) {
+  senders = message.rows;
+  links = message.links;
+  for (const row of senders) receive(row);
+  // Only if they differ: otherwise a link would be replaced while it is pressed.
+  if (JSON.stringify(findings) !== JSON.stringify(message.findings)) {
     findings = message.findings;
     showFindings();
   }
-  if (message.log.length || message.all) log.add(message.log, message.log_count);
+  if (message.log.length) log.add(message.log, message.log_count);
   history.forget(now);
   showTables();
-  if (message.links.length || message.links_gone?.length || message.all) showCounts();
-}
-
-// Everything comes anew: after a pause, a lost connection, or a restart of the viewer.
-function begin(message) {
-  senders.clear();
-  links.clear();
-  shown.clear();
-  log.clear();
-  if (viewerId !== message.id) history.clear();
-  viewerId = message.id;
 }
 
 function receive(row) {
   const key = keyOfSender(row);
-  senders.set(key, row);
   history.add(key, row.samples, now);
   const before = shown.get(key) ?? [[now, row.count, 0]];
   const last = before[before.length - 1];
@@ -111,12 +106,13 @@ function showTables() {
   setTimeout(() => {
     tablesDue = false;
     showSenders(visibleSenders(), shares());
+    showCounts();
     showPlot(history, visibleSenders(), now);
   }, 250);
 }
 
-const visibleSenders = () => [...senders.values()].filter((sender) => isShown(sender.topic));
-const visibleLinks = () => [...links.values()].filter(
+const visibleSenders = () => senders.filter((sender) => isShown(sender.topic));
+const visibleLinks = () => links.filter(
   (link) => isShown(link.topic) && (byId("show-viewer").checked || link.to !== latest?.viewer),
 );
 
@@ -156,14 +152,13 @@ function showTopics(topics) {
 function choose() {
   connection.tell();
   showTables();
-  showCounts();
 }
 
 function showStatus() {
   const words = [];
   const master = latest?.master;
-  if (state !== "live") words.push("The connection to the viewer is lost. This page is trying to reconnect; until then, it shows what it saw last.");
-  else if (paused) words.push("Paused here. The nodes keep running.");
+  if (paused) words.push("Paused here. The nodes keep running.");
+  else if (state !== "live") words.push("The connection to the viewer is lost. This page is trying to reconnect; until then, it shows what it saw last.");
   if (state === "live" && master) {
     if (master.state === "here") words.push(`Master ${master.uri}: ${count(latest.graph.nodes.length, "node")}, ${count(latest.graph.topics.length, "topic")}.`);
     else if (master.state === "gone") words.push(`The master ${master.uri} doesn't answer. Below are the nodes that answered last; connected nodes don't need a master.`);
@@ -178,7 +173,7 @@ byId("pause").addEventListener("click", () => {
   paused = !paused;
   byId("pause").setAttribute("aria-pressed", String(paused));
   setText(byId("pause"), paused ? "Resume" : "Pause");
-  connection.tell();
+  connection.pause(paused);
   showStatus();
 });
 for (const id of ["show-log", "show-viewer"]) byId(id).addEventListener("change", choose);

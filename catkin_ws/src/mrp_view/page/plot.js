@@ -13,10 +13,6 @@ export class History {
     this.samples = new Map();
   }
 
-  clear() {
-    this.samples.clear();
-  }
-
   add(key, samples, now) {
     const kept = this.samples.get(key) ?? [];
     this.samples.set(key, kept);

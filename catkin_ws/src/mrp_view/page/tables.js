@@ -13,10 +13,6 @@ class Table {
     this.body.append(this.empty);
   }
 
-  clear() {
-    for (const key of [...this.rows.keys()]) this.remove(key);
-  }
-
   remove(key) {
     this.rows.get(key)?.remove();
     this.rows.delete(key);
@@ -44,7 +40,7 @@ const senders = new Table("senders", "No messages yet.");
 const links = new Table("links", "No connections yet.");
 
 export const keyOfSender = (sender) => `${sender.topic}\n${sender.from}`;
-export const keyOfLink = (link) => `${link.topic}\n${link.from}\n${link.to}`;
+const keyOfLink = (link) => `${link.topic}\n${link.from}\n${link.to}`;
 const known = (value) => (value === null || value === undefined ? "not reported" : String(value));
 
 export function latency(seconds) {

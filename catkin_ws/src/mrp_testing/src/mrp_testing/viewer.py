@@ -1,14 +1,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The viewer under test, a browser's side of its WebSocket, and the nodes to look at."""
 
-import asyncio
 import collections
 import json
 import re
 import threading
 
-from tornado.httpclient import HTTPRequest
-from tornado.websocket import websocket_connect
+import websocket
 
 from mrp_testing import contract
 from mrp_testing.nodes import program
@@ -52,7 +50,7 @@ class Client:
     links: (topic, publisher, subscriber) -> link; findings, lines: as the viewer sends them
     told: (kind, text) of all findings so far
     samples: topic -> how many of its messages were looked into
-    closed: why the viewer has closed the connection, or None
+    closed: whether the viewer has closed the connection
 
     Use it in a `with`.
     """
@@ -66,72 +64,53 @@ class Client:
         self.lines = []
         self.ticks = 0
         self.samples = collections.Counter()
-        self.closed = None
-        self._url = address.replace("http:", "ws:") + "socket"
-        self._origin = address.rstrip("/")
-        self._options = options
-        self._loop = asyncio.new_event_loop()
-        self._thread = threading.Thread(target=self._run)
+        self.closed = False
+        self._socket = websocket.create_connection(
+            address.replace("http:", "ws:") + "socket",
+            origin=address.rstrip("/"),
+            timeout=DEADLINE,
+            http_no_proxy=["*"],
+        )
+        if options:
+            self.tell(options)
+        self._ends = False
+        self._thread = threading.Thread(target=self._read)
 
     def __enter__(self):
         self._thread.start()
         return self
 
     def __exit__(self, *exception):
-        try:
-            self._loop.call_soon_threadsafe(self._end.set)
-        except RuntimeError:  # the viewer has ended the connection
-            pass
-        self._thread.join(DEADLINE)
+        self._ends = True
+        self._thread.join()
+        self._socket.close()
 
     def tell(self, message):
         """Send a message, a dict or a text."""
-        text = message if isinstance(message, str) else json.dumps(message)
+        self._socket.send(message if isinstance(message, str) else json.dumps(message))
 
-        async def send():
-            await self._connection.write_message(text)
-
-        asyncio.run_coroutine_threadsafe(send(), self._loop).result(DEADLINE)
-
-    def _run(self):
-        asyncio.set_event_loop(self._loop)
-        self._loop.run_until_complete(self._talk())
-        self._loop.close()
-
-    async def _talk(self):
-        self._end = asyncio.Event()
-        request = HTTPRequest(self._url, headers={"Origin": self._origin})
-        self._connection = await websocket_connect(request)
-        if self._options:
-            await self._connection.write_message(json.dumps(self._options))
-        ends = asyncio.ensure_future(self._end.wait())
-        while True:
-            message = asyncio.ensure_future(self._connection.read_message())
-            await asyncio.wait({message, ends}, return_when=asyncio.FIRST_COMPLETED)
-            if ends.done() or message.result() is None:
-                break
-            self._take(json.loads(message.result()))
-        self.closed = (self._connection.close_code, self._connection.close_reason)
-        self._connection.close()
+    def _read(self):
+        # A message comes ten times a second.
+        while not self._ends:
+            try:
+                text = self._socket.recv()
+            except (OSError, websocket.WebSocketException):
+                text = ""
+            if not text:
+                self.closed = True
+                return
+            self._take(json.loads(text))
 
     def _take(self, message):
         if message["t"] == "graph":
             self.graph = message
             return
-        if message.get("all"):
-            self.rows, self.links, self.lines = {}, {}, []
+        self.rows = {(row["topic"], row["from"]): row for row in message["rows"]}
+        self.links = {(link["topic"], link["from"], link["to"]): link for link in message["links"]}
         for row in message["rows"]:
-            self.rows[row["topic"], row["from"]] = row
             self.samples[row["topic"]] += len(row["samples"])
-        for link in message["links"]:
-            self.links[link["topic"], link["from"], link["to"]] = link
-        for key in message.get("gone", []):
-            self.rows.pop(tuple(key), None)
-        for key in message.get("links_gone", []):
-            self.links.pop(tuple(key), None)
-        if message["findings"] is not None:
-            self.findings = message["findings"]
-            self.told |= {(finding["kind"], finding["text"]) for finding in self.findings}
+        self.findings = message["findings"]
+        self.told |= {(finding["kind"], finding["text"]) for finding in self.findings}
         self.lines = (self.lines + message["log"])[-1000:]
         self.ticks += 1
 

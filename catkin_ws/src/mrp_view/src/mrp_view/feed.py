@@ -1,13 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What each browser gets: everything when it comes, and then what has changed.
-
-Counts are sent as they stand, never as a difference: a browser that misses a part of it still shows
-the right ones. So nothing is kept for a slow one: what it cannot take now, it never gets.
-"""
+"""What each browser gets: the graph as it has chosen to see it, and the newest log lines."""
 
 import json
 
-LOG_AT_ONCE = 50  # lines in one message
+LOG_AT_ONCE = 200  # lines in one message
 
 
 def encode(message):
@@ -52,22 +48,6 @@ def visible(graph, options):
     }
 
 
-class Changes:
-    """Keeps of a list of dicts what is to be sent: those that differ from the last time."""
-
-    def __init__(self, *keys):
-        self._keys = keys
-        self._last = {}
-
-    def update(self, rows):
-        """Return (changed rows, keys of those that are no more)."""
-        new = {tuple(row[key] for key in self._keys): row for row in rows}
-        changed = [row for key, row in new.items() if self._last.get(key) != row]
-        gone = [list(key) for key in self._last if key not in new]
-        self._last = new
-        return changed, gone
-
-
 def log_since(lines, number, most=LOG_AT_ONCE):
     """Return the last lines after that number. lines: (number, line), the numbers counting on"""
     return [line for n, line in lines if n > number][-most:]
@@ -82,5 +62,4 @@ def options_of(message, viewer):
         "viewer": "" if message.get("viewer") is True else viewer,
         "hidden": frozenset(name for name in hidden[:1000] if isinstance(name, str)),
         "rankdir": "TB" if message.get("rankdir") == "TB" else "LR",
-        "paused": message.get("paused") is True,
     }

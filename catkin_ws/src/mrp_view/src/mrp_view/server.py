@@ -5,8 +5,6 @@ import asyncio
 import collections
 import json
 import os
-import pathlib
-import secrets
 import subprocess
 import time
 
@@ -22,8 +20,6 @@ from mrp_view.drawing import Structure
 from mrp_view.findings import findings
 
 TICK = 0.1  # seconds between two messages to a browser, at the least
-MOST_BROWSERS = 50
-_PATIENCE = 30  # seconds for which a browser may take nothing
 _LAYOUTS = 32  # that are kept
 
 
@@ -61,9 +57,7 @@ class Tutorial(_Guarded, tornado.web.StaticFileHandler):
         self.finish("The tutorial's pages aren't built here. To build them: make docs\n")
 
     def set_extra_headers(self, path):
-        if path.endswith(".html"):
-            html = pathlib.Path(self.absolute_path).read_text(encoding="utf-8")
-            self.set_header("Content-Security-Policy", access.policy_of(html))
+        self.set_header("Content-Security-Policy", access.TUTORIAL_POLICY)
 
 
 class Socket(_Guarded, tornado.websocket.WebSocketHandler):
@@ -71,9 +65,9 @@ class Socket(_Guarded, tornado.websocket.WebSocketHandler):
 
     def initialize(self):
         self.options = None
-        self.late = True  # whether it must get everything
-        self.busy_since = None
+        self.is_busy = False
         self.graph_sent = None
+        self.log_sent = 0
 
     def check_origin(self, origin):
         return access.allowed_origin(
@@ -88,9 +82,6 @@ class Socket(_Guarded, tornado.websocket.WebSocketHandler):
 
     def open(self):
         view = self.application.settings["view"]
-        if len(view.sockets) >= MOST_BROWSERS:
-            self.close(4000, f"{MOST_BROWSERS} browsers are open already")
-            return
         self.options = feed.options_of({}, view.viewer)
         view.sockets.add(self)
 
@@ -103,18 +94,15 @@ class Socket(_Guarded, tornado.websocket.WebSocketHandler):
             self.close(4001, "expected a JSON object")
             return
         view = self.application.settings["view"]
-        before = self.options
         self.options = feed.options_of(said, view.viewer)
         self.graph_sent = None
-        if before["paused"] and not self.options["paused"]:
-            self.late = True
 
     def on_close(self):
         self.application.settings["view"].sockets.discard(self)
 
     def send(self, texts):
         """Begin to send these messages. The one before must have gone."""
-        self.busy_since = time.monotonic()
+        self.is_busy = True
         asyncio.ensure_future(self._write(texts))
 
     async def _write(self, texts):
@@ -124,7 +112,7 @@ class Socket(_Guarded, tornado.websocket.WebSocketHandler):
         except (tornado.websocket.WebSocketClosedError, tornado.iostream.StreamClosedError):
             pass
         finally:
-            self.busy_since = None
+            self.is_busy = False
 
 
 class View:
@@ -141,17 +129,11 @@ class View:
         self.names = names
         self.sockets = set()
         self._listener = listener
-        self._id = secrets.token_hex(8)
         self._tutorial = tutorial
         self._graph = {"nodes": [], "topics": [], "edges": [], "links": []}
         self._master = {"state": "never", "uri": "", "why": ""}
         self._counts = []
-        self._found = []
         self._version = 0
-        self._rows = []
-        self._row_changes = feed.Changes("topic", "from")
-        self._count_changes = feed.Changes("topic", "from", "to")
-        self._log_sent = 0
         self._layouts = collections.OrderedDict()  # Structure's key -> layout, or an error's text
         self._being_laid_out = set()
         self._dot = asyncio.Lock()
@@ -235,52 +217,22 @@ class View:
             self._layouts.popitem(last=False)
 
     def _tick(self):
+        """Send each browser everything as it is now. What a slow one can't take, it never gets."""
         now = time.time()
-        self._rows = self._listener.look(now)
-        rows, gone = self._row_changes.update(self._rows)
-        links, links_gone = self._count_changes.update(self._counts)
+        rows = self._listener.look(now)
         lines = list(self._listener.lines)
-        log = feed.log_since(lines, self._log_sent)
-        self._log_sent = lines[-1][0] if lines else 0
-        found = findings(self._graph, self._counts, self._rows, self.viewer)
-        changes = {
+        state = {
+            "t": "tick",
+            "now": now,
             "rows": rows,
-            "gone": gone,
-            "links": links,
-            "links_gone": links_gone,
-            "findings": None if found == self._found else found,
-            "log": log,
+            "links": self._counts,
+            "findings": findings(self._graph, self._counts, rows, self.viewer),
+            "log_count": lines[-1][0] if lines else 0,
         }
-        self._found = found
-        changed = everything = None
         for socket in list(self.sockets):
-            if socket.options["paused"]:
-                continue
-            if socket.busy_since is not None:
-                # It gets everything when it is free again; nothing is kept for it.
-                socket.late = True
-                if time.monotonic() - socket.busy_since > _PATIENCE:
-                    socket.close(4002, "took nothing for too long")
+            if socket.is_busy:
                 continue
             graph = self._graph_text(socket)
-            if socket.late:
-                everything = everything or self._text(now, self._everything(lines))
-                text = everything
-            else:
-                changed = changed or self._text(now, changes)
-                text = changed
-            socket.late = False
+            text = feed.encode({**state, "log": feed.log_since(lines, socket.log_sent)})
+            socket.log_sent = state["log_count"]
             socket.send([graph, text] if graph else [text])
-
-    def _text(self, now, content):
-        head = {"t": "tick", "id": self._id, "now": now, "log_count": self._log_sent}
-        return feed.encode({**head, **content})
-
-    def _everything(self, lines):
-        return {
-            "all": True,
-            "rows": self._rows,
-            "links": self._counts,
-            "findings": self._found,
-            "log": feed.log_since(lines, 0, 200),
-        }
