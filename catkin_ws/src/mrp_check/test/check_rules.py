@@ -22,7 +22,6 @@ from mrp_check.rules.code import (
     node_start,
     not_called,
     python_names,
-    responses,
     rospy_calls,
     spin,
     typed,
@@ -152,7 +151,7 @@ def python_findings(folder, source, **others):
         return [problem]
     known = facts.Facts(python={read.file: read}, relevant=[read.file])
     one = types.SimpleNamespace(package=package, facts=known, coded=[])
-    rules = python_names, rospy_calls, not_called, responses, callbacks, typed
+    rules = python_names, rospy_calls, not_called, callbacks, typed
     return [finding for file in rules for finding in of(file.RULE, one)]
 
 

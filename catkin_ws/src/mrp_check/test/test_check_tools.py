@@ -53,6 +53,11 @@ class Node:
         rospy.loginfo("%d", 3)
         while not rospy.is_shutdown():
             self.publisher.publish(message)
+
+
+def half(number):
+    if number:
+        return number / 2
 """
 
 
@@ -65,7 +70,8 @@ def python_case(folder, **known):
 def test_pylint_knows_rospy(tmp_path):
     found = [*pylint.RULE.ask(python_case(tmp_path))]
     assert {(one.line, one.certainty) for one in found} == {
-        *((15, "read"), (16, "read"), (18, "read"), (18, "habit"), (19, "read"), (20, "habit"))
+        *((15, "read"), (16, "read"), (18, "read"), (18, "habit"), (19, "read"), (20, "habit")),
+        (26, "hint"),
     }
     assert not [one for one in found if not one.expected.startswith("nothing that pylint calls ")]
 
@@ -73,7 +79,7 @@ def test_pylint_knows_rospy(tmp_path):
 def test_what_another_rule_has_said_pylint_does_not_repeat(tmp_path):
     one = python_case(tmp_path)
     one.facts.python["src/odd.py"].told.update({15: None, 16: None, 18: None})
-    assert [finding.line for finding in pylint.RULE.ask(one)] == [19, 20]
+    assert [finding.line for finding in pylint.RULE.ask(one)] == [19, 20, 26]
 
 
 CMAKE = "project(some_pkg)\nfind_package(catkin REQUIRED COMPONENTS roscpp)\ncatkin_package()\n"

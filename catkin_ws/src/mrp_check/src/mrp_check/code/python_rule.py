@@ -7,12 +7,9 @@ import ast
 from typing import Any, Callable, Iterator, Protocol
 
 from mrp_check.code.facts import Facts
-from mrp_check.code.python_modules import is_ros, resolve
 from mrp_check.code.python_source import Source
 from mrp_check.contract.finding import HABIT, HINT, Finding
 from mrp_check.package.package import Package
-
-MessageClass = Any  # genpy makes them, without types
 
 
 class HasFacts(Protocol):
@@ -61,14 +58,6 @@ class PythonRule:
         path = name.replace(".", "/")
         paths = [f"/{one}" for one in self.package.of_kind("python")]
         return any(one.endswith((f"/{path}.py", f"/{path}/__init__.py")) for one in paths)
-
-    def message_class(self, node: ast.AST | None) -> MessageClass | None:
-        """Return the class of a message that an expression names, or None."""
-        name = self.source.dotted(node) if isinstance(node, (ast.Name, ast.Attribute)) else None
-        if not name or ".msg." not in name or not is_ros(name) or self.is_own(name):
-            return None
-        found, missing = resolve(name)
-        return found if missing is None and hasattr(found, "__slots__") else None
 
     def written(self, node: ast.expr) -> str:
         """Return an expression as it is written."""

@@ -48,7 +48,6 @@ class Kind(enum.Enum):
     STARTS = "starts"  # a process
     KILLS = "kills"  # a process
     # What may go wrong:
-    GOAL_LOOP = "goal loop"  # of an action's server, which does not ask whether it is cancelled
     IGNORED = "ignored"  # what a call returns that can fail
     KEYBOARD = "keyboard"  # somebody has to type
     ARGUMENTS = "arguments"  # of the command line are read
@@ -78,8 +77,8 @@ class Place:
     offset: where it stands in its file, in characters
     type, bits: of a counter; type: of a service or an action, its last part
     names: of the variables that a message's field is set from
-    limit, value: a counter that has come to the limit is given the value; whether a loop ends
-        on Ctrl-C; the exit code that is returned
+    limit, value: a counter that has come to the limit is given the value; the exit code that is
+        returned
     latch: whether a publisher latches, or may
     name, function: of a handle's variable, and the function that it stands in
     holds: the types of the handles in it

@@ -11,14 +11,12 @@ from __future__ import annotations
 from mrp_check.contract.requirements import ANY
 from mrp_check.rules.code import (
     callbacks,
-    goals,
     homes,
     ignored,
     lifetime,
     node_start,
     not_called,
     python_names,
-    responses,
     rospy_calls,
     same_name,
     spin,
@@ -84,7 +82,6 @@ _FILES = (
     python_names,
     rospy_calls,
     not_called,
-    responses,
     swapped_sources,
     node_start,
     typed,
@@ -95,7 +92,6 @@ _FILES = (
     counter,
     homes,
     same_name,
-    goals,
     ignored,
     # build
     pylint,

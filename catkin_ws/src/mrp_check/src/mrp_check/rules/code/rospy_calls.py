@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Callbacks that rospy cannot call, and fields that a message does not have.
+"""Callbacks that rospy cannot call, or that return nothing where rospy needs a response.
 
 Of other wrong calls, Python says the same when it gets there.
 """
@@ -10,33 +10,31 @@ import ast
 from typing import Iterator
 
 from mrp_check.code.python_facts import argument
-from mrp_check.code.python_rule import MessageClass, PythonRule, ast_text, of_sources
-from mrp_check.code.python_source import Function, Variable
-from mrp_check.contract.finding import CERTAIN, Finding
-from mrp_check.contract.names import nearest, perhaps
+from mrp_check.code.python_rule import PythonRule, ast_text, of_sources
+from mrp_check.code.python_source import Function
+from mrp_check.contract.finding import CERTAIN, READ, Finding
 from mrp_check.contract.requirements import Rule
 
 
 class Calls(PythonRule):
     def findings(self) -> Iterator[Finding]:
-        yield from self._unknown_fields()
         for node in self.source.nodes(ast.Call):
-            yield from self._unknown_arguments(node)
             name = None if self.is_own("rospy") else self.source.dotted(node.func)
             if name == "rospy.Subscriber":
                 yield from self._subscriber(node)
             elif name == "rospy.Timer":
                 yield from self._timer(node)
+            elif name == "rospy.Service":
+                yield from self._service(argument(node, 2, "handler"))
             elif name == "actionlib.SimpleActionServer":
                 yield from self._callback(argument(node, 2, "execute_cb"), 1, name, "a goal")
+                yield from self._action_server(argument(node, 3, "auto_start"), node)
 
     def _subscriber(self, node: ast.Call) -> Iterator[Finding]:
-        class_ = self.message_class(argument(node, 1, "data_class"))
         extra = argument(node, 3, "callback_args")
         more = 0 if extra is None or self.source.value(extra) is None else 1
-        given = f"a message {class_._type}" if class_ else "a message"
         callback = argument(node, 2, "callback")
-        yield from self._callback(callback, 1 + more, "rospy.Subscriber", given)
+        yield from self._callback(callback, 1 + more, "rospy.Subscriber", "a message")
 
     def _timer(self, node: ast.Call) -> Iterator[Finding]:
         period = argument(node, 0, "period")
@@ -53,6 +51,34 @@ class Calls(PythonRule):
                 change=(self.written(period) + ",", f"rospy.Duration({self.written(period)}),"),
             )
         yield from self._callback(argument(node, 1, "callback"), 1, "rospy.Timer", "a TimerEvent")
+
+    def _service(self, given: ast.expr | None) -> Iterator[Finding]:
+        handler = self.source.definition(given)
+        if not isinstance(handler, ast.FunctionDef) or returns(handler):
+            return
+        if not isinstance(handler.body[-1], ast.Raise):
+            yield self.finding(
+                "callbacks",
+                f"{handler.name}() answers a service, but returns nothing, so every service call"
+                " fails.",
+                handler,
+                certainty=CERTAIN,
+                expected="return, with the response",
+                fix="Return a response: an object of the class whose name ends in Response.",
+            )
+
+    def _action_server(self, starts: ast.expr | None, node: ast.Call) -> Iterator[Finding]:
+        waits = starts is not None and self.source.value(starts) is False
+        if waits and "start" not in self.source.names():
+            yield self.finding(
+                "callbacks",
+                "The action server is created with auto_start=False, but nothing calls its start(),"
+                " so no goal ever reaches it.",
+                node,
+                certainty=READ,
+                expected="start(), once everything else is set up",
+                fix="Call start() on it.",
+            )
 
     def _callback(
         self, callback: ast.expr | None, count: int, taker: str, given: str
@@ -112,65 +138,6 @@ class Calls(PythonRule):
                 why="timer-callback" if taker == "rospy.Timer" else "bad-callback",
             )
 
-    def _unknown_fields(self) -> Iterator[Finding]:
-        for key, class_ in self._messages().items():
-            for node in self.source.nodes(ast.Attribute):
-                if self.source.key(node.value) == key and not hasattr(class_, node.attr):
-                    yield self._no_field(node, class_, node.attr)
-
-    def _messages(self) -> dict[Variable, MessageClass]:
-        """Return variable -> class, for the variables that hold a message of a known class."""
-        found = {}
-        for node in ast.walk(self.source.tree):
-            if isinstance(node, ast.Assign) and isinstance(node.value, ast.Call):
-                class_ = self.message_class(node.value.func)
-                for target in node.targets:
-                    key = self.source.key(target)
-                    if class_ and key and len(self.source.stored(key)) == 1:
-                        found[key] = class_
-            elif isinstance(node, ast.Call) and self.source.dotted(node.func) == "rospy.Subscriber":
-                class_ = self.message_class(argument(node, 1, "data_class"))
-                callback = argument(node, 2, "callback")
-                function = self.source.definition(callback) if callback is not None else None
-                if class_ is None or not isinstance(function, (ast.FunctionDef, ast.Lambda)):
-                    continue
-                names = function.args.args
-                first = 1 if isinstance(callback, ast.Attribute) else 0
-                if len(names) > first and not self._called(function):
-                    key = (function, names[first].arg)
-                    if len(self.source.stored(key)) == 1:
-                        found[key] = class_
-        return found
-
-    def _called(self, function: Function) -> bool:
-        """Return whether a function is called, or handed over, in more than one place."""
-        name = getattr(function, "name", None)
-        loaded = (n for n in self.source.nodes(ast.Name) if isinstance(n.ctx, ast.Load))
-        names = [n.id for n in loaded] + [n.attr for n in self.source.nodes(ast.Attribute)]
-        return name is not None and names.count(name) > 1
-
-    def _unknown_arguments(self, node: ast.Call) -> Iterator[Finding]:
-        class_ = self.message_class(node.func)
-        for keyword in node.keywords:
-            if class_ and keyword.arg and keyword.arg not in class_.__slots__:
-                yield self._no_field(node, class_, keyword.arg)
-
-    def _no_field(self, node: ast.expr, class_: MessageClass, name: str) -> Finding:
-        near = nearest(name, class_.__slots__)
-        hint = perhaps(near)
-        if not near and len(class_.__slots__) == 1:
-            near = class_.__slots__[0]
-            hint = f" Its only field is {near}."
-        return self.finding(
-            "python-names",
-            f"A message {class_._type} has no field {name}: Python raises an AttributeError when"
-            f" it gets here.{hint}",
-            node,
-            expected=", ".join(class_.__slots__) or "no field at all",
-            fix=f"Write {near} for {name}." if near else "Correct the name.",
-            why="no-such-field",
-        )
-
 
 def _count(number: int, what: str) -> str:
     return {0: f"no {what}", 1: f"one {what}"}.get(number, f"{number} {what}s")
@@ -186,4 +153,4 @@ def returns(function: ast.FunctionDef) -> bool:
     ) or bool(function.decorator_list)
 
 
-RULE = Rule("static", ("facts",), of_sources(Calls), also=("python-names", "callbacks"))
+RULE = Rule("static", ("facts",), of_sources(Calls), also=("callbacks",))

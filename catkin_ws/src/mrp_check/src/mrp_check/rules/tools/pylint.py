@@ -51,6 +51,11 @@ _TABLE = {
         "This name was defined before: Python forgets the first definition.",
         "Give one of the two another name.",
     ),
+    "inconsistent-return-statements": Row(
+        "On some paths, this function returns a value, and on others None.",
+        "Return a value on each path. The callback of a service must return a response.",
+        HINT,
+    ),
     "no-member": Row(
         "This object has no member of that name: Python raises an AttributeError here.",
         "Correct the name.",
