@@ -125,9 +125,7 @@ class _Source(Counters, Habits):
     def add_init(self, kind: Kind, call: Cursor, arguments: Arguments) -> None:
         options = arguments[3].get_tokens() if len(arguments) > 3 else ()
         anonymous = any("AnonymousName" in token.spelling for token in options)
-        offset = call.extent.start.offset
-        name = self.optional(arguments, 2)
-        self.add(call, kind, name, anonymous=anonymous or None, offset=offset)
+        self.add(call, kind, self.optional(arguments, 2), anonymous=anonymous or None)
 
     def add_timer(self, kind: Kind, call: Cursor, arguments: Arguments) -> None:
         period = self.optional(arguments, 0)
@@ -234,23 +232,20 @@ class _Source(Counters, Habits):
         is_variable, above = variable.kind == kinds.VAR_DECL, variable.semantic_parent
         at_file_scope = above is None or above.kind in (kinds.TRANSLATION_UNIT, kinds.NAMESPACE)
         is_global = is_variable and function is None and at_file_scope
-        values = {"name": variable.spelling}
-        if not is_global:
-            values["offset"] = variable.extent.start.offset
-            values["function"] = function.spelling if function is not None else None
+        name = variable.spelling
         if text in _HANDLES:
             kind = Kind.GLOBAL if is_global else Kind.HANDLE
-            self.add(variable, kind, text, **values)
+            self.add(variable, kind, text, name=name)
         elif is_global:
             held = self.handles_in(variable.type.get_declaration())
             owned = [] if held else self.owned_handles(variable)
             if held or owned:
                 kind = Kind.GLOBAL if held else Kind.OWNER
-                self.add(variable, kind, text, holds=held or owned, **values)
+                self.add(variable, kind, text, holds=held or owned, name=name)
         elif is_variable and function is not None and not text.startswith("std::"):
             held = self.handles_in(variable.type.get_canonical().get_declaration())
             if held:
-                self.add(variable, Kind.HANDLE, text, holds=held, **values)
+                self.add(variable, Kind.HANDLE, text, holds=held, name=name)
 
     def owned_handles(self, variable: Cursor) -> list[str]:
         """Return the types of ROS handles in what a smart pointer, or the like, owns."""
@@ -294,7 +289,6 @@ _LOOKS = {
         ("COMPOUND_ASSIGNMENT_OPERATOR", "BINARY_OPERATOR", "UNARY_OPERATOR"),
         _Source.look_at_operator,
     ),
-    **dict.fromkeys(("IF_STMT", "CONDITIONAL_OPERATOR"), _Source.look_at_reset),
     **dict.fromkeys(("WHILE_STMT", "DO_STMT", "FOR_STMT"), _Source.look_at_loop),
     "RETURN_STMT": _Source.look_at_return,
     "STRING_LITERAL": _Source.look_at_text,

@@ -25,7 +25,6 @@ class Kind(enum.Enum):
     TIMER = "timer"
     COUNTER = "counter"  # the first value of what is counted
     STEP = "step"  # its change
-    RESET = "reset"  # where it starts over
     DATA = "data"  # a message's field is set
     LOG = "log"
     PRINT = "print"
@@ -74,13 +73,11 @@ class Place:
     queue, queue_line: its length, and where that stands
     period: seconds of a timer; oneshot: whether it fires once
     anonymous: whether a node asks for such a name
-    offset: where it stands in its file, in characters
     type, bits: of a counter; type: of a service or an action, its last part
     names: of the variables that a message's field is set from
-    limit, value: a counter that has come to the limit is given the value; the exit code that is
-        returned
+    value: the exit code that is returned
     latch: whether a publisher latches, or may
-    name, function: of a handle's variable, and the function that it stands in
+    name: of a handle's variable; function: the one at whose end that variable ends
     holds: the types of the handles in it
     """
 
@@ -96,11 +93,9 @@ class Place:
     period: Plain = None
     oneshot: Plain = None
     anonymous: Plain = None
-    offset: int = 0
     type: str = ""
     bits: int = 0
     names: List[str] = dataclasses.field(default_factory=list)
-    limit: int = 0
     value: int = 0
     latch: bool = False
     name: Optional[str] = None

@@ -106,13 +106,16 @@ def _ended(node: Traces) -> Finding:
 
 def _failed(node: Traces, code: int | None, started_ros: bool) -> Finding:
     said = last_words(node.errors())
+    is_too_early = "must call ros::init" in said
+    kinds = (Kind.GLOBAL, Kind.HANDLE) if is_too_early else (Kind.INIT, Kind.HANDLE)
     return node.finding(
         "starts" if started_ros else _id_of_words(said),
         f"{node.name} ends soon after it is started, {code_text(code)}"
         + (f", with the words: {said}" if said else "."),
-        node.places.of(node.name, Kind.INIT, Kind.HANDLE),
+        node.places.of(node.name, *kinds),
         expected=_EXPECTED,
         seen=code_text(code),
+        why="init-first" if is_too_early else "",
     )
 
 

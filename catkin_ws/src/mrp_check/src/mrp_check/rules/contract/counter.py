@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The counter's type in C++, and where it starts over, against the largest value."""
+"""The counter's type in C++, against the largest value."""
 
 from __future__ import annotations
 
@@ -17,17 +17,6 @@ def _of(node: SourceNode) -> Iterator[Finding]:
         return
     modulus = values.modulus
     used = {name for p in node.places(Kind.DATA) for name in p.names}
-    for place in node.places(Kind.RESET):
-        # Within the last two steps of the range, starting over does no harm.
-        if place.text in used and place.limit < modulus - 2 * abs(values.step):
-            yield node.finding(
-                "wrap",
-                f"The counter {place.text} starts over at {place.value} when it reaches"
-                f" {place.limit}, though the message can hold up to {modulus - 1}.",
-                place,
-                expected=f"the next value up to {modulus - 1}",
-                fix="Remove the limit: a uint32_t starts over at 0 by itself.",
-            )
     said = set()
     for place in node.places(Kind.STEP):
         kind, bits = place.type, place.bits
