@@ -31,7 +31,7 @@ FOUND = [
     (ERROR, "launch-nodes", 'launch/all.launch: "nobody.py"', "no executable of that name"),
     (ERROR, "scripts", "scripts/old.py: env python", "asks for 'python'"),
     (ERROR, "scripts", "scripts/ends.py: #!", "isn't executable"),
-    (ERROR, "python-syntax", "scripts/print.py: print", "print is a function"),
+    (ERROR, "python-syntax", "scripts/print.py: print", "Missing parentheses"),
     (ERROR, "scripts", "scripts/print.py: env python", "asks for 'python'"),
     (ERROR, "spin", "scripts/ends.py: ", "ends by itself|never calls"),
     (ERROR, "exit", "scripts/stays.py: while True", "doesn't end on Ctrl-C"),

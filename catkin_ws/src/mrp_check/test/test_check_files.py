@@ -193,8 +193,8 @@ def with_messages(folder, calls, generator="message_generation", **files):
     [
         ("message_generation", True, []),
         ("genmsg", True, ["warning"]),
-        ("roslib", False, ["error", "error"]),
-        ("actionlib_msgs", True, ["warning", "warning"]),
+        ("roslib", False, ["error"]),
+        ("actionlib_msgs", True, ["warning"]),
     ],
 )
 def test_what_makes_messages(generator, configures, severities, tmp_path):
@@ -205,21 +205,6 @@ def test_what_makes_messages(generator, configures, severities, tmp_path):
     model.complete = configures
     found = file_findings(messages, package, model=model)
     assert [finding.severity for finding in found] == severities
-
-
-@pytest.mark.parametrize(
-    ("finds", "says"),
-    [
-        ("catkin REQUIRED COMPONENTS std_msgs", ["find_package(catkin ...) doesn't name"]),
-        ("catkin REQUIRED COMPONENTS message_generation std_msgs", []),
-        ("catkin_simple REQUIRED", []),
-    ],
-)
-def test_generate_messages_is_known_where_its_package_is_found(finds, says, tmp_path):
-    text_ = f"find_package({finds})\ngenerate_messages(DEPENDENCIES std_msgs)\ncatkin_package()\n"
-    package = check_rules.make(tmp_path, CMakeLists_DOT_txt=text_)
-    found = [finding.message for finding in file_findings(messages, package)]
-    assert [message[: len(word)] for message, word in zip(found, says, strict=True)] == says
 
 
 def test_code_is_made_of_the_messages_of_an_action(tmp_path):
@@ -434,13 +419,6 @@ SCRIPT = "#!/usr/bin/env {}\nimport rospy\nrospy.init_node('a')\n"
 def of_any(rule, package, **known):
     given = {"spec": executables.spec(package, check_rules.model_of(package)), **known}
     return check_rules.file_findings(rule, package, **given)
-
-
-def test_what_message_generation_brings_is_where_it_is_called(tmp_path):
-    text = f"{CMAKE}\n# add_message_files(FILES A.msg)\nadd_message_files(FILES A.msg)\n"
-    package = check_rules.make(tmp_path / "some_pkg", CMakeLists_DOT_txt=text, msg__A_DOT_msg="")
-    found = [one for one in of_any(messages, package) if "message_generation," in one.message]
-    assert told(found) == [("messages", text.count("\n"))]
 
 
 def test_what_runs_messages_is_missed_at_its_own_tag(tmp_path):

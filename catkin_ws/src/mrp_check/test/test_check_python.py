@@ -49,7 +49,7 @@ BROKEN = [
     ("import rospy\n", "\n", "python-names", "rospy.Publisher", "import of rospy"),
     ("import UInt32", "import UInt23", "python-names", "UInt23", "UInt32"),
     ("import rospy\n", "import rospi\n", "python-names", "import rospi", "rospi"),
-    ("def main():", "def main()", "python-syntax", "def main()", "colon"),
+    ("def main():", "def main()", "python-syntax", "def main()", "expected ':'"),
     ("        msg = ", "       msg = ", "python-syntax", "msg = UInt32|msg.data", "indent"),
 ]
 

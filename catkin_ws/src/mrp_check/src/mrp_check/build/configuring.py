@@ -154,12 +154,6 @@ def _no_package(package: Package, model: Model, match: re.Match[str], text: str)
     )
 
 
-def _no_source(package: Package, model: Model, match: re.Match[str], text: str) -> _Said:
-    near = nearest(match.group(1), package.of_kind("cpp"))
-    said = f"there's no source {match.group(1)}.{perhaps(near)}"
-    return said, "Name a file that exists."
-
-
 def _no_target(package: Package, model: Model, match: re.Match[str], text: str) -> _Said:
     name = match.group(1)
     near = nearest(name, [] if name in model.targets else model.targets, 0.5)
@@ -177,12 +171,6 @@ def _no_dependency(package: Package, model: Model, match: re.Match[str], text: s
         f"there's no target {name} to wait for.{perhaps(near)}",
         f"Write {near} for {name}." if near else f"Remove {name}.",
     )
-
-
-def _no_script(package: Package, model: Model, match: re.Match[str], text: str) -> _Said:
-    shown = "/".join(match.group(1).rsplit("/", 2)[1:])
-    near = nearest(shown, package.of_kind("python"))
-    return f"there's no script {shown}.{perhaps(near)}", "Name a file that exists."
 
 
 # (command or None for any, what CMake says) -> what it means and what to do: these words, or a
@@ -228,7 +216,6 @@ _WORDS: Sequence[tuple[str | None, str, Callable[..., _Said] | _Said, str]] = (
         ),
         "catkin-package-depends",
     ),
-    (None, r"Cannot find source file: (\S+)", _no_source, "cmake-no-source"),
     (
         None,
         r'Cannot specify (?:link libraries|include directories|\w+ \w+) for target "(\S+)"',
@@ -253,25 +240,9 @@ _WORDS: Sequence[tuple[str | None, str, Callable[..., _Said] | _Said, str]] = (
         ("there's already a target of this name, further up.", "Give it its own name."),
         "cmake-target-twice",
     ),
-    (None, r"non-existing file '([^']+)'", _no_script, ""),
     (
         None,
-        r"Function missing ending",
-        ("the call that begins there has no closing parenthesis.", "Close it with a )."),
-        "cmake-parenthesis",
-    ),
-    (
-        None,
-        r"end of file|not closed",
-        (
-            "a bracket or a quotation mark that is opened there is never closed.",
-            "Close what was opened.",
-        ),
-        "cmake-parenthesis",
-    ),
-    (
-        None,
-        r"Parse error",
+        r"Parse error|Function missing ending|end of file|not closed",
         ("a bracket or a quotation mark is missing, or one too many.", "Correct the call there."),
         "cmake-parenthesis",
     ),

@@ -65,7 +65,12 @@ def of(package: Package, problem: Problem) -> Words:
         match = re.search(shape, text)
         if match:
             return words(Error(package, problem, lines, match))._replace(why=why)
-    return Words(f"{text}.", "Compare the line with the one on the page.")
+    return _as_said(text)
+
+
+def _as_said(text: str) -> Words:
+    """Return the compiler's own words."""
+    return Words(f"{_short(text)}.", "Compare the line with the one on the page.")
 
 
 def _semicolon(error: Error) -> Words:
@@ -90,23 +95,11 @@ def _end_of_statement(
     return None, None
 
 
-_MISSING = {
-    ")": "a closing parenthesis ) is missing.",
-    "(": "an opening parenthesis ( is missing.",
-    "}": "a closing brace } is missing.",
-    "{": "an opening brace { is missing.",
-    "]": "a closing bracket ] is missing.",
-    ">": "a closing > is missing.",
-}
-
-
 def _expected(error: Error) -> Words:
     what = error.match.group(1)
     unbalanced = unbalanced_brace(error.lines)
     if unbalanced and what in ("}", "unqualified-id", "declaration"):
         return _brace(*unbalanced)
-    if what in _MISSING:
-        return Words(_MISSING[what], "Close what was opened.")
     return Words(
         f"{what} is expected there. Often the mistake is in the line above it.",
         "Look for a missing ; or bracket at the end of the line above, or a brace too many.",
@@ -132,8 +125,6 @@ def _function_definition(error: Error) -> Words:
 _PLACEHOLDERS = "this machine's Boost has it only in boost::placeholders."
 _BIND = "Add #include <boost/bind/bind.hpp> and using namespace boost::placeholders;"
 _INCLUDES_ROS = re.compile(r"#\s*include\s*[<\"]ros/")
-# Two words in a row are no C++.
-_UNQUOTED = re.compile(r"\b(ROS_(?:DEBUG|INFO|WARN|ERROR|FATAL))\s*\(\s*[A-Za-z_]+ +[A-Za-z_]+")
 _MACROS = {f"ROS_{level}{end}" for level in ("INFO", "WARN", "ERROR") for end in ("", "_STREAM")}
 
 
@@ -151,13 +142,6 @@ def _undeclared(error: Error) -> Words:
         return Words(said, f"Write std_msgs::{name}.", None, (name, f"std_msgs::{name}"))
     if re.fullmatch(r"u?int(8|16|32|64)_t", name):
         return _header(name, "cstdint")
-    if name in ("cout", "cin", "endl", "string", "vector"):
-        said = f"nothing is called {name} here; it is std::{name}."
-        return Words(said, f"Write std::{name}.", None, (name, f"std::{name}"))
-    log = _UNQUOTED.search(error.lines[error.problem.line - 1])
-    if log:
-        said = f"the text that {log[1]}() prints has no quotation marks."
-        return Words(said, f'Write {log[1]}("...").')
     own = set(re.findall(r"\b[A-Za-z_]\w*\b", text)) - {name}
     near = error.suggested() or nearest(name, own | _MACROS, 0.8)
     return Words(
@@ -267,12 +251,6 @@ def _short(name: str) -> str:
     return re.sub(r"_<std::allocator<void> ?>|std::__cxx11::|, std::allocator<char>", "", name)
 
 
-def _convert(error: Error) -> Words:
-    given, needed = map(_short, error.match.groups())
-    said = f"a {given} can't be used where a {needed} is needed."
-    return Words(said, "Compare the types with those on the page.")
-
-
 def _not_const(error: Error) -> Words:
     message = _short(error.match.group(1))
     parameter = re.compile(rf"(?<!const )\b{re.escape(message)}\s*&")
@@ -290,19 +268,17 @@ def _in_words(said: str, fix: str) -> Callable[[Error], Words]:
     return lambda error: Words(said.format(*error.match.groups()), fix)
 
 
-_text_without_end = _in_words(
-    "a string begins with a quotation mark, but doesn't end with one.",
-    "Add the missing quotation mark.",
-)
 _no_message = _in_words(
     "{0} isn't a message type, and only messages can be published and received.",
     "A callback takes a message, such as const std_msgs::UInt32::ConstPtr&; what it holds are its"
     " members.",
 )
-_many_arguments = _in_words(
-    "{1} is called with too {0} arguments.",
-    "Compare the call with the function's parameters.",
-)
+
+
+def _own_words(error: Error) -> Words:
+    return _as_said(error.match.string)
+
+
 # What the compiler says -> the function of an Error that says it in plain words, and the entry of
 # the page why.
 _WORDS: Sequence[tuple[str, Callable[[Error], Words], str]] = (
@@ -313,7 +289,6 @@ _WORDS: Sequence[tuple[str, Callable[[Error], Words], str]] = (
     ),
     (r"expected ';'(?: before '?([^']+?)'?(?: token)?)?$", _semicolon, "expected-semicolon"),
     (r"expected ',' or ';'(?: before '?([^']+?)'?(?: token)?)?", _semicolon, "expected-semicolon"),
-    (r"missing terminating", _text_without_end, ""),
     (
         r"a function-definition is not allowed here|qualified-id in declaration",
         _function_definition,
@@ -336,10 +311,9 @@ _WORDS: Sequence[tuple[str, Callable[[Error], Words], str]] = (
         "not-declared",
     ),
     (r"no match(?:ing function)? for call to '([^']+)'", _no_match, "no-matching-function"),
-    (r"too (many|few) arguments to function '([^']+)'", _many_arguments, "no-matching-function"),
-    (r"cannot convert '([^']+)'.* to '([^']+)'", _convert, "cannot-convert"),
-    (r"invalid conversion from '(char\*\*)' to '(int)'", _convert, "cpp-init-arguments"),
-    (r"invalid conversion from '([^']+)' to '([^']+)'", _convert, "cannot-convert"),
+    (r"too (many|few) arguments to function", _own_words, "no-matching-function"),
+    (r"invalid conversion from 'char\*\*' to 'int'", _own_words, "cpp-init-arguments"),
+    (r"cannot convert '|invalid conversion from '", _own_words, "cannot-convert"),
 )
 
 

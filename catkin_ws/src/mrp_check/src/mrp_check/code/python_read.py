@@ -12,23 +12,13 @@ from mrp_check.contract.finding import Finding
 from mrp_check.contract.names import line_of
 from mrp_check.package.package import Package
 
-# What Python says -> what it means.
+# What Python says -> what it means, where Python itself doesn't say that.
 _SYNTAX = (
-    (r"was never closed", "A bracket is opened there and never closed."),
-    (r"unmatched|does not match opening", "This closing bracket matches no open one."),
-    (r"expected ':'", "A colon is missing at the end of the line."),
-    (r"unterminated", "A string begins with a quotation mark, but doesn't end with one."),
-    (r"expected an indented block", "The lines that belong to this one must be indented."),
     (r"unindent does not match|unexpected indent", "The line isn't indented like those around it."),
-    (r"inconsistent use of tabs", "Tabs and spaces are mixed: use four spaces for each level."),
-    (r"Missing parentheses in call to 'print'", "In Python 3, print is a function: print(...)."),
     (r"multiple exception types", "In Python 3, write: except NAME as VARIABLE."),
-    (r"Maybe you meant '=='|cannot assign to", "= gives a value, == compares."),
-    (r"forgot a comma", "A comma is missing, or a bracket is not closed."),
     (
         r"invalid character|invalid non-printable",
-        "There's a character that Python doesn't know:"
-        " perhaps it was copied from a page or a document.",
+        "Perhaps it was copied from a page or a document.",
     ),
 )
 _SHOWN = 12  # lines that a hint names

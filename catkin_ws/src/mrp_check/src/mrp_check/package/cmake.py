@@ -156,9 +156,6 @@ _NO_SOURCES = set(
     ).split()
 )
 
-# In CMake's order (policy CMP0115).
-_ENDINGS = (".c", ".C", ".c++", ".cc", ".cpp", ".cxx", ".cu", ".mpp", ".m", ".M", ".mm")
-
 
 class Model:
     """What all calls of a package come to.
@@ -299,19 +296,13 @@ class Model:
         for source in sources:
             if "$" in source or source in _NO_SOURCES:
                 continue
-            names = [source, *(source + ending for ending in self._endings())]
-            paths = (self.path(name, call) for name in names)
+            # CMake before 3.20 adds the ending itself (policy CMP0115).
+            paths = (self.path(name, call) for name in (source, f"{source}.cpp"))
             path = next((one for one in paths if one and (self.folder / one).is_file()), None)
             if path is None:
                 target.missing.append((self.path(source, call) or source, call.file, call.line))
             else:
                 target.sources.append(path)
-
-    def _endings(self) -> tuple[str, ...]:
-        """Return what CMake itself adds to the name of a source: nothing since version 3.20."""
-        asked = [c.arguments for c in self.calls if c.command == "cmake_minimum_required"]
-        newest = asked[0][1].split("...")[-1] if asked and len(asked[0]) > 1 else ""
-        return () if [*map(int, re.findall(r"\d+", newest))] >= [3, 20] else _ENDINGS
 
     def _add_library(self, call: Call) -> None:
         self._add_executable(call, is_library=True)

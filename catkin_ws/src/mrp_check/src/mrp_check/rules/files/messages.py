@@ -25,8 +25,6 @@ from mrp_check.run import evidence
 from mrp_check.run.case import Case
 
 FILE = "CMakeLists.txt"
-# The commands that only message_generation brings.
-_BROUGHT = r"^\s*(add_(message|service|action)_files|generate_messages)\s*\("
 
 
 def _findings(case: Case) -> Iterator[Finding]:
@@ -45,32 +43,18 @@ def _findings(case: Case) -> Iterator[Finding]:
     if not files and not made or not model.complete and model.catkin is None:
         return
     if not model.finds_all:
-        yield from _in_cmake(case, files, bool(asked))
+        yield from _in_cmake(case, files)
     if manifest and (asked or model.message_files):
         yield from _in_manifest(package, manifest, _is_brought_along(model))
     yield from _order(package, model)
 
 
-def _in_cmake(case: Case, files: list[str], are_asked: bool) -> Iterator[Finding]:
-    """Yield a finding for each call of CMakeLists.txt that lacks, or lacks something.
-
-    are_asked: whether code is to be made of one of the files
-    """
+def _in_cmake(case: Case, files: list[str]) -> Iterator[Finding]:
+    """Yield a finding for each call of CMakeLists.txt that lacks, or lacks something. Where
+    message_generation isn't found, CMake says so."""
     model = case.model
     own = {*case.spec.messages, *(s.type.split("/")[1] for s in case.spec.services.values())}
     catkin_line, call = model.catkin.line if model.catkin else 1, model.add_message_files
-    brings = {"message_generation", "genmsg"}  # the first is all of it; the second builds, too
-    asks = are_asked or model.generate
-    if asks and model.catkin and not brings & {*model.components}:
-        brought = case.package.first_match([FILE], _BROUGHT)
-        yield _message_finding(
-            "find_package(catkin ...) doesn't name message_generation, which provides"
-            " generate_messages() and generates code from the package's own messages.",
-            brought[1] if brought else catkin_line,
-            "find_package(catkin REQUIRED COMPONENTS message_generation ...)",
-            "Add message_generation to COMPONENTS.",
-            HABIT if _is_brought_along(model) else READ,
-        )
     for path in files:
         file = last_part(path)
         is_made = path in model.message_files or _is_of_action(path, model)
