@@ -57,10 +57,9 @@ def test_text(content, cmake_text, expected, tmp_path):
         (' email="someone@some.example"', "", 6, "email"),
         ("<depend>rospy", "<dependd>rospy", 10, "dependd"),
         ("<depend>rospy</depend>", "<run_depend>rospy</run_depend>", 10, "run_depend"),
-        ("buildtool_depend>catkin<", "buildtool_depend>ament_cmake<", 8, "is for ROS 2"),
         ("</description>", "</description> -->", 5, "nothing reads it: -->"),
     ],
-    ids=range(8),
+    ids=range(7),
 )
 def test_broken_manifest(old, new, line, says, tmp_path):
     assert MANIFEST.count(old) == 1
@@ -68,6 +67,17 @@ def test_broken_manifest(old, new, line, says, tmp_path):
     findings = file_findings(manifest, package)
     assert told(findings) == [("manifest", line)]
     assert says in findings[0].message
+
+
+def test_a_package_of_ros_2_is_one_error(tmp_path):
+    manifest_text = MANIFEST.replace(">catkin<", ">ament_cmake<")
+    cmake_text = "cmake_minimum_required(VERSION 3.10)\nproject(some_pkg)\nament_package()\n"
+    package = check_rules.make(
+        tmp_path, package_DOT_xml=manifest_text, CMakeLists_DOT_txt=cmake_text
+    )
+    (finding,) = file_findings(manifest, package) + file_findings(cmake_rule, package)
+    assert (finding.id, finding.line) == ("manifest", 8)
+    assert finding.message.startswith("This is a package for ROS 2: it needs ament_cmake")
 
 
 def dependency_findings(folder, manifest_text=MANIFEST, cmake_text=CMAKE, **files):

@@ -16,6 +16,7 @@ from mrp_check.package.workspace import Workspace
 from mrp_check.package.xml_file import elements, xml_finding
 
 FILE = "package.xml"
+_OF_ROS_2 = ("ament_", "rclcpp", "rclpy", "rosidl_")
 
 
 def parse(package: Package) -> tuple[Manifest | None, Finding | None]:
@@ -63,6 +64,15 @@ def replace(workspace: Workspace) -> None:
         + "".join(f"<depend>{one}</depend>" for one in ("roscpp", "rospy", "std_msgs"))
         + "<depend>message_generation</depend><depend>message_runtime</depend></package>"
     )
+
+
+def of_ros_2(manifest: Manifest | None) -> str:
+    """Return what a package of ROS 2 needs that ROS 1 has not, such as ament_cmake; or nothing."""
+    if manifest is None:
+        return ""
+    names = [one.name for one in manifest.buildtool_depends + manifest.exec_depends]
+    is_catkins = "catkin" in names
+    return next((n for n in names if n.startswith(_OF_ROS_2) and not is_catkins), "")
 
 
 def declared(manifest: Manifest) -> dict[str, set[str]]:

@@ -10,6 +10,7 @@ from mrp_check import releases
 from mrp_check.contract.finding import CERTAIN, HABIT, HINT, Finding
 from mrp_check.contract.requirements import Requirement, Rule
 from mrp_check.package.cmake import Model
+from mrp_check.package.manifest import of_ros_2
 from mrp_check.package.package import Package
 from mrp_check.run import evidence
 from mrp_check.run.case import Case
@@ -19,6 +20,8 @@ _LOST = ", so its executables end up where roslaunch and rosrun don't look"
 
 
 def _findings(case: Case) -> Iterator[Finding]:
+    if of_ros_2(case.manifest[0]):
+        return
     if FILE in case.package.files:
         yield from _missing_calls(case.package, case.model)
         yield from _too_late(case.model)
@@ -132,7 +135,7 @@ def _no_folder(package: Package, model: Model) -> Iterator[Finding]:
 
 RULE = Rule(
     stage="files",
-    needs=("model",),
+    needs=("manifest", "model"),
     findings=_findings,
     requirements={
         "cmake": Requirement(

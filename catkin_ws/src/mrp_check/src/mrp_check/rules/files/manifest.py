@@ -7,12 +7,10 @@ from typing import Iterator
 
 from mrp_check.contract.finding import HABIT, HINT, Finding
 from mrp_check.contract.requirements import Requirement, Rule
-from mrp_check.package.manifest import FILE
+from mrp_check.package.manifest import FILE, of_ros_2
 from mrp_check.package.xml_file import elements, stray
 from mrp_check.run import evidence
 from mrp_check.run.case import Case
-
-_ROS_2 = ("ament_", "rclcpp", "rclpy", "rosidl_")
 
 
 def _findings(case: Case) -> Iterator[Finding]:
@@ -20,19 +18,21 @@ def _findings(case: Case) -> Iterator[Finding]:
     if problem:
         yield problem
     if manifest and "catkin" not in {d.name for d in manifest.buildtool_depends}:
-        needs = manifest.buildtool_depends + manifest.build_depends + manifest.exec_depends
-        of_ros_2 = sorted({d.name for d in needs if d.name.startswith(_ROS_2)})
+        ros_2 = of_ros_2(manifest)
         yield Finding(
             "manifest",
-            "package.xml doesn't say that the package is built with catkin."
-            + (f" It names {of_ros_2[0]}, which is for ROS 2." if of_ros_2 else ""),
+            f"This is a package for ROS 2: it needs {ros_2}, which ROS 1 doesn't have."
+            if ros_2
+            else "package.xml doesn't say that the package is built with catkin.",
             FILE,
             # Where it belongs: at the first of the dependencies.
             package.find_line(FILE, "depend>", package.find_line(FILE, "<package", 1)),
             expected="<buildtool_depend>catkin</buildtool_depend>",
             seen=", ".join(d.name for d in manifest.buildtool_depends) or "no buildtool_depend",
-            fix="Add the line <buildtool_depend>catkin</buildtool_depend>.",
-            why="buildtool-missing",
+            fix="Take its version for ROS 1, if there is one."
+            if ros_2
+            else "Add the line <buildtool_depend>catkin</buildtool_depend>.",
+            why="" if ros_2 else "buildtool-missing",
         )
     if manifest:
         tags = [(FILE, one) for one in elements(package.bytes(FILE)) if one.tag == "package"]
