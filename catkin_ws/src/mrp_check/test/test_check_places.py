@@ -34,7 +34,7 @@ struct Doer
   actionlib::SimpleActionServer<actionlib::TestAction> server_;
 
   Doer(ros::NodeHandle& nh)
-    : server_(nh, "do_it", boost::bind(&Doer::act, this, _1), true)  // serves do_it TestAction
+    : server_(nh, "do_it", boost::bind(&Doer::act, this, _1), true)  // serves do_it
   {
   }
 
@@ -53,13 +53,13 @@ int main(int argc, char** argv)
 {
   ros::init(argc, argv, "a");
   ros::NodeHandle nh;
-  Client client("do_it", true);  // commands do_it TestAction
+  Client client("do_it", true);  // commands do_it
   client.waitForServer();
   client.waitForResult(ros::Duration(3));  // ignored waitForResult
-  auto caller = nh.serviceClient<std_srvs::SetBool>("set_it");  // asks set_it SetBool
+  auto caller = nh.serviceClient<std_srvs::SetBool>("set_it");  // asks set_it
   std_srvs::SetBool service;
   caller.call(service);  // ignored call
-  auto server = nh.advertiseService("offer_it", answer);  // offers offer_it SetBool
+  auto server = nh.advertiseService("offer_it", answer);  // offers offer_it
   auto subscriber = nh.subscribe("words", 1, hear);
   double gain;
   nh.getParam("gain", gain);  // reads gain
@@ -115,7 +115,7 @@ def facts_of(folder, source):
 
 def of_line(place):
     """Return what a comment of BROKEN says of a place."""
-    words = [place.kind.value, place.text, place.type, place.function]
+    words = [place.kind.value, place.text, place.function]
     return " ".join(filter(None, words))
 
 

@@ -13,10 +13,6 @@ from mrp_check.code.python_source import Source
 from mrp_check.confined.places import Kind, Place
 from mrp_check.contract.finding import Finding
 
-_ASKED = {
-    *(Kind.ASKS, Kind.OFFERS, Kind.READS, Kind.KNOWS, Kind.COMMANDS, Kind.SERVES),
-}
-
 
 @dataclasses.dataclass
 class Facts:
@@ -45,10 +41,9 @@ class Facts:
         found = [p for p in self.places if p.file in files and (not kinds or p.kind in kinds)]
         return sorted(found, key=lambda place: (files.index(place.file), place.line))
 
-    def asked(self, files: Container[str]) -> list[Place]:
-        """Return where these sources name a service, an action or a parameter, to ask for it or to
-        give it."""
-        places = (place for place in self.places if place.kind in _ASKED)
+    def asked(self, files: Container[str], kind: Kind) -> list[Place]:
+        """Return where these sources name a service, an action or a parameter of a kind."""
+        places = (place for place in self.places if place.kind is kind)
         return [place for place in places if place.file in files and place.base]
 
     def exits(self, node: str) -> list[Place]:

@@ -25,13 +25,13 @@ _FUNCTIONS = {
     **dict.fromkeys(("os.fork", "os.popen", "os.system", "multiprocessing.Process"), Kind.STARTS),
     **dict.fromkeys(("os.kill", "os.killpg"), Kind.KILLS),
 }
-# What is asked for or given by its name -> the kind; where its type stands, and as what.
+# What is asked for or given by its name -> the kind.
 _NAMED = {
-    "rospy.ServiceProxy": (Kind.ASKS, 1, "service_class"),
-    "rospy.wait_for_service": (Kind.ASKS, 9, ""),
-    "rospy.Service": (Kind.OFFERS, 1, "service_class"),
-    "actionlib.SimpleActionClient": (Kind.COMMANDS, 1, "ActionSpec"),
-    "actionlib.SimpleActionServer": (Kind.SERVES, 1, "ActionSpec"),
+    "rospy.ServiceProxy": Kind.ASKS,
+    "rospy.wait_for_service": Kind.ASKS,
+    "rospy.Service": Kind.OFFERS,
+    "actionlib.SimpleActionClient": Kind.COMMANDS,
+    "actionlib.SimpleActionServer": Kind.SERVES,
 }
 # A part of the name of a module, or of what is in one -> what a program does that uses it.
 _MODULES = {
@@ -129,7 +129,7 @@ class _Node:
         elif name in _FUNCTIONS:
             yield self.place(_FUNCTIONS[name])
         elif name in _NAMED:
-            yield from self.named(*_NAMED[name])
+            yield from self.named(_NAMED[name])
         elif name.startswith("rospy.log"):
             yield from self.log(node, name.split(".")[1])
         elif name.startswith("subprocess."):
@@ -191,22 +191,19 @@ class _Node:
             if call.args or call.keywords:  # without a limit, it only fails on Ctrl-C
                 yield self.place(Kind.IGNORED, name)
 
-    def named(self, kind: Kind, position: int, keyword: str) -> Iterator[Place]:
-        """Look at a service, an action or a parameter that is named."""
-        type_ = self.source.dotted(argument(self.node, position, keyword)) or ""
+    def named(self, kind: Kind) -> Iterator[Place]:
+        """Look at a service or an action that is named."""
         name = self.value(0, "name")
         name = self.value(0, "ns") if name is UNKNOWN else name
         if isinstance(name, str):
-            yield self.place(kind, name, type=type_.rpartition(".")[2])
+            yield self.place(kind, name)
         if self.called(self.node) == "rospy.wait_for_service":
             yield self.place(Kind.WAITS)
 
     def parameter(self, node: ast.Call) -> Iterator[Place]:
-        name, key = self.called(node), argument(node, 0, "param_name") or argument(node, 0, "key")
-        has_default = len(node.args) + len(node.keywords) > 1
-        kind = Kind.READS if name == "rospy.get_param" and not has_default else Kind.KNOWS
-        if isinstance(self.source.value(key), str):
-            yield self.place(kind, self.source.value(key))
+        name = self.source.value(argument(node, 0, "param_name") or argument(node, 0, "key"))
+        if isinstance(name, str):
+            yield self.place(Kind.READS, name)
 
     def imported(self, node: ast.Import | ast.ImportFrom) -> Iterator[Place]:
         names = [getattr(node, "module", None) or "", *(alias.name for alias in node.names)]

@@ -35,26 +35,9 @@ class Habits(Unit):
         name = next((value for value in values if isinstance(value, str)), None)
         if name is None and kind is not Kind.WAITS:
             return
-        self.add(call, kind, name, type=self.of_type(call, arguments))
+        self.add(call, kind, name)
         if kind is Kind.WAITS and name:
             self.add(call, Kind.ASKS, name)
-
-    def of_type(self, call: Cursor, arguments: Sequence[Cursor]) -> str:
-        """Return the last part of the type of a service or an action, or nothing."""
-        written = call.type.get_canonical().spelling if "Action" in call.spelling else ""
-        action = re.search(r"(\w+)_<", written)
-        if action:
-            return action[1]
-        for argument in arguments:  # the callback of a server: its request says it
-            for one in argument.walk_preorder():
-                function = one.referenced if one.kind.is_expression() else None
-                for given in function.get_arguments() if function is not None else ():
-                    request = re.search(r"(\w+)Request_?\b", self.type_of(given))
-                    if request:
-                        return request[1]
-        member = next(call.get_children(), call)
-        types = [one.spelling for one in member.get_children() if one.kind == self.kinds.TYPE_REF]
-        return re.split(r"::| ", types[-1])[-1] if types else ""
 
     def look_at_text(self, literal: Cursor) -> None:
         path = HOME.search(literal.spelling)

@@ -40,8 +40,7 @@ class Kind(enum.Enum):
     OFFERS = "offers"  # a service
     COMMANDS = "commands"  # an action
     SERVES = "serves"  # an action
-    READS = "reads"  # a parameter, without a default
-    KNOWS = "knows"  # a parameter
+    READS = "reads"  # a parameter
     ENDS = "ends"  # a goal
     # Other programs:
     STARTS = "starts"  # a process
@@ -73,7 +72,7 @@ class Place:
     queue, queue_line: its length, and where that stands
     period: seconds of a timer; oneshot: whether it fires once
     anonymous: whether a node asks for such a name
-    type, bits: of a counter; type: of a service or an action, its last part
+    type, bits: of a counter
     names: of the variables that a message's field is set from
     value: the exit code that is returned
     latch: whether a publisher latches, or may

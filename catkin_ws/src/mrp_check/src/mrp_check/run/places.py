@@ -92,7 +92,7 @@ class Places:
     def asked(self, node: str, what: Kind, name: str) -> Where:
         """Return the place at which a node names a service or a parameter; without that name the
         first one of its kind, and without any where the node begins."""
-        said = [one for one in self.facts.asked(self.sources(node)) if one.kind is what]
+        said = self.facts.asked(self.sources(node), what)
         said.sort(key=lambda one: one.base != name)
         return (said[0].file, said[0].line) if said else self.of(node, Kind.INIT)
 

@@ -102,11 +102,7 @@ def _cause(node: Node, example: Example, ran: Alone, wrong: Message) -> tuple[Wh
     raised = node.places.traceback(text for _, _, text in ran.lines)
     if raised:
         return raised[0], f" {raised[1]}: {raised[2]}"
-    reads = [
-        one
-        for one in node.places.facts.asked(node.places.sources(node.name))
-        if one.kind in (Kind.READS, Kind.KNOWS)
-    ]
+    reads = node.places.facts.asked(node.places.sources(node.name), Kind.READS)
     for name in example.parameters:
         same = [one for one in reads if one.base == name]
         if not same:
