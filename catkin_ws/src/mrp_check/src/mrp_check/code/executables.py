@@ -9,6 +9,7 @@ import re
 from typing import Iterator
 
 from mrp_check.code import uses
+from mrp_check.code.python_source import Source
 from mrp_check.contract import spec as specs
 from mrp_check.contract.names import last_part
 from mrp_check.contract.spec import Spec
@@ -83,24 +84,14 @@ def _imported(package: Package, path: str) -> frozenset[str]:
 
 def _called(package: Package, path: str) -> set[str]:
     """Return the names of what a Python file calls of rospy."""
-    tree = package.tree(path)
-    if not tree.body:
+    try:
+        source = Source(path, package.text(path))
+    except (SyntaxError, ValueError, RecursionError, MemoryError):
         return {name.split(".")[-1] for name in _UNREAD.findall(package.text(path))}
-    modules, names = {"rospy"}, {"init_node": "init_node"}
-    for node in ast.walk(tree):
-        if isinstance(node, ast.Import):
-            modules |= {a.asname for a in node.names if a.asname and a.name == "rospy"}
-        elif isinstance(node, ast.ImportFrom) and node.module == "rospy":
-            taken = {alias.asname or alias.name: alias.name for alias in node.names}
-            names.update({name: name for name in _OF_NODES} if "*" in taken else taken)
-    called = set()
-    for node in ast.walk(tree):
-        function = node.func if isinstance(node, ast.Call) else None
-        if isinstance(function, ast.Name):
-            called.add(names.get(function.id, ""))
-        elif isinstance(function, ast.Attribute) and getattr(function.value, "id", "") in modules:
-            called.add(function.attr)
-    return called
+    calls = source.nodes(ast.Call)
+    # Without its import, too.
+    names = (source.dotted(call.func) or ast.unparse(call.func) for call in calls)
+    return {name.removeprefix("rospy.") for name in names if name.startswith("rospy.")}
 
 
 def _python(package: Package, model: Model) -> Iterator[specs.NodeSpec]:

@@ -9,7 +9,6 @@ from typing import Sequence
 
 from mrp_check.code.python_source import Source
 from mrp_check.contract.finding import Finding
-from mrp_check.contract.names import line_of
 from mrp_check.package.package import Package
 
 # What Python says -> what it means, where Python itself doesn't say that.
@@ -30,12 +29,7 @@ _WHY = (
     (r"multiple exception types", "python2"),
     (r"", "python-syntax"),
 )
-_PRINT = re.compile(r"(^[ \t]*|^[^'\"#\n]*[:;][ \t]+)print[ \t]+(?![=(])([^\n]*)", re.MULTILINE)
-_EXCEPT = re.compile(
-    r"^([ \t]*except[ \t]+(?:[\w.]+|\([^()]*\)))[ \t]*,[ \t]*(\w+)[ \t]*:", re.MULTILINE
-)
-# What Python says -> what stands in each line of the kind.
-_OF_PYTHON2 = (("call to 'print'", _PRINT), ("multiple exception types", _EXCEPT))
+_EXCEPT = re.compile(r"^([ \t]*except[ \t]+(?:[\w.]+|\([^()]*\)))[ \t]*,[ \t]*(\w+)[ \t]*:")
 
 
 def _tabs(lines: Sequence[str]) -> str:
@@ -105,11 +99,6 @@ def _syntax(package: Package, file: str, error: SyntaxError) -> Finding:
             hint = "A comment begins with # in Python, not with //."
         elif re.match(r"global\s+\w+\s*=", shown):
             hint = "'global NAME' and 'NAME = ...' are two statements, on two lines."
-    for said, shape in _OF_PYTHON2:
-        if re.search(said, text):
-            found = (line_of(match, 2) for match in shape.finditer(package.text(file)))
-            others = [str(number) for number in found if number != line]
-            hint += f" So are the other lines with it: {', '.join(others)}." if others else ""
     return Finding(
         "python-syntax",
         f"Python can't read {file}: {text}, on line {line}. {hint}".strip(),

@@ -69,13 +69,6 @@ def arguments_of(call: ast.Call) -> list[ast.expr]:
     return [*call.args, *(keyword.value for keyword in call.keywords)]
 
 
-def ast_text(node: ast.AST) -> str:
-    """Return the source of a short expression."""
-    if isinstance(node, ast.Attribute):
-        return f"{ast_text(node.value)}.{node.attr}"
-    return node.id if isinstance(node, ast.Name) else "..."
-
-
 def of_sources(rule: type[PythonRule]) -> Callable[[HasFacts], Iterator[Finding]]:
     """Return the function of a case.Case that asks a PythonRule of each source that matters."""
 

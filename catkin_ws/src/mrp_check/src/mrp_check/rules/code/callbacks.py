@@ -6,7 +6,7 @@ from __future__ import annotations
 import ast
 from typing import Any, Iterator
 
-from mrp_check.code.python_rule import PythonRule, arguments_of, ast_text, of_sources
+from mrp_check.code.python_rule import PythonRule, arguments_of, of_sources
 from mrp_check.code.python_source import Defined, Variable
 from mrp_check.code.source_node import SourceNode, each_node
 from mrp_check.confined.places import Kind, Place
@@ -66,7 +66,7 @@ class EarlyCallback(PythonRule):
                 if isinstance(function, ast.FunctionDef) and name:
                     if any(one and self.source.function(one) is function for one in given):
                         continue  # perhaps it has given it a value before
-                    place, said = later[name], ast_text(used[name])
+                    place, said = later[name], ast.unparse(used[name])
                     yield self.finding(
                         "callbacks",
                         f"{function.name}() uses {said}, which is only created on line"

@@ -6,7 +6,7 @@ from __future__ import annotations
 import ast
 from typing import Iterator
 
-from mrp_check.code.python_rule import PythonRule, ast_text, of_sources
+from mrp_check.code.python_rule import PythonRule, of_sources
 from mrp_check.contract.finding import CERTAIN, Finding
 from mrp_check.contract.requirements import Rule
 
@@ -33,7 +33,7 @@ class NotCalled(PythonRule):
                 yield from self._statement(node, node.value)
 
     def _statement(self, node: ast.Expr, named: ast.Attribute | ast.Name) -> Iterator[Finding]:
-        text, is_spin = ast_text(named), self.source.dotted(named) == "rospy.spin"
+        text, is_spin = ast.unparse(named), self.source.dotted(named) == "rospy.spin"
         if is_spin or isinstance(self.source.definition(named), ast.FunctionDef):
             yield self.finding(
                 "spin" if is_spin else "node-start",

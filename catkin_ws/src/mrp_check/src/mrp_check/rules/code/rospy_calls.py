@@ -10,7 +10,7 @@ import ast
 from typing import Iterator
 
 from mrp_check.code.python_facts import argument
-from mrp_check.code.python_rule import PythonRule, ast_text, of_sources
+from mrp_check.code.python_rule import PythonRule, of_sources
 from mrp_check.code.python_source import Function
 from mrp_check.contract.finding import CERTAIN, READ, Finding
 from mrp_check.contract.requirements import Rule
@@ -96,7 +96,7 @@ class Calls(PythonRule):
                 yield from self._parameters(function, count, bound, taker, given)
 
     def _called_at_once(self, callback: ast.Call, called: ast.FunctionDef, taker: str) -> Finding:
-        name = ast_text(callback.func)
+        name = ast.unparse(callback.func)
         return self.finding(
             "callbacks",
             f"{called.name}() is called here once, and its result (None) is passed to {taker}(),"

@@ -45,7 +45,9 @@ def _findings(case: Case) -> Iterator[Finding]:
     if not model.finds_all:
         yield from _in_cmake(case, files)
     if manifest and (asked or model.message_files):
-        yield from _in_manifest(package, manifest, _is_brought_along(model))
+        # Another package brings what makes messages, as actionlib_msgs does.
+        is_brought = model.complete and "message_generation" not in model.components
+        yield from _in_manifest(package, manifest, is_brought)
     yield from _order(package, model)
 
 
@@ -113,14 +115,6 @@ def _is_of_action(path: str, model: Model) -> bool:
     return path.endswith(".msg") and last_part(path)[: -len(".msg")] in made
 
 
-def _is_brought_along(model: Model) -> bool:
-    """Return whether another package brings what makes messages, as actionlib_msgs does: then CMake
-    goes through without message_generation."""
-    goes_through = model.complete or "actionlib_msgs" in model.components
-    named = "message_generation" in model.components
-    return bool(goes_through and model.generate) and not named
-
-
 def _in_manifest(package: Package, manifest: Manifest, is_brought: bool) -> Iterator[Finding]:
     """Yield a finding for each package that makes or runs messages, and is not declared."""
     known = declared(manifest)
@@ -128,8 +122,6 @@ def _in_manifest(package: Package, manifest: Manifest, is_brought: bool) -> Iter
         ("message_generation", "build", "build_depend"),
         ("message_runtime", "exec", "exec_depend"),
     ):
-        # message_runtime is asked for where the package is installed: no build here needs it.
-        builds = kind == "exec" or "genmsg" in known[kind] or is_brought
         if kind == "exec" and manifest.package_format < 2:
             tag = "run_depend"
         if name not in known[kind]:
@@ -139,7 +131,8 @@ def _in_manifest(package: Package, manifest: Manifest, is_brought: bool) -> Iter
                 " own messages.",
                 "package.xml",
                 first_dependency(package, tag),
-                certainty=HABIT if builds else READ,
+                # message_runtime is asked for where the package is installed: no build needs it.
+                certainty=HABIT if is_brought or kind == "exec" else READ,
                 expected=f"<{tag}>{name}</{tag}>",
                 seen=f"no <{tag}> with {name}",
                 fix=f"Add the line <{tag}>{name}</{tag}>.",
