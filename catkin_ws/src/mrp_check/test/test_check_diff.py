@@ -24,9 +24,8 @@ def patched(folder, text):
         (TIMER, "rospy.Timer(0.5, self.callback)"),
         (TIMER, "rospy.Timer(rospy.Duration(0.5), self.callback(None))"),
         ("    rospy.spin()", "    rospy.spin"),
-        ("def callback(self, event):", "def callback(event):"),
     ],
-    ids=["number", "called", "not_called", "no_self"],
+    ids=["number", "called", "not_called"],
 )
 def test_finding_is_gone(old, new, tmp_path):
     findings = check_rules.python_findings(tmp_path, replaced(old, new))

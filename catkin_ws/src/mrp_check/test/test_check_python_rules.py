@@ -138,23 +138,6 @@ def test_what_is_typed_is_a_text(code, found, tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("module", "others", "found"),
-    [
-        ("msg", {}, [("python-names", 1)]),
-        ("srv", {"msg__A_DOT_msg": ""}, [("python-names", 1)]),
-        ("msg", {"msg__A_DOT_msg": ""}, []),
-        ("msg", {"action__A_DOT_action": "---\n---\n"}, []),
-        ("msg", {"src__some_pkg__msg_DOT_py": ""}, []),
-        ("nodes", {"src__some_pkg__nodes_DOT_py": ""}, []),
-    ],
-    ids=range(6),
-)
-def test_messages_of_a_package_that_has_none(module, others, found, tmp_path):
-    text = f"from some_pkg.{module} import *\n"
-    assert told(check_rules.python_findings(tmp_path, text, **others)) == found
-
-
-@pytest.mark.parametrize(
     ("function", "found"),
     [("def run(self, goal):", [("callbacks", 5)]), ("def run(goal):", []), ("def run(*a):", [])],
     ids=range(3),

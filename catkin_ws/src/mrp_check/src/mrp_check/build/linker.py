@@ -80,25 +80,16 @@ def _undefined(package: Package, model: Model, target: Target, match: re.Match[s
         return _of_ros(model, target, name)
     function = name.split("(")[0]
     simple = function.split("::")[-1]
-    for file in target.sources:
-        line = package.find_line(file, f"{simple}(") if file in package.files else None
-        if line:
-            return _link(
-                f"{name} is declared and called in the target {target.name}, but none of its"
-                " sources defines it.",
-                (file, line),
-                f"a definition of {function}",
-                package.line(file, line),
-                f"Define {function}, or correct its name where it is defined; or add its source to"
-                f" add_executable({target.name} ...).",
-                why="undefined-reference",
-            )
+    files = [file for file in target.sources if file in package.files]
+    lines = ((file, package.find_line(file, f"{simple}(")) for file in files)
+    used = next(((file, line) for file, line in lines if line), None)
     return _link(
-        f"The target {target.name} can't be linked: none of its sources defines {name}.",
-        (target.file, target.line),
+        f"{name} is used in the target {target.name}, but none of its sources defines it.",
+        used or (target.file, target.line),
         f"a definition of {function}",
-        ", ".join(target.sources),
-        "Add the source that defines it.",
+        package.line(*used) if used else ", ".join(target.sources),
+        f"Define {function}, or correct its name where it is defined; or add its source to"
+        f" add_executable({target.name} ...).",
         why="undefined-reference",
     )
 

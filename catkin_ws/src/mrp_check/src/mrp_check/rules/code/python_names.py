@@ -25,7 +25,7 @@ from mrp_check.code.python_modules import (
 )
 from mrp_check.code.python_rule import PythonRule, of_sources
 from mrp_check.code.python_source import Source
-from mrp_check.contract.finding import CERTAIN, HABIT, READ, Change, Finding
+from mrp_check.contract.finding import CERTAIN, HABIT, READ, Finding
 from mrp_check.contract.names import last_part, nearest, perhaps
 from mrp_check.contract.requirements import Requirement, Rule
 from mrp_check.package.package import Package
@@ -65,7 +65,6 @@ class Names(PythonRule):
 
     def _module(self, node: ast.stmt, name: str) -> Iterator[Finding]:
         if self.is_own(name):
-            yield from self._generated(node, name)
             return
         missing, parent = None, None
         for length in range(1, name.count(".") + 2):
@@ -115,22 +114,6 @@ class Names(PythonRule):
             node,
             expected="a module that is installed",
             fix=f"Write {near}." if near else "Correct the name of the module.",
-        )
-
-    def _generated(self, node: ast.stmt, name: str) -> Iterator[Finding]:
-        """Yield the Finding about messages, or services, of a package that has none."""
-        kinds = {"msg": ("message", "action"), "srv": ("service",)}
-        part = name.partition(".")[2]
-        is_there = part not in kinds or self.package.of_kind(*kinds[part])
-        if is_there or name.split(".")[0] != self.package.name or self.has_module(name):
-            return
-        yield self.finding(
-            "python-names",
-            f"{name} is generated from the files in {part}/, but this package has none: Python"
-            " raises a ModuleNotFoundError.",
-            node,
-            expected=f"files in {part}/, and generate_messages() in CMakeLists.txt",
-            fix=f"Add them; or import the {part} module of the package that has them.",
         )
 
     def _imported(self, node: ast.ImportFrom, origin: str) -> Iterator[Finding]:
@@ -241,8 +224,6 @@ class Names(PythonRule):
                 why="local-before-assignment",
             )
         members = self._members()
-        if name == "self" and name not in members:
-            return self._no_self(message)
         hint, fix = self._meant(name, members)
         return self.finding(
             "python-names",
@@ -261,6 +242,8 @@ class Names(PythonRule):
 
     def _meant(self, name: str, members: Collection[str]) -> tuple[str, str]:
         """Return what may be meant by a name that nothing has, and what to do."""
+        if name == "self":
+            return " A method's first parameter has to be self.", "Write self as the first one."
         if name in members:
             return f" Did you mean self.{name}?", f"Write self.{name}."
         if uses.is_installed(name) or is_module(name):
@@ -273,21 +256,6 @@ class Names(PythonRule):
         names |= {node.name for node in self.source.nodes(ast.FunctionDef)}
         names |= {node.name for node in self.source.nodes(ast.ClassDef)}
         return perhaps(nearest(name, names)), "Correct the name, or define it before it is used."
-
-    def _no_self(self, message: messages.Message) -> Finding:
-        """Return the finding about a method without self: its def line is to blame."""
-        methods = self.source.nodes(ast.FunctionDef)
-        around = [one for one in methods if one.lineno <= message.lineno <= last_line(one)]
-        method = max(around, key=lambda node: node.lineno, default=None)
-        return self.finding(
-            "python-names",
-            "Nothing is called self here: a method's first parameter has to be self.",
-            method.lineno if method else message.lineno,
-            expected=f"def {method.name}(self, ...)" if method else "self as the first parameter",
-            fix="Write self as the first parameter of the method.",
-            change=_self_first(method) if method else None,
-            why="name-not-defined",
-        )
 
     def attributes(self) -> Iterator[Finding]:
         """Names of modules that do not exist, such as rospy.spln and numpy.int."""
@@ -318,11 +286,6 @@ class Names(PythonRule):
 
 def _is_self(node: ast.expr) -> bool:
     return isinstance(node, ast.Name) and node.id == "self"
-
-
-def _self_first(method: ast.FunctionDef) -> Change:
-    rest = ", " if method.args.args or method.args.vararg or method.args.kwarg else ""
-    return f"def {method.name}(", f"def {method.name}(self{rest}"
 
 
 def _syntax(case: Case) -> Iterator[Finding]:
