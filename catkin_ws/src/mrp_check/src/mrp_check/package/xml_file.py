@@ -6,21 +6,19 @@ from __future__ import annotations
 import dataclasses
 import re
 import xml.parsers.expat
-from typing import Iterable, Iterator, Sequence
 
-from mrp_check.contract.finding import HABIT, Finding
+from mrp_check.contract.finding import Finding
 from mrp_check.package.package import Package, declared_entity
 
 
 @dataclasses.dataclass
 class Element:
-    """One XML element; line: where it begins; texts: what stands directly in it, and the lines."""
+    """One XML element; line: where it begins."""
 
     tag: str
     attributes: dict
     line: int
     parents: list
-    texts: list[tuple[str, int]] = dataclasses.field(default_factory=list)
 
 
 class UnclosedError(xml.parsers.expat.ExpatError):
@@ -53,37 +51,13 @@ def elements(data: bytes) -> list[Element]:
         found.append(element)
         stack.append(element)
 
-    def say(text: str) -> None:
-        if text.strip() and stack:
-            stack[-1].texts.append((text.strip(), parser.CurrentLineNumber))
-
     parser.StartElementHandler = start
-    parser.CharacterDataHandler = say
     parser.EndElementHandler = lambda tag: stack.pop()
     try:
         parser.Parse(data, True)
     except xml.parsers.expat.ExpatError as error:
         raise UnclosedError(error, stack[-1]) if stack else error from None
     return found
-
-
-def stray(
-    id_: str, package: Package, tags: Iterable[tuple[str, Element]], readers: Sequence[str]
-) -> Iterator[Finding]:
-    """Yield a warning for each line of text that stands between elements. readers: the elements of
-    which the text is read"""
-    for file, element in tags:
-        for text, line in element.texts if element.tag not in readers else ():
-            yield Finding(
-                id_,
-                f"There's text between the tags here, but nothing reads it: {text[:40]}",
-                file,
-                line,
-                HABIT,
-                expected="elements, and comments between <!-- and -->",
-                seen=package.line(file, line),
-                fix="Remove it, or turn it into a comment.",
-            )
 
 
 def xml_finding(

@@ -10,7 +10,7 @@ from mrp_check.contract.finding import CERTAIN, HABIT, HINT, Finding, Line
 from mrp_check.contract.names import nearest
 from mrp_check.contract.requirements import Requirement, Rule
 from mrp_check.package.launch import Launch
-from mrp_check.package.xml_file import Element, stray
+from mrp_check.package.xml_file import Element
 from mrp_check.run import evidence
 from mrp_check.run.case import Case
 
@@ -28,7 +28,6 @@ def _findings(case: Case) -> Iterator[Finding]:
         if launch.error:
             yield _error(launch, tags, case.spec.is_contract)
         yield from _warned(launch, tags)
-        yield from stray("launch-file", case.package, tags, ("rosparam",))
 
 
 # What roslaunch says of an element's attribute or name, or of an element (and the one around it).

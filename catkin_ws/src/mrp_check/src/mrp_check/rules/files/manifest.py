@@ -8,7 +8,6 @@ from typing import Iterator
 from mrp_check.contract.finding import HABIT, HINT, Finding
 from mrp_check.contract.requirements import Requirement, Rule
 from mrp_check.package.manifest import FILE, of_ros_2
-from mrp_check.package.xml_file import elements, stray
 from mrp_check.run import evidence
 from mrp_check.run.case import Case
 
@@ -34,9 +33,6 @@ def _findings(case: Case) -> Iterator[Finding]:
             else "Add the line <buildtool_depend>catkin</buildtool_depend>.",
             why="" if ros_2 else "buildtool-missing",
         )
-    if manifest:
-        tags = [(FILE, one) for one in elements(package.bytes(FILE)) if one.tag == "package"]
-        yield from stray("manifest", package, tags, ())
     if manifest and "TODO" in manifest.licenses:
         yield _no_licence(case)
 
