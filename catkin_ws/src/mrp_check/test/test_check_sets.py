@@ -139,7 +139,6 @@ def test_exercise_fails_for_its_own_reason_and_its_solution_passes(exercise, tmp
 WRITTEN = {
     "mrp": "wrong_type",
     "talker_listener_py": "listener_topic",
-    "talker_listener_cpp": "talker_rate",
     "relay": "message_field_type",
     "add_two_ints": "sum_py_offered_name",
 }
@@ -168,7 +167,7 @@ def test_a_contract_is_written_from_a_correct_package(style, tmp_path, run_check
 
 ALONE = [
     ("mrp", "launch/pub_sub.launch", 'type="subscriber_py', 'type="publisher_py', "launch-nodes"),
-    ("scripts_folder", "src/even.cpp", "unsigned int", "unsigned short", "wrap"),
+    ("mrp", "src/publisher_cpp_node.cpp", "uint32_t counter_", "uint16_t counter_", "wrap"),
 ]
 
 

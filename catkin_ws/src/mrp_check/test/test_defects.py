@@ -1,15 +1,16 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Reads the defects in mrp_check/defects/: each applies, and its head says who must find it.
+"""Reads the patches in mrp_check/defects/ and correct/: each applies, and its head is right.
 
-test_broken.py and test_check_sets.py see whether it is found.
+test_broken.py and test_check_sets.py see whether a defect is found, and no correct package is.
 """
 
 import pathlib
 import re
+import xml.etree.ElementTree as ElementTree
 
 import check_sets
 import pytest
-from mrp_check.contract import defects
+from mrp_check.contract import defects, resources, spec
 from mrp_check.rules import REQUIREMENTS
 from mrp_testing import errata
 
@@ -64,11 +65,6 @@ def test_head_names_what_is_there(defect):
         files = TESTS.glob(f"test_{rostest[: -len('.test')]}.*")
         assert (TESTS / rostest).exists()
         assert any(re.search(rf"\b{case}\b", path.read_text()) for path in files), case
-
-
-def test_there_are_as_many_as_were_asked_for():
-    assert len(check_sets.DEFECTS) >= 40
-    assert len(check_sets.STYLES) >= 12
 
 
 def test_exercises_are_a_path():
@@ -167,3 +163,26 @@ def test_head_that_cannot_be_read_is_named(old, new, fault, tmp_path):
 def test_folder_without_defects_is_an_error(tmp_path):
     with pytest.raises(defects.DefectError, match=r"^Expected patches in .*; there's none\.$"):
         defects.read_all(tmp_path)
+
+
+OTHERS = check_sets.STYLES[1:]  # than the tutorial's
+
+FIELDS = ("Base", "Without", "CRLF", "Spec", "Warns")
+
+
+@pytest.mark.parametrize("style", OTHERS)
+def test_style_makes_a_package(style, tmp_path):
+    check_sets.lay_out(style, tmp_path)
+    contract = spec.read(resources.folder("contracts") / check_sets.spec_of(style))
+    expected = {"package", "launch"} if contract.launch.file else {"package"}
+    xml = [path for path in tmp_path.rglob("*") if path.suffix in (".launch", ".xml")]
+    assert {ElementTree.parse(path).getroot().tag for path in xml} >= expected
+
+
+@pytest.mark.parametrize("style", OTHERS)
+def test_head_of_a_style_names_what_is_there(style):
+    fields = check_sets.fields_of(style)
+    assert {*fields} <= {"SPDX-License-Identifier", "Style", *FIELDS}
+    assert fields["Base"][0] in (*check_sets.STYLES, "nothing")
+    assert (resources.folder("contracts") / check_sets.spec_of(style)).exists()
+    assert [id_ for id_ in fields.get("Warns", []) if id_ not in REQUIREMENTS] == []

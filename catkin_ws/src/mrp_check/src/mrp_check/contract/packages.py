@@ -2,8 +2,9 @@
 """The correct packages, and how a defect breaks one: the tutorial's, and those of mrp_check's
 folder correct/, which has one patch for each style of writing one.
 
-A style's patch makes whole files, which replace those of its base: so it still fits when the base
-changes. Its head says:
+A style's patch makes whole files, which replace those of the tutorial: so it still fits when the
+tutorial changes. That of a style whose base is another style changes the base's files. Its head
+says:
 
     Style: no classes    what is different in it
     Base: mrp            whose other files it shares: mrp is the tutorial's; nothing: no base
@@ -12,7 +13,8 @@ changes. Its head says:
     Spec: relay.yaml     the spec that it follows, if not pub_sub.yaml
     Warns: queue         a requirement for which a warning is right
 
-To change a style, lay its own files out in a folder b. Edit them, and write the patch again:
+To change a style, lay its own files out in a folder b; if its base is another style, begin with
+that one's files in a and b. Edit them, and write the patch again:
 
     mkdir a b; patch -p1 -d b < STYLE.patch
     (sed '/^diff /,$d' STYLE.patch; git diff --no-index --no-prefix a b) > new; mv new STYLE.patch
@@ -58,9 +60,17 @@ def lay_out(style: str, folder: pathlib.Path) -> None:
         return
     fields = fields_of(style)
     (base,) = fields["Base"]
-    if base != "nothing":
-        lay_out(base, folder)
-    _lay_over(CORRECT / f"{style}.patch", folder)
+    if base == TUTORIAL:
+        _copy_tutorial(folder)
+    with tempfile.TemporaryDirectory() as parent:
+        own = pathlib.Path(parent) / "own"
+        own.mkdir()
+        if base not in ("nothing", TUTORIAL):
+            lay_out(base, own)
+        patch = CORRECT / f"{style}.patch"
+        if re.search(rb"^diff ", patch.read_bytes(), re.MULTILINE):  # not only a head
+            _patch(patch, own)
+        shutil.copytree(own, folder, dirs_exist_ok=True)
     without, crlf = (fields.get(field, [""])[0].split() for field in ("Without", "CRLF"))
     for path in without:
         (folder / path).unlink()
@@ -77,17 +87,6 @@ def _copy_tutorial(folder: pathlib.Path) -> None:
         )
     ignore = shutil.ignore_patterns("doc", "__pycache__")
     shutil.copytree(tutorial, folder, ignore=ignore, dirs_exist_ok=True)
-
-
-def _lay_over(patch: pathlib.Path, folder: pathlib.Path) -> None:
-    """Put the files that a style's patch makes into `folder`, in place of others of their names."""
-    if not re.search(rb"^diff ", patch.read_bytes(), re.MULTILINE):
-        return  # only the head says what is different
-    with tempfile.TemporaryDirectory() as parent:
-        own = pathlib.Path(parent) / "own"
-        own.mkdir()
-        _patch(patch, own)
-        shutil.copytree(own, folder, dirs_exist_ok=True)
 
 
 def break_(folder: pathlib.Path, defect: defects.Defect, *options: str) -> None:
