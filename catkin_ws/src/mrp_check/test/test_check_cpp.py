@@ -70,6 +70,19 @@ BROKEN = {
         "subscribe",
         "kept anywhere",
     ),
+    "local_publisher": (
+        PUBLISHER,
+        [
+            (f"    {ADVERTISE}\n", ""),
+            (
+                "publisher_.publish",
+                ADVERTISE.replace("publisher_ =", "auto own =") + " own.publish",
+            ),
+        ],
+        "lifetime",
+        "auto own",
+        "destroyed when that function returns",
+    ),
     "no_timer": (PUBLISHER, [(TIMER, "")], "callbacks", "void timerCallback", "nothing ever"),
     "signed_counter": (
         PUBLISHER,
@@ -77,6 +90,13 @@ BROKEN = {
         "wrap",
         "int counter_",
         "undefined",
+    ),
+    "float_counter": (
+        PUBLISHER,
+        [("uint32_t counter_", "float counter_")],
+        "wrap",
+        "float counter_",
+        "whole steps",
     ),
 }
 

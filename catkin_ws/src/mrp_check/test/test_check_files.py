@@ -38,10 +38,11 @@ LATIN1 = b"#!/usr/bin/env python\n# coding: latin-1\n# \xe4\n"
         (NODE.encode(), "", []),
         ("#!/usr/bin/env python\n# ä\n".encode(), "", []),
         (LATIN1, "", []),
+        (LATIN1.replace(b"coding", b"letters"), "", [("text", 3)]),
         (LATIN1, CMAKE, [("text", 3)]),  # what catkin_install_python() makes reads it as UTF-8
         (NODE.encode("utf-16"), "", [("text", 1)]),
     ],
-    ids=range(5),
+    ids=range(6),
 )
 def test_text(content, cmake_text, expected, tmp_path):
     package = check_rules.make(tmp_path, CMakeLists_DOT_txt=cmake_text, src__odd_DOT_py=content)
@@ -57,8 +58,9 @@ def test_text(content, cmake_text, expected, tmp_path):
         (' email="someone@some.example"', "", 6, "email"),
         ("<depend>rospy", "<dependd>rospy", 10, "dependd"),
         ("<depend>rospy</depend>", "<run_depend>rospy</run_depend>", 10, "run_depend"),
+        ("  <buildtool_depend>catkin</buildtool_depend>\n", "", 8, "built with catkin"),
     ],
-    ids=range(6),
+    ids=range(7),
 )
 def test_broken_manifest(old, new, line, says, tmp_path):
     assert MANIFEST.count(old) == 1

@@ -61,6 +61,15 @@ PUBLISHER_PY = 'type="publisher_py_node.py" name="publisher_py_node"'
 NOWHERE = '<launch><{} "$(find nowhere)/a"/>'
 BROKEN = {
     "no_type": ('type="publisher_cpp_node" ', "", [("launch-file", 4)], "type="),
+    "undeclared_argument": ("$(arg group)", "$(arg grp)", [("launch-file", 3)], "grp"),
+    "other_name": (
+        *('name="publisher_cpp_node"', 'name="publisher"'),
+        *([("launch-nodes", 4)], "publisher_cpp_node"),
+    ),
+    "no_such_package_of_a_node": (
+        *('pkg="some_pkg" type="publisher_cpp', 'pkg="sme_pkg" type="publisher_cpp'),
+        *([("package-name", 4)], "sme_pkg"),
+    ),
     "no_such_package": (
         *("<launch>", NOWHERE.format("include file=")),
         *([("launch-file", 1)], "nowhere"),

@@ -50,6 +50,7 @@ BROKEN = [
     ("import UInt32", "import UInt23", "python-names", "UInt23", "UInt32"),
     ("import rospy\n", "import rospi\n", "python-names", "import rospi", "rospi"),
     ("def main():", "def main()", "python-syntax", "def main()", "expected ':'"),
+    ("self.publisher.publish", "publisher.publish", "python-names", "publisher.publish", "self"),
     ("        msg = ", "       msg = ", "python-syntax", "msg = UInt32|msg.data", "indent"),
 ]
 
