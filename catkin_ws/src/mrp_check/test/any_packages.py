@@ -41,32 +41,6 @@ if __name__ == "__main__":
     rospy.init_node("client")
     ask(sys.argv[1] == "1")
 """
-# Its usage is a function of its own, far from where it ends. What it imports is no node.
-_ASKER = """\
-#!/usr/bin/env python3
-import sys
-
-import rospy
-from asking import ask
-
-
-def usage():
-    return "%s [x y]" % sys.argv[0]
-
-
-def ask_both(x, y):
-    rospy.init_node("asker")
-    ask(x)
-    ask(y)
-
-
-if __name__ == "__main__":
-    if len(sys.argv) == 3:
-        ask_both(*sys.argv[1:])
-    else:
-        print(usage())
-        sys.exit(1)
-"""
 _INDEXED = """\
 #!/usr/bin/env python3
 import sys
@@ -77,15 +51,6 @@ if __name__ == "__main__":
     rospy.init_node("indexed")
     rospy.loginfo("hello, %s", sys.argv[1])
     rospy.spin()
-"""
-_ASKING = """\
-#!/usr/bin/env python3
-import rospy
-from std_srvs.srv import SetBool
-
-
-def ask(wanted):
-    print(rospy.ServiceProxy("switch", SetBool)(wanted == "1"))
 """
 # rostest runs it, and it ends by itself.
 _TEST = """\
@@ -211,9 +176,7 @@ def faulty(folder):
         ),
         "scripts__client_DOT_py": _CLIENT,
         "scripts__waits_DOT_py": _WAITER,
-        "scripts__asker_DOT_py": _ASKER,
         "scripts__indexed_DOT_py": _INDEXED,
-        "scripts__asking_DOT_py": _ASKING,
     }
     check_rules.make(folder, **files)
     (folder / "scripts" / "ends.py").chmod(0o644)

@@ -30,12 +30,8 @@ _LAUNCH = """\
   <node pkg="some_pkg" type="sends_frames.py" name="sends_frames"/>
   <node pkg="some_pkg" type="service.py" name="service"/>
   <node pkg="some_pkg" type="caller.py" name="caller"/>
-  <node pkg="some_pkg" type="number.py" name="number"/>
   <node pkg="some_pkg" type="once.py" name="once"/>
   <node pkg="some_pkg" type="hears_once.py" name="hears_once"/>
-  <node pkg="some_pkg" type="rate.py" name="rate">
-    <param name="rate" value="5"/>
-  </node>
   <node pkg="some_pkg" type="hurries.py" name="hurries"/>
   <node pkg="some_pkg" type="fast" name="fast"/>
   <node pkg="some_pkg" type="locks.py" name="locks"/>
@@ -176,18 +172,6 @@ except rospy.ServiceException as error:
 except rospy.ROSInterruptException:
     pass
 """,
-    "number.py": """\
-from std_msgs.msg import Int32
-
-
-def hear(message):
-    rospy.loginfo("heard %s", message.data)
-
-
-rospy.init_node("number")
-subscriber = rospy.Subscriber("chatter", Int32, hear)
-rospy.spin()
-""",
     "once.py": """\
 from std_msgs.msg import String
 
@@ -207,12 +191,6 @@ def hear(message):
 rospy.init_node("hears_once")
 subscriber = rospy.Subscriber("greeting", String, hear)
 rospy.spin()
-""",
-    "rate.py": """\
-rospy.init_node("rate")
-rate = rospy.Rate(rospy.get_param("rate"))
-while not rospy.is_shutdown():
-    rate.sleep()
 """,
     # It holds the lock that rospy holds while it asks the master: if Ctrl-C comes then, rospy's own
     # handler waits for it for ever.
@@ -280,9 +258,7 @@ _RIGHT = {
     "frames.py": (f"{_LOOP}    {_BUFFER}    {_LISTENER}", f"{_BUFFER}{_LISTENER}{_LOOP}"),
     "sends_frames.py": ("rotation.w = 0", "rotation.w = 1"),
     "service.py": ("succes=", "success="),
-    "number.py": ("Int32", "String"),
     "once.py": ("queue_size=10", "queue_size=10, latch=True"),
-    "rate.py": ('"rate"))', '"~rate"))'),
     "hurries.py": ("    count = rospy.get_time()\n", "    rate.sleep()\n"),
     "fast.cpp": ("// sleep", "rate.sleep();"),
     "asks.cpp": ("key < 1", "key < 0"),

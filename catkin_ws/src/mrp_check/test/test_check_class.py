@@ -79,59 +79,6 @@ def test_each_folder_is_a_submission(tmp_path):
     assert [begun, *(part for _, *part in ended)] == [[0, 2], [1, 2], [2, 2]]
 
 
-def two_packages(folder):
-    hand_in(folder, "one")
-    hand_in(folder, "two")
-
-
-def many_files(folder):
-    hand_in(folder.parent, folder.name)
-    for number in range(package.MAX_FILES + 1):
-        (folder / str(number)).touch()
-
-
-def deep_folders(folder):
-    path = folder
-    for _ in range(300):
-        path = path / "d"
-        path.mkdir(parents=True)
-
-
-def link_out(folder):
-    outside = hand_in(folder.parent.parent, "outside")
-    folder.symlink_to(outside)
-
-
-def loop(folder):
-    folder.mkdir(parents=True)
-    (folder / "a").symlink_to(folder)
-
-
-BROKEN = {
-    "empty": (lambda folder: folder.mkdir(parents=True), "no package.xml"),
-    "two": (two_packages, "more than one package: one, two"),
-    "many": (many_files, "has more than"),
-    "deep": (deep_folders, "no package.xml"),
-    "out": (link_out, "a link out of the class's folder"),
-    "loop": (loop, "no package.xml"),
-}
-
-
-@pytest.mark.parametrize("kind", BROKEN)
-def test_a_broken_submission_does_not_stop_the_rest(tmp_path, kind):
-    make, reason = BROKEN[kind]
-    hand_in(tmp_path / "class", "anna")
-    make(tmp_path / "class" / kind)
-    hand_in(tmp_path / "class", "zoe")
-    room = Room(tmp_path / "class")
-    assert room.verdicts() == {
-        "anna": check.FINDINGS,
-        kind: check.UNCHECKED,
-        "zoe": check.FINDINGS,
-    }
-    assert reason in room.reason(kind)
-
-
 def test_links_within_a_submission_lead_nowhere(tmp_path):
     """What a link in a submission leads to is neither read nor copied."""
     made = hand_in(tmp_path / "class", "anna")

@@ -14,7 +14,6 @@ from check_sets import DEFECTS, break_, lay_out
 from mrp_check import sandbox
 from mrp_testing.process import processes_with
 from mrp_testing.waiting import wait_until
-from test_check_class import BROKEN
 from test_check_cluster import SPEC, checked, quick  # noqa: F401
 from test_check_handed_in import BOMB, REFUSED, state
 from test_check_harm import PLANTED
@@ -46,26 +45,13 @@ def write(path): path.write_text("{{}}")
 
 # What it does -> when (see STAGES), and how.
 HARM = {
-    "forks": ("configures", "for _ in range(9): os.fork()\ntime.sleep(60)"),
-    "stays": (
-        "configures",
-        "if not os.fork():\n    os.setsid(); os.closerange(0, 99); run('sh', '-c', 'sleep 600')",
-    ),
     "stays_without_a_trace": (
         "runs",
         "run('env', '-i', 'sh', '-c', 'setsid sh -c \"sleep 600; exit\" $0 < /dev/null &')",
     ),
-    "takes_memory_together": (
-        "builds",
-        "for _ in range(2): os.fork()\nx = b'x' * 900_000_000\ntime.sleep(20)",
-    ),
     "takes_shared_memory": (
         "configures",
         "pathlib.Path('/dev/shm/some_pkg').write_bytes(bytes(2**27)) if own_home() else 0",
-    ),
-    "fills_the_disk": (
-        "configures",
-        "for n in range(5): os.posix_fallocate(os.open(f'{n}', 66), 0, 250_000_000)\ntime.sleep(9)",
     ),
     "locks": ("configures", "try_all(lambda path: os.chmod(path, 0), [*os.walk('.')][0][1])"),
     "has_odd_names": ("configures", "open(b'\\xff\\n\\x1b[2J', 'w'); open('-rf', 'w')"),
@@ -153,10 +139,9 @@ def neighbours(folder):
 
 def hostiles(base, port):
     """Make the submissions that mean harm; return the names."""
-    prelude, made = PRELUDE.format(base=base, port=port), [*REFUSED, *BROKEN]
-    made += [*HARM, *FILES]
+    prelude, made = PRELUDE.format(base=base, port=port), [*REFUSED, *HARM, *FILES]
     names = {one: f"{number % 7}1_{one}" for number, one in enumerate(made)}
-    for one, (make, _) in {**REFUSED, **BROKEN}.items():
+    for one, (make, _) in REFUSED.items():
         make(base / "class" / names[one])
     for one, (stage, program) in HARM.items():
         STAGES[stage](base / "class" / names[one], prelude + program)

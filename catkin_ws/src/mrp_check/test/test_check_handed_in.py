@@ -17,7 +17,7 @@ from mrp_check.cli import check as check_command
 from mrp_check.contract.finding import HINT
 from mrp_check.contract.verdict import unchecked
 from mrp_check.package import manifest
-from mrp_check.package.package import MAX_BYTES, Package
+from mrp_check.package.package import MAX_BYTES, MAX_FILES, Package
 from mrp_check.rules.files import text
 from mrp_check.verdict import check
 from test_check_class import Room
@@ -70,7 +70,7 @@ def reason(uploads, **options):
     """Return why the only submission could not be checked."""
     (one,) = read(uploads, **options).results_of.values()
     assert one.report["verdict"] == check.UNCHECKED, one.name
-    assert one.report["reason"].startswith(one.name.replace("\n", " "))
+    assert one.name.replace("\n", " ") in one.report["reason"]
     return one.report["reason"]
 
 
@@ -118,6 +118,29 @@ def of_bytes(data):
     return lambda path: path.write_bytes(data)
 
 
+def many_files(folder):
+    hand_in(folder.parent, folder.name)
+    for number in range(MAX_FILES + 1):
+        (folder / str(number)).touch()
+
+
+def deep_folders(folder):
+    path = folder
+    for _ in range(300):
+        path = path / "d"
+        path.mkdir(parents=True)
+
+
+def link_out(folder):
+    outside = hand_in(folder.parent.parent, "outside")
+    folder.symlink_to(outside)
+
+
+def loop(folder):
+    folder.mkdir()
+    (folder / "a").symlink_to(folder)
+
+
 # The upload -> what makes it, and what the sentence says.
 REFUSED = {
     "absolute.tar.gz": (tar_with("/etc/cron.d/x"), "its entry /etc/cron.d/x leads out of it"),
@@ -133,6 +156,10 @@ REFUSED = {
     "wrong.bundle": (of_bytes(b"# v2 git bundle\n\n"), "can't be unpacked: "),
     "nothing.zip": (lambda path: zip_(path, {"a/x.py": ""}), "nothing.zip has no package.xml"),
     "folder": (lambda path: handed_in.folder(path, {"a.pdf": ""}), "below it, but a.pdf: expected"),
+    "many": (many_files, "has more than"),
+    "deep": (deep_folders, "no package.xml"),
+    "out": (link_out, "a link out of the class's folder"),
+    "loop": (loop, "no package.xml"),
     "pipe": (os.mkfifo, "is neither a folder nor a file"),
 }
 

@@ -20,7 +20,9 @@ from mrp_check.run.places import Places
 pytestmark = pytest.mark.quick
 
 
-PACKAGE = types.SimpleNamespace(name="some_pkg", text={"src/b.cpp": "talk /say"}.get)
+PACKAGE = types.SimpleNamespace(
+    name="some_pkg", text={"src/b.cpp": "talk /say"}.get, line=lambda *_: ""
+)
 
 
 def findings(rule, runs, **known):
@@ -140,24 +142,6 @@ def test_a_node_that_gets_messages_and_calls_no_callback(asked, kinds, found):
     assert severities(called_back, launches, facts=facts) == found
 
 
-@pytest.mark.parametrize(("header", "found"), [("nowhere_msgs/A.h", 0), ("std_msgs/String.h", 1)])
-def test_what_needs_a_header_that_is_not_here_is_not_blamed(header, found, tmp_path):
-    """What else is wrong in the package need not be what makes the program fail."""
-    package = check_rules.make(tmp_path / "some_pkg", src__a_DOT_cpp=f"#include <{header}>\n")
-    places = types.SimpleNamespace(in_launch_file=lambda name: (None, None))
-    node = types.SimpleNamespace(name="a", has_executable=False, places=places, not_up=[])
-    node.finding = lambda id_, message, place, **more: Finding(id_, message, **more)
-    known = types.SimpleNamespace(
-        package=package,
-        facts=Facts(sources={"a": ["src/a.cpp"]}),
-        built=types.SimpleNamespace(ok=False),
-        spec=types.SimpleNamespace(is_contract=False),
-        observed=types.SimpleNamespace(problems=[], own_launch=False, launch=None),
-        nodes={"a": node},
-    )
-    assert len([*check_rules.of(starts.RULE, known)]) == found
-
-
 # What a node runs into, its exit code, and what its source does -> how sure it is that the package
 # is to blame: started by itself, and under its own launch file.
 ENDS = [
@@ -268,41 +252,6 @@ def test_a_service_of_another_name(sought, offered, others, found):
 
 
 @pytest.mark.parametrize(
-    ("line", "kind", "time", "found"),
-    [
-        ("n = int(text)", "ValueError", 1, [ERROR]),  # what it raised, and not that it died
-        ("n = int(text)", "ValueError", 5.1, [ERROR]),  # it was asked to end by then: that it died
-        ("n = ask()", "KeyboardInterrupt", 1, [ERROR]),
-    ],
-    ids=range(3),
-)
-def test_what_a_node_raises_under_roslaunch(line, kind, time, found, tmp_path):
-    package = check_rules.make(tmp_path / "some_pkg", src__odd_DOT_py=f"{line}\n")
-    places = types.SimpleNamespace(
-        wrong_arguments=lambda lines: None,
-        traceback=lambda lines: (("src/odd.py", 1), kind, "no") if kind in lines else None,
-        sources=lambda node: ["src/odd.py"],
-        of=lambda *given: ("src/odd.py", 1),
-    )
-    died = "[odd-1] process has died [pid 7, exit code 1, cmd odd.py __name:=odd]."
-    lines = [(time, "err", kind), (4, "out", died)]
-    logged = Log("/odd", "ERROR", "No service.", "", 0, 3)
-    seen = LaunchResult(ending="enough", asked=5, lines=lines, seen=Seen(logs=[logged]))
-    known = types.SimpleNamespace(
-        package=package,
-        facts=Facts(sources={"odd": ["src/odd.py"]}),
-        places=places,
-        launches=[],
-        spec=types.SimpleNamespace(is_contract=False),
-        nodes={"odd": types.SimpleNamespace(not_up=[])},
-        observed=types.SimpleNamespace(launches=[Launched("a.launch", {"/odd": "odd"}, seen)]),
-    )
-    said = [*check_rules.of(exceptions.RULE, known, exceptions.under_launch_files)]
-    assert [one.severity for one in said] == found
-    assert all(f"{kind}: no" in f.message or "error: No service." in f.message for f in said)
-
-
-@pytest.mark.parametrize(
     ("topic", "calls", "certainty"),
     [("/tf", "", HINT), ("/talk", "", ""), ("/talk", "rospy.signal_shutdown", HABIT)],
 )
@@ -328,8 +277,10 @@ def test_what_waits_for_messages_does_not_end(topic, calls, certainty):
         (Alone(code=0, ended_after=1.0), [], "by itself, it ends without an error."),
         (Alone(code=0, ended_after=1.0), ["No port."], "Its last error: No port."),
         (Alone(code=1, ended_after=1.0), [], None),  # it says so by itself
+        (Alone(asked=9.0), ["KeyboardInterrupt"], "Its last error: KeyboardInterrupt"),
+        (Alone(asked=9.0), ["ValueError"], "runs into an error"),  # and not that it died
     ],
-    ids=range(4),
+    ids=range(6),
 )
 def test_what_dies_only_under_a_launch_file(alone, logs, says):
     """One finding says it, whatever the node does by itself; and not that it has to spin."""
@@ -339,10 +290,12 @@ def test_what_dies_only_under_a_launch_file(alone, logs, says):
     launches = [Launched("a.launch", {"/a": "a"}, seen)]
     said = Finding("spin", "a ends.", "src/a.cpp", 1, node="a", fix="Call ros::spin().")
     facts = Facts(sources={"a": []})
-    places = types.SimpleNamespace(
-        facts=facts, traceback=lambda lines: None, of=lambda *_: (None, 1)
+    places = types.SimpleNamespace(facts=facts, of=lambda *_: (None, 1), sources=list)
+    raised = ("KeyboardInterrupt", "ValueError")
+    places.traceback = lambda lines: next(
+        ((("src/a.cpp", 1), line, "no") for line in lines if line in raised), None
     )
-    places.wrong_arguments, places.sources = places.traceback, list
+    places.wrong_arguments = lambda lines: None
     node = types.SimpleNamespace(name="a", direct=alone, places=places, console=[], errors=list)
     node.not_up = [said] if alone.ended_after else []
     node.seen_alone = types.SimpleNamespace(subscriptions=[])
@@ -351,9 +304,12 @@ def test_what_dies_only_under_a_launch_file(alone, logs, says):
     case = types.SimpleNamespace(package=PACKAGE, launches=[], **known)
     case.spec = types.SimpleNamespace(is_contract=False)
     found = [*exceptions.under_launch_files(case)]
-    assert [one.seen for one in found] == ["killed by signal 11 (invalid memory)"] * bool(says)
-    assert all((one.certainty, one.id) == (SEEN, "starts") for one in found)
-    assert all(says in one.message and "spin" not in one.fix for one in found)
+    assert [says in one.message for one in found] == [True] * bool(says)
+    seen = (
+        "ValueError: no, in: " if "ValueError" in logs else "killed by signal 11 (invalid memory)"
+    )
+    assert all((one.certainty, one.seen) == (SEEN, seen) for one in found)
+    assert not [one for one in found if "spin" in one.fix]
     assert all(starts.weigh_start(case, node, one) == (not found) for one in node.not_up)
 
 

@@ -18,8 +18,6 @@ FOUND = [
     (ERROR, "callbacks", "scripts/service.py: succes=", "while it answers a service"),
     (ERROR, "warnings", "scripts/frames.py: logwarn", "though both are published"),
     (ERROR, "warnings", "scripts/sends_frames.py: init_node", "tf2 ignores it"),
-    (ERROR, "type", "scripts/number.py: Int32", "nothing arrives"),
-    (ERROR, "starts", "scripts/rate.py: get_param", "It dies under launch/all.launch"),
     (ERROR, "spin", "src/asks.cpp: spinOnce", "under launch/asks.launch, but"),
     (ERROR, "topic", "scripts/once.py: rospy.Publisher", "no subscriber is connected yet"),
     (WARNING, "spin", "scripts/hurries.py: while", "keeps a processor busy"),
