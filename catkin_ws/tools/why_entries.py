@@ -17,7 +17,8 @@ mrp_check/defects/. Its fields:
     Launch: <launch><nod/></launch>
                                    or a launch file that roslaunch is given; Python: a script, Cpp:
                                    for g++, CMake: the last lines of a CMakeLists.txt
-    Needs: master                  what they need: see tests/test_why.py, or docker/test/test_why.py
+    Needs: master                  what they need, of: a master; roscpp's headers; the manifest of a
+                                   package; a robot, a package with a node; docker, an engine
 
 There may be several fields Shows and Also, and several files. A line of Shows that begins with
 "12| " or "13| " is from one Debian release. tests/test_why.py runs Try, or gives each file to its

@@ -33,7 +33,7 @@ def run(*arguments, cwd=None, program=CHECK, **variables):
         (["no_such_folder"], "check: There's no folder no_such_folder.\n"),
         ([f"{HERE}s"], f"check: There's no folder {HERE}s. Did you mean test?\n"),
         ([os.devnull], "check: /dev/null isn't a folder; expected the folder of a package.\n"),
-        ([".", "--spec", "none.yaml"], "check: none.yaml: the spec can't be read: No such file"),
+        ([".", "--spec", "none.yaml"], "check: none.yaml: the contract can't be read: No such"),
         ([".", "--spec", __file__], f"check: {__file__}:"),
     ],
     ids=range(5),

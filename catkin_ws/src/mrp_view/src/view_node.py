@@ -155,7 +155,10 @@ def main():
     except OSError as error:
         advice = "--address takes an address of this machine, such as 127.0.0.1"
         if error.errno == errno.EADDRINUSE:
-            advice = "Another viewer may be running; --port chooses another port"
+            advice = (
+                "Another viewer may be running; --port chooses another port: "
+                'make view VIEW_OPTIONS="--port 8766"'
+            )
         where = f"{chosen.address} port {chosen.port}"
         sys.exit(f"error: cannot listen on {where}: {error.strerror}. {advice}")
     sys.exit(node.run())

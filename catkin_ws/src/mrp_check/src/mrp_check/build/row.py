@@ -10,7 +10,7 @@ from mrp_check.package.package import Package
 
 
 class Row(NamedTuple):
-    """See above.
+    """What to say where a tool reports one of its ids.
 
     says: our sentence; fix: what to do; why: the entry of the page why
     certainty: how sure it is that something is wrong; never more than READ, as nothing ran

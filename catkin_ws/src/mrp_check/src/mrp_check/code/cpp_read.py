@@ -18,7 +18,7 @@ _KEPT = 300  # characters of what the reader says when it fails
 
 
 class CppReader:
-    """See above.
+    """Reads a package's C++ sources by clang, confined.
 
     commands: a source's path -> (folder, command) of its compiler, as far as CMake says that
     headers: returns the file of cpp_headers.make(), once there is one

@@ -22,7 +22,7 @@ from mrp_check.package.package import Package
 def nodes(
     package: Package, spec: Spec, model: Model, launch: Launch | None, facts: Facts
 ) -> list[SourceNode]:
-    """Return the Nodes of the spec whose sources could all be read."""
+    """Return the SourceNodes of the spec whose sources could all be read."""
     started = {node.name: node for node in (launch.nodes if launch else [])}
     files = {name: facts.sources.get(name, []) for name in spec.nodes}
     return [
@@ -33,7 +33,7 @@ def nodes(
 
 
 class SourceNode:
-    """See above.
+    """What the sources of a node of the spec say of it.
 
     wanted: what the spec says of it
     files: its sources, main the first of them

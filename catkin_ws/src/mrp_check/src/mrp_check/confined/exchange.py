@@ -17,8 +17,11 @@ _SENDING = 100  # messages that may wait to be sent
 
 
 class Exchange:
-    """See above. own: the definitions() of the package's messages; patience: seconds after which
-    nothing more is waited for"""
+    """Calls the services, and sends the examples, of a contract to one node.
+
+    own: the definitions() of the package's messages
+    patience: seconds after which nothing more is waited for
+    """
 
     def __init__(
         self, plan: DirectNode, observer: Observer, own: Dict[str, List[str]], patience: float

@@ -9,7 +9,7 @@ import typing
 CCACHE = "MRP_CHECK_CCACHE"
 
 # What the checker hands to its own programs: how the observer starts the nodes, an apart.Apart;
-# what marks the processes of one run; and the observing.Hook of a Python node.
+# what marks the processes of one run; and the plans.Hook of a Python node.
 APART = "MRP_CHECK_APART"
 MARK = "MRP_CHECK_RUN"
 HOOK = "MRP_CHECK_HOOK"  # hook/sitecustomize.py has it, too: it can import nothing of this

@@ -87,15 +87,15 @@ def read(path: str | pathlib.Path, requirements: Collection[str] | None = None) 
         text = pathlib.Path(path).read_text(encoding="utf-8")
         data = yaml.load(text, Loader=Loader)
     except OSError as error:
-        raise SpecError(f"{path}: the spec can't be read: {error.strerror}.") from None
+        raise SpecError(f"{path}: the contract can't be read: {error.strerror}.") from None
     except UnicodeDecodeError as error:
-        raise SpecError(f"{path}: the spec isn't UTF-8 text, at byte {error.start}.") from None
+        raise SpecError(f"{path}: the contract isn't UTF-8 text, at byte {error.start}.") from None
     except yaml.MarkedYAMLError as error:
         mark = error.problem_mark or error.context_mark
         where = f"{path}:{mark.line + 1}" if mark else str(path)
-        raise SpecError(f"{where}: the spec isn't valid YAML: {error.problem}.") from None
+        raise SpecError(f"{where}: the contract isn't valid YAML: {error.problem}.") from None
     except yaml.YAMLError as error:
-        raise SpecError(f"{path}: the spec isn't valid YAML: {error}.") from None
+        raise SpecError(f"{path}: the contract isn't valid YAML: {error}.") from None
     return _Reader(path, text, requirements).spec(data)
 
 
@@ -117,7 +117,7 @@ class _Reader:
     def fail(self, place: Place, sentence: str) -> NoReturn:
         """Raise SpecError about the entry at `place`, a list of keys and indices."""
         line, known = self.found(place)
-        name = ".".join(known) or "the spec"
+        name = ".".join(known) or "the contract"
         raise SpecError(f"{self.path}:{line}: {name}: {sentence} {_PAGE} {SCHEMA}")
 
     def found(self, place: Iterable[str | int]) -> tuple[int, list[str]]:

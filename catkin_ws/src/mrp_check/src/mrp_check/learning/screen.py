@@ -29,7 +29,7 @@ def show(watched: Watched) -> None:
 
 
 class _Screen:
-    """See above.
+    """The whole screen: what it shows, and what its keys do.
 
     view: what is shown: task, list, nodes or solution
     top: the first line of it that is shown

@@ -107,7 +107,7 @@ class Check(threading.Thread):
 
 
 class Watched:
-    """See above.
+    """An exercise that is checked each time one of its files changes.
 
     exercise: at which somebody works
     check: the last one, which may still go on; None before the first

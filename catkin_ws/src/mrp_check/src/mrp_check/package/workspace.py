@@ -46,7 +46,7 @@ _OF_RUNS = variables.FOLDERS.values()  # folders that the commands of one check 
 
 
 class Workspace:
-    """See above.
+    """A scratch workspace with a copy of a package, which can be built and run there.
 
     package: what is copied, without what was built or is no plain file
     folder: a catkin workspace, in which the package's own programs can write

@@ -27,7 +27,7 @@ _MOST = 12  # launch files that are looked at
 
 
 class AnyCase(Case):
-    """See above. `launch` is all launch files together.
+    """A package under check without a contract. `launch` is all launch files together.
 
     enough: messages of each publisher that are waited for
     """

@@ -153,7 +153,7 @@ def text(case: AnyCase) -> str:
 
 
 class _Writer:
-    """See above.
+    """Writes the contract of what was seen of a package.
 
     launch: what the launch file starts that starts all the nodes, by name; empty without one
     nodes: name -> what was seen of it

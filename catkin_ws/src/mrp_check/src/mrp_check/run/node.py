@@ -21,7 +21,7 @@ FEW = 4  # messages without which nothing is said of a rate
 
 
 class Node(Traces):
-    """See above."""
+    """A node of the spec, with what follows from all that was seen of it."""
 
     @functools.cached_property
     def not_up(self) -> list[Finding]:

@@ -36,7 +36,10 @@ class _Begun(NamedTuple):
 
 
 class Sessions:
-    """See above. workspace: that of the package"""
+    """The processes that observe the nodes of one package.
+
+    workspace: that of the package
+    """
 
     def __init__(self, workspace: Workspace) -> None:
         self.workspace = workspace

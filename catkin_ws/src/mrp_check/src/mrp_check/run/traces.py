@@ -26,7 +26,7 @@ def outside(topic: str) -> str:
 
 
 class Traces:
-    """See above.
+    """All that was seen of a node of the spec.
 
     wanted: what the spec says of it
     path: its full name under the launch file

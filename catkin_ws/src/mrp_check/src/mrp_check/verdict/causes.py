@@ -66,8 +66,8 @@ _OF_ALL = ("CMakeLists.txt", ".cmake", ".xml", ".launch", ".msg")
 def without_repeats(findings, facts=None, nodes=None, has_contract=True):
     """Return the findings without repetitions, with consequences marked.
 
-    facts: a sources.facts.Facts, which says which files a node is made of; or None
-    nodes: name -> what was seen of a node of the spec, a running.node.Node; None if nothing has run
+    facts: a code.facts.Facts, which says which files a node is made of; or None
+    nodes: name -> what was seen of a node of the spec, a run.node.Node; None if nothing has run
     has_contract: without one, what keeps Linux from starting a script is repaired in the copy that
         runs, and so nothing that ran follows from it
     """
