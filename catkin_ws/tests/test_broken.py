@@ -73,7 +73,7 @@ def outcomes(request, tmp_path_factory):
     def run_all(kind, folder):
         scratch.make(folder, *scratch.TESTED)
         scratch.catkin_make(folder)
-        return {one.name: outcome(one, folder) for one in chosen if kind_of(one) == kind}
+        return {patch.name: outcome(patch, folder) for patch in chosen if kind_of(patch) == kind}
 
     with concurrent.futures.ThreadPoolExecutor() as pool:
         running = [

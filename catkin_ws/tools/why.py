@@ -34,26 +34,26 @@ def answer(found, text=""):
             "try that line by itself.\nAll the messages I know: " + _link("why")
         )
     parts, before = [], ()
-    for number, one in enumerate(found, 1):
-        lines = [*one.lines, one.below] if one.below else one.lines
-        shown = ["Or, for the same lines:"] if one.lines == before else lines
-        parts.append(_one_answer(number, one, shown, text))
-        before = one.lines
+    for number, match in enumerate(found, 1):
+        lines = [*match.lines, match.below] if match.below else match.lines
+        shown = ["Or, for the same lines:"] if match.lines == before else lines
+        parts.append(_one_answer(number, match, shown, text))
+        before = match.lines
     return "\n\n".join(parts)
 
 
-def _one_answer(number, one, shown, text):
+def _one_answer(number, match, shown, text):
     shown = [line if len(line) <= _WIDE else line[:_WIDE] + " ..." for line in shown]
     lines = [f"{number}. {shown[0]}", *("   " + line for line in shown[1:])]
-    if one.doubtful:
-        lines.append(f"   I'm not sure, but it looks like: {shown_on(one.entry.shows[0])[0]}")
-    lines += [f"   why:  {one.entry.why}", f"   fix:  {one.entry.fix}"]
-    at = text.find(one.lines[0])
+    if match.doubtful:
+        lines.append(f"   I'm not sure, but it looks like: {shown_on(match.entry.shows[0])[0]}")
+    lines += [f"   why:  {match.entry.why}", f"   fix:  {match.entry.fix}"]
+    at = text.find(match.lines[0])
     places = _PLACE.findall(text[max(at - _TRACEBACK, 0) : max(at, 0)])
     inside = _IN_ROS.fullmatch(places[-1]) if places else None
-    if inside and _OF_PYTHON.search("\n".join(one.lines)):
+    if inside and _OF_PYTHON.search("\n".join(match.lines)):
         lines.append(f"   note: It happened in ROS's own {inside[1]}: look at what you passed it.")
-    return "\n".join([*lines, f"   page: {_link(one.entry.address)}"])
+    return "\n".join([*lines, f"   page: {_link(match.entry.address)}"])
 
 
 def _link(address):

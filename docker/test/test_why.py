@@ -15,7 +15,7 @@ sys.path.insert(0, str(TOOLS))
 import why_entries  # noqa: E402
 import why_search  # noqa: E402
 
-ENTRIES = [one for one in why_entries.entries() if one.needs == "docker"]
+ENTRIES = [entry for entry in why_entries.entries() if entry.needs == "docker"]
 
 
 @pytest.mark.parametrize("entry", ENTRIES, ids=lambda entry: entry.name)

@@ -51,13 +51,13 @@ def pictures(browser):
     path say it."""
     return browser.run(
         """
-        const says = (one) => one.tagName === "IMG"
-          ? one.alt.trim() && !/[.](svg|png|jpe?g|gif)$/.test(one.alt)
-          : one.closest(":is([role=img], [role=group])[aria-label]:not([aria-label=''])")
-            || one.closest("[aria-hidden=true]");
+        const says = (item) => item.tagName === "IMG"
+          ? item.alt.trim() && !/[.](svg|png|jpe?g|gif)$/.test(item.alt)
+          : item.closest(":is([role=img], [role=group])[aria-label]:not([aria-label=''])")
+            || item.closest("[aria-hidden=true]");
         return [...document.querySelectorAll("img, svg, object, embed, canvas")]
-          .filter((one) => !says(one))
-          .map((one) => one.outerHTML.slice(0, 200) + ": has no text alternative");
+          .filter((item) => !says(item))
+          .map((item) => item.outerHTML.slice(0, 200) + ": has no text alternative");
         """
     )
 

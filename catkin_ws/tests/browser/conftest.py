@@ -11,14 +11,14 @@ pytest_plugins = ("mrp_testing.guard",)
 
 @pytest.fixture(scope="session")
 def browser(tmp_path_factory):
-    with Browser(tmp_path_factory.mktemp("profile")) as one:
-        yield one
+    with Browser(tmp_path_factory.mktemp("profile")) as started:
+        yield started
 
 
 @pytest.fixture(scope="session")
 def firefox(tmp_path_factory):
-    with Firefox(tmp_path_factory.mktemp("firefox")) as one:
-        yield one
+    with Firefox(tmp_path_factory.mktemp("firefox")) as started:
+        yield started
 
 
 @pytest.fixture(scope="session")

@@ -114,7 +114,7 @@ class Firefox:
 
     def find(self, selector):
         """Return the HTML of each element that a selector finds."""
-        script = "return [...document.querySelectorAll(arguments[0])].map((one) => one.outerHTML)"
+        script = "return [...document.querySelectorAll(arguments[0])].map((item) => item.outerHTML)"
         return self.run(script, selector)
 
     def wait_until(self, condition, what):

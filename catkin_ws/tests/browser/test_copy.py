@@ -35,7 +35,7 @@ AT_ONCE = 3  # buttons
 PRESS = """
 (async (begin, end) => {
   const wrong = [];
-  for (const one of document.querySelectorAll("details")) one.open = true;
+  for (const item of document.querySelectorAll("details")) item.open = true;
   for (const button of [...document.querySelectorAll("button.copybtn")].slice(begin, end)) {
     // Show the tab that the block is in, if it is in any.
     for (let tab = button.closest(".tab-content"); tab;

@@ -10,13 +10,13 @@ AT_ONCE = 100  # presses of the Tab key
 _SHOWN = """
 window.missed = new Set(
   [...document.querySelectorAll("a[href], button, input:not([type=hidden]), [role=button]")]
-    .filter((one) => one.checkVisibility({visibilityProperty: true}))
-    .filter((one) => one.type !== "radio" || one.checked),  // the arrow keys lead to the others
+    .filter((item) => item.checkVisibility({visibilityProperty: true}))
+    .filter((item) => item.type !== "radio" || item.checked),  // the arrow keys lead to the others
 );
 document.addEventListener("focusin", (event) => missed.delete(event.target));
 return document.querySelectorAll("a, button, input, pre, [tabindex]").length;
 """
-_MISSED = "return [...missed].map((one) => one.outerHTML.slice(0, 200))"
+_MISSED = "return [...missed].map((item) => item.outerHTML.slice(0, 200))"
 
 
 @pytest.mark.parametrize("page", with_each_kind())

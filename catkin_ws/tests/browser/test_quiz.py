@@ -28,8 +28,8 @@ def answer(browser, number):
     return browser.run(
         "const form = document.querySelector(arguments[0]);"
         "return [form.querySelector('[role=status]').textContent,"
-        " [...form.querySelectorAll('.why')].filter((one) => one.checkVisibility())"
-        ".map((one) => one.textContent.trim().split(' ')[0])]",
+        " [...form.querySelectorAll('.why')].filter((item) => item.checkVisibility())"
+        ".map((item) => item.textContent.trim().split(' ')[0])]",
         FORM,
     )
 

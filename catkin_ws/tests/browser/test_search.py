@@ -41,7 +41,7 @@ def test_it_finds_a_page_that_has_the_word(browser, address, word):
     # The word is marked on the page.
     marked = browser.run(
         "return [...document.querySelectorAll('[role=main] :not(rect).highlighted')]"
-        ".map((one) => one.textContent.toLowerCase())"
+        ".map((item) => item.textContent.toLowerCase())"
     )
     assert set(marked) == {word}
     checks.assert_none(faults(browser, address))

@@ -72,12 +72,12 @@ def test_paper_has_all_tabs_one_below_the_other(page, browser):
     browser.command("Emulation.setEmulatedMedia", media="print")
     missing = browser.run(
         "return [...document.querySelectorAll('.tab-content')]"
-        ".filter((one) => !one.checkVisibility()).length"
+        ".filter((item) => !item.checkVisibility()).length"
     )
     heights = browser.run(
         """
         const parts = document.querySelectorAll(".tab-set > :is(.tab-label, .tab-content)");
-        return [...parts].map((one) => one.getBoundingClientRect().top);
+        return [...parts].map((item) => item.getBoundingClientRect().top);
         """
     )
     browser.command("Emulation.setEmulatedMedia", media="")

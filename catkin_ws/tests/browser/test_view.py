@@ -41,8 +41,8 @@ def core():
 
 @pytest.fixture(scope="module")
 def viewer(core):
-    with Viewer("--settle", "0", "--tutorial", str(SITE)) as one:
-        yield one
+    with Viewer("--settle", "0", "--tutorial", str(SITE)) as started:
+        yield started
 
 
 @pytest.fixture
@@ -89,8 +89,8 @@ def row(browser, table, *names):
 def items(browser):
     """Return the labels of all parts of the graph."""
     return browser.run(
-        "return [...document.querySelectorAll('#graph .item')].map((one) => one.ariaLabel ?? "
-        "one.getAttribute('aria-label'))"
+        "return [...document.querySelectorAll('#graph .item')].map((item) => item.ariaLabel ?? "
+        "item.getAttribute('aria-label'))"
     )
 
 
@@ -190,8 +190,8 @@ def test_log_is_filtered(each_page):
     wait_for_text(each_page, "#log", "a line that stays")
     assert "a line to be filtered" in text(each_page, "#log")
     choose = (
-        "const one = document.querySelector(arguments[0]); one.value = arguments[1];"
-        "one.dispatchEvent(new Event('change'))"
+        "const item = document.querySelector(arguments[0]); item.value = arguments[1];"
+        "item.dispatchEvent(new Event('change'))"
     )
     each_page.run(choose, "#log-level", "ERROR")
     assert "a line to be filtered" not in text(each_page, "#log")

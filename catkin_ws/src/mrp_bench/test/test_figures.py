@@ -106,8 +106,8 @@ def test_tcp_no_delay():
 
 
 def test_four_subscribers():
-    for one, four in (("cpp_cpp", "cpp_to_4"), ("py_py", "py_to_4")):
-        assert latency(four, "8 B")[4] < 4 * latency(one, "8 B")[4]
+    for single, four in (("cpp_cpp", "cpp_to_4"), ("py_py", "py_to_4")):
+        assert latency(four, "8 B")[4] < 4 * latency(single, "8 B")[4]
 
 
 def test_memory_of_a_node():

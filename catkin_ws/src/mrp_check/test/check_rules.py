@@ -56,7 +56,7 @@ PUB_SUB = spec.read(spec.find("pub_sub"))
 # How commands are confined here, and as root wherever it is; otherwise nothing is promised.
 _OF_ROOT = sandbox.isolation() if os.getuid() else sandbox.Isolation.USER
 ISOLATIONS = [*dict.fromkeys([sandbox.isolation(), _OF_ROOT])]
-ASKED = {id_: one for id_, one in OF_CONTRACT.items() if PUB_SUB.asks(id_)}
+ASKED = {id_: requirement for id_, requirement in OF_CONTRACT.items() if PUB_SUB.asks(id_)}
 
 
 def make(folder, **files):
@@ -109,9 +109,9 @@ def case_of(package, folder, contract=PUB_SUB, **known):
     known: what it is to be taken to know already, such as facts
     """
     folder.mkdir()
-    one = case.Case(package, contract, folder, 120, lambda sentence: None)
-    vars(one).update(known)
-    return one
+    case_ = case.Case(package, contract, folder, 120, lambda sentence: None)
+    vars(case_).update(known)
+    return case_
 
 
 def said_by_clang(folder, headers="none", flags=(cpp_headers.STANDARD,)):
@@ -150,19 +150,19 @@ def python_findings(folder, source, **others):
         problem.severity = "error"
         return [problem]
     known = facts.Facts(python={read.file: read}, relevant=[read.file])
-    one = types.SimpleNamespace(package=package, facts=known, coded=[])
+    case_ = types.SimpleNamespace(package=package, facts=known, coded=[])
     rules = python_names, rospy_calls, not_called, callbacks, typed
-    return [finding for file in rules for finding in of(file.RULE, one)]
+    return [finding for file in rules for finding in of(file.RULE, case_)]
 
 
-def of(rule, one, part=None):
+def of(rule, case_, part=None):
     """Yield what a rule finds; it has to name each of its ids, as the checker asks for them.
 
     part: the function that is asked, if it is only a part of the rule
     """
     if part:
         rule = Rule(rule.stage, (), part, also=rule.ids, sure=rule.sure)
-    for finding in rule.ask(one):
+    for finding in rule.ask(case_):
         finding.severity = severity(finding.certainty, has_contract=True)
         yield finding
 
@@ -170,9 +170,9 @@ def of(rule, one, part=None):
 def node_findings(package, model, found):
     """Return what the rules say of the nodes of pub_sub whose sources say that (facts.Facts)."""
     coded = source_node.nodes(package, PUB_SUB, model, None, found)
-    one = types.SimpleNamespace(coded=coded, facts=facts.Facts(), package=package)
+    case_ = types.SimpleNamespace(coded=coded, facts=facts.Facts(), package=package)
     rules = swapped_sources, node_start, spin, queue, lifetime, callbacks, counter
-    return [finding for file in rules for finding in of(file.RULE, one)]
+    return [finding for file in rules for finding in of(file.RULE, case_)]
 
 
 def python_facts_of(folder, source):

@@ -169,7 +169,7 @@ def workspace_tar(path):
 
 def dotnet(path):
     """Windows' PowerShell, for long: backslashes between the folders."""
-    zip_(path, {name.replace("/", "\\"): one for name, one in below("ws/mrp").items()}, unix=0)
+    zip_(path, {name.replace("/", "\\"): text for name, text in below("ws/mrp").items()}, unix=0)
 
 
 BUILT = {**below("mrp"), "mrp/build/CMakeCache.txt": "", "mrp/build/node.py": ""}

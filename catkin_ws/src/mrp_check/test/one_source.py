@@ -47,4 +47,4 @@ def case(folder, ending, lines, launched=(), **files):
 def lines_of(rule, known, *severities, part=None):
     severities = severities or (ERROR, WARNING)
     found = check_rules.of(rule.RULE, known, part)
-    return [one.line for one in found if one.severity in severities]
+    return [finding.line for finding in found if finding.severity in severities]

@@ -68,7 +68,7 @@ def checked(folder):
 
 def test_what_beginners_write_has_no_error(tmp_path, report_schema):
     report = checked(any_packages.correct(tmp_path / "some_pkg"))
-    assert not [one for one in report.findings if one.severity == ERROR], shown(report.findings)
+    assert not [f for f in report.findings if f.severity == ERROR], shown(report.findings)
     assert report.verdict == check.MET, report.reason
     assert {"values", "rate", "queue"} <= {*report.left_out}
     text = terminal.text(report, everything=True)
@@ -79,17 +79,17 @@ def test_what_beginners_write_has_no_error(tmp_path, report_schema):
 def test_what_only_looks_broken_has_no_error():
     """By itself, too, a node has the name and the parameters that its launch file gives."""
     report = checked(VALID)
-    found = [one for one in report.findings if one.severity in (ERROR, WARNING)]
+    found = [f for f in report.findings if f.severity in (ERROR, WARNING)]
     assert not found, shown(found)
 
 
 def test_each_defect_is_found_at_its_place(tmp_path):
     folder = any_packages.faulty(tmp_path / "some_pkg")
     report = checked(folder)
-    missed = [one for one in FOUND if not any(is_told(f, folder, *one) for f in report.findings)]
+    missed = [row for row in FOUND if not any(is_told(f, folder, *row) for f in report.findings)]
     assert not missed, f"{missed}\n{shown(report.findings)}"
     errors = [f for f in report.findings if f.severity == ERROR and not f.consequence_of]
-    others = [f for f in errors if not any(is_told(f, folder, *one) for one in FOUND)]
+    others = [f for f in errors if not any(is_told(f, folder, *row) for row in FOUND)]
     assert not others, shown(others)
     assert not [f for f in report.findings if f.file == "scripts/talker.py"]
 
@@ -97,7 +97,7 @@ def test_each_defect_is_found_at_its_place(tmp_path):
 def test_what_another_machine_may_have_is_no_error(tmp_path):
     folder = any_packages.doubtful(tmp_path / "some_pkg")
     report = checked(folder)
-    missed = [one for one in DOUBTED if not any(is_told(f, folder, *one) for f in report.findings)]
+    missed = [row for row in DOUBTED if not any(is_told(f, folder, *row) for f in report.findings)]
     assert not missed, f"{missed}\n{shown(report.findings)}"
     assert not [f for f in report.findings if f.severity == ERROR], shown(report.findings)
     assert report.verdict == check.MET
@@ -134,7 +134,7 @@ def test_run_tests_checks_a_package(tmp_path):
     scratch.make(tmp_path, "src/mrp_check")
     any_packages.tested(tmp_path / "src" / "some_pkg")
     found, code = results_of(tmp_path)
-    (failed,) = (one for one in found.iter("testcase") if one.find("failure") is not None)
+    (failed,) = (case for case in found.iter("testcase") if case.find("failure") is not None)
     failure = failed.find("failure")
     line = re.search(r"scripts/ends\.py:(\d+): error", failure.text)
     assert line and code == 1, failure.text
@@ -193,9 +193,9 @@ def test_a_node_runs_though_its_message_was_made_too_late(tmp_path):
     cmake += "target_link_libraries(adds ${catkin_LIBRARIES})\n"
     files = {"CMakeLists_DOT_txt": cmake, "src__adds_DOT_cpp": EARLY, "msg__Num_DOT_msg": "int8 a"}
     report = checked(check_rules.make(tmp_path / "some_pkg", **files).root)
-    found = {(one.severity, one.id) for one in report.findings if one.file != "package.xml"}
+    found = {(f.severity, f.id) for f in report.findings if f.file != "package.xml"}
     assert {(ERROR, "messages"), (ERROR, "exit")} <= found, shown(report.findings)
-    assert not {"compile", "starts"} & {one for _, one in found}, shown(report.findings)
+    assert not {"compile", "starts"} & {id_ for _, id_ in found}, shown(report.findings)
 
 
 @pytest.mark.parametrize(("language", "is_taken"), [("cpp", False), ("python", True)])

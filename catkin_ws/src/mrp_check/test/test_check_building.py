@@ -87,7 +87,7 @@ def test_compilers_errors_in_plain_words(error, says, tmp_path):
 def test_an_error_that_no_other_follows_from_hides_none(said, found, tmp_path):
     package = check_rules.make(tmp_path / "some_pkg", src__a_DOT_cpp="C b;\na;\na;\n")
     lines = [f"{package.root}/src/a.cpp:{n}:1: error: {text}" for n, text in enumerate(said, 1)]
-    assert [one.line for one in compiler.problems("\n".join(lines), package.root)] == found
+    assert [problem.line for problem in compiler.problems("\n".join(lines), package.root)] == found
 
 
 def test_a_function_that_returns_nothing_is_found_though_it_compiles(tmp_path):

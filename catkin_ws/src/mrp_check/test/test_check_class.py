@@ -28,7 +28,7 @@ class Room(classroom.Classroom):
         options = {"progress": lambda *line: self.said.append(line), **options}
         super().__init__(folder, SPEC_FILE, **options)
 
-    def report_of(self, one, name):
+    def report_of(self, pkg, name):
         self.checked.append(name)
         finding = {
             "id": "values",
@@ -48,10 +48,10 @@ class Room(classroom.Classroom):
         }
 
     def verdicts(self):
-        return {one.name: one.report["verdict"] for one in self.check()}
+        return {result.name: result.report["verdict"] for result in self.check()}
 
     def reason(self, name):
-        return {one.name: one.report.get("reason") for one in self.check()}[name]
+        return {result.name: result.report.get("reason") for result in self.check()}[name]
 
 
 def test_a_package_is_no_class(tmp_path):
@@ -108,7 +108,7 @@ def test_what_has_not_changed_is_not_checked_again(tmp_path):
 
 def run_of(tmp_path):
     room = Room(tmp_path / "class")
-    assert {one.report["verdict"] for one in room.check()} == {check.FINDINGS}
+    assert {result.report["verdict"] for result in room.check()} == {check.FINDINGS}
     return room.checked
 
 
@@ -172,7 +172,7 @@ def test_points_come_from_the_spec(results):
     contract = spec.read(SPEC_FILE)
     all_ids = len(ASKED)
     of_spec = dataclasses.replace(contract, points={"values": 5, "topic": 2.5})
-    by_name = {one.name: one for one in results}
+    by_name = {result.name: result for result in results}
     assert class_table.most(contract) == all_ids
     assert class_table.most(of_spec) == all_ids + 4 + 1.5
     assert by_name["<b>anna"].points(contract) == all_ids - 2

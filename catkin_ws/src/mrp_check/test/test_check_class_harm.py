@@ -123,7 +123,7 @@ def sets_up(folder, program):
     configures(folder, program, "find_package(catkin REQUIRED)\ncatkin_python_setup()")
 
 
-STAGES = {one.__name__: one for one in (configures, builds, sets_up)}
+STAGES = {stage.__name__: stage for stage in (configures, builds, sets_up)}
 STAGES["runs"] = pair
 
 
@@ -140,13 +140,13 @@ def neighbours(folder):
 def hostiles(base, port):
     """Make the submissions that mean harm; return the names."""
     prelude, made = PRELUDE.format(base=base, port=port), [*REFUSED, *HARM, *FILES]
-    names = {one: f"{number % 7}1_{one}" for number, one in enumerate(made)}
-    for one, (make, _) in REFUSED.items():
-        make(base / "class" / names[one])
-    for one, (stage, program) in HARM.items():
-        STAGES[stage](base / "class" / names[one], prelude + program)
-    for one, files in FILES.items():
-        folder = hand_in(base / "class", names[one])
+    names = {hostile: f"{number % 7}1_{hostile}" for number, hostile in enumerate(made)}
+    for hostile, (make, _) in REFUSED.items():
+        make(base / "class" / names[hostile])
+    for hostile, (stage, program) in HARM.items():
+        STAGES[stage](base / "class" / names[hostile], prelude + program)
+    for hostile, files in FILES.items():
+        folder = hand_in(base / "class", names[hostile])
         for name, text in files.items():
             text = text.replace("HOME", str(base / "home"))
             (folder / name).write_text(text.replace("VICTIM", str(base / "home" / "victim")))
@@ -173,13 +173,13 @@ def port(tmp_path):
     with socket.socket() as here, socket.socket(socket.AF_UNIX) as file:
         here.bind(("127.0.0.1", 0))
         file.bind(str(tmp_path / "socket"))
-        for one in (here, file):
-            one.listen()
-            one.setblocking(False)
+        for server in (here, file):
+            server.listen()
+            server.setblocking(False)
         yield here.getsockname()[1]
-        for one in (here, file):
+        for server in (here, file):
             with pytest.raises(BlockingIOError):
-                one.accept()
+                server.accept()
 
 
 @pytest.mark.usefixtures("open_folders")

@@ -158,8 +158,8 @@ def test_when_all_workers_are_gone_it_says_so_and_waits(tmp_path, second):
 
         with Process(*map(str, asked), "--scheduler", address) as checker:
             checker.wait_for(lambda: worker_of(second, workers), "one checks")
-            for one in workers:
-                one.stop(signal.SIGKILL)
+            for process in workers:
+                process.stop(signal.SIGKILL)
             checker.wait_for(lambda: said() == expected[:1], "it says that there is none")
             with worker(address, tmp_path):
                 assert (checker.wait(), said()) == (1, expected), str(checker)

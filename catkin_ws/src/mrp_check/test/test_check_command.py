@@ -79,9 +79,9 @@ def test_mrp_check_finds_the_package_and_static_only_reads(tmp_path):
     asked = (tmp_path, "--static", "--json", report)
     done = run(*asked, program=CHECK.with_name("mrp-check"))
     data = json.loads(report.read_text())
-    found = [(one["id"], one["file"]) for one in data["findings"] if one["severity"] == "error"]
+    found = [(f["id"], f["file"]) for f in data["findings"] if f["severity"] == "error"]
     assert found == [("python-syntax", "src/publisher_py_node.py")], done.stdout
-    assert any("more than 1 MB: launch/large.launch" in one["message"] for one in data["findings"])
+    assert any("more than 1 MB: launch/large.launch" in f["message"] for f in data["findings"])
     assert len(done.stdout) < 9000
     assert not {"compile", "values"} & {*data["requirements"]}
     assert done.returncode == 1 and "The package ran" not in data["isolation"]

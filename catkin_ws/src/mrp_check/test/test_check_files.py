@@ -107,7 +107,7 @@ def test_missing_dependency_that_is_not_here_either(tmp_path):
     package = check_rules.make(tmp_path, src__a_DOT_cpp="", **files)
     without = dataclasses.replace(check_rules.PUB_SUB, is_contract=False)
     found = file_findings(dependencies, package, spec=without)
-    assert [one.file for one in found if "some_other_msgs" in one.message] == ["package.xml"]
+    assert [f.file for f in found if "some_other_msgs" in f.message] == ["package.xml"]
     assert file_findings(dependencies, package) == []
 
 
@@ -124,7 +124,7 @@ def test_a_dependency_of_a_launch_file_or_of_python_2_is_named(files, name, tmp_
     package = check_rules.make(tmp_path, **files)
     without = dataclasses.replace(check_rules.PUB_SUB, is_contract=False)
     found = file_findings(dependencies, package, spec=without)
-    said = [one.message for one in found if one.severity == "warning"]
+    said = [f.message for f in found if f.severity == "warning"]
     assert len(said) == bool(name) and all(f"doesn't name {name}" in text for text in said)
 
 
@@ -133,7 +133,7 @@ def test_what_a_launch_file_and_a_source_use_is_one_finding(tmp_path):
     files = {"launch__a_DOT_launch": launch, "src__b_DOT_py": "import tf\n"}
     package = check_rules.make(tmp_path, **files)
     without = dataclasses.replace(check_rules.PUB_SUB, is_contract=False)
-    (said,) = [one.message for one in file_findings(dependencies, package, spec=without)]
+    (said,) = [finding.message for finding in file_findings(dependencies, package, spec=without)]
     assert "tf (used in" in said and "turtlesim (used in" in said
 
 
@@ -222,7 +222,7 @@ def test_code_is_made_of_the_messages_of_an_action(tmp_path):
     calls = "add_action_files(FILES Do.action)\ngenerate_messages()\ncatkin_package()"
     made = {f"msg__{name}_DOT_msg": "" for name in ("DoActionGoal", "DoResult", "DoAction", "Do2")}
     package = with_messages(tmp_path, calls, action__Do_DOT_action="---\n---\n", **made)
-    found = [one.message for one in file_findings(messages, package)]
+    found = [finding.message for finding in file_findings(messages, package)]
     assert [text_[: text_.index(".msg")] for text_ in found if ".msg is" in text_] == ["msg/Do2"]
 
 
@@ -257,11 +257,11 @@ def test_own_service_is_made_before_it_is_used(without, file, says, tmp_path):
     files["src__own_DOT_cpp"] = ""
     package = with_messages(tmp_path, calls.replace(without, ""), **files)
     found = [
-        f"{one.file}: {package.lines(one.file)[one.line - 1]} {one.message}"
-        for one in file_findings(messages, package)
+        f"{finding.file}: {package.lines(finding.file)[finding.line - 1]} {finding.message}"
+        for finding in file_findings(messages, package)
     ]
     assert len(found) == bool(without)
-    assert all(one.startswith(file) and says in one for one in found), found
+    assert all(f.startswith(file) and says in f for f in found), found
 
 
 @pytest.mark.parametrize(
@@ -286,9 +286,9 @@ def test_a_package_that_is_not_here_is_named_as_debian_has_it(
     ("name", "found"), [("our_turtle", []), ("Some_pkg", [3]), ("2_pkg", [3]), ("some-pkg2", [])]
 )
 def test_a_package_has_a_usual_name(name, found, tmp_path, capfd):
-    text, cmake_text = (one.replace("some_pkg", name) for one in (MANIFEST, CMAKE))
+    text, cmake_text = (template.replace("some_pkg", name) for template in (MANIFEST, CMAKE))
     package = check_rules.make(tmp_path, package_DOT_xml=text, CMakeLists_DOT_txt=cmake_text)
-    assert [one.line for one in file_findings(package_name, package, spec=SPEC)] == found
+    assert [finding.line for finding in file_findings(package_name, package, spec=SPEC)] == found
     assert capfd.readouterr() == ("", "")  # catkin_pkg prints its warnings, unless asked not to
 
 
@@ -323,7 +323,7 @@ def test_what_others_made_is_named_in_the_manifest(line, named, found, tmp_path,
         src__own_DOT_py="",
         package_DOT_xml=check_rules.MANIFEST.replace("std_msgs", named),
     )
-    said = [one.expected for one in file_findings(dependencies, package, dependencies.undeclared)]
+    said = [f.expected for f in file_findings(dependencies, package, dependencies.undeclared)]
     assert said == [f"<depend>{found}</depend> in package.xml"] * bool(found)
 
 
@@ -331,7 +331,7 @@ def test_what_others_made_is_named_in_the_manifest(line, named, found, tmp_path,
 def test_a_library_is_named_in_the_manifest(header, found, tmp_path):
     package = check_rules.make(tmp_path / "some_pkg", src__a_DOT_cpp=f"#include <{header}>\n")
     said = file_findings(dependencies, package, dependencies.undeclared)
-    assert [one.line for one in said] == found
+    assert [finding.line for finding in said] == found
 
 
 # CMake 3.25 warns of what is older than 2.8.12, CMake 3.31 of what is older than 3.10.
@@ -349,7 +349,7 @@ def test_cmakelists_is_not_of_an_old_cmake(version, release, found, tmp_path, mo
     text_ = MADE_BY_CMAKE.replace("3.10", version)
     package = check_rules.make(tmp_path, CMakeLists_DOT_txt=text_)
     said = file_findings(cmake_rule, package, spec=SPEC)
-    assert [one.severity for one in said] == found
+    assert [finding.severity for finding in said] == found
 
 
 @pytest.mark.parametrize(
@@ -365,7 +365,7 @@ def test_a_script_hides_the_module_that_it_imports(line, found, tmp_path):
     text = f"#!/usr/bin/env python3\n{line}\nimport rospy\nrospy.init_node('a')\n"
     package = check_rules.make(tmp_path / "some_pkg", scripts__some_pkg_DOT_py=text)
     said = check_rules.file_findings(scripts, package, spec=SPEC)
-    assert [one.line for one in said if "own folder" in one.message] == [2] * len(found)
+    assert [finding.line for finding in said if "own folder" in finding.message] == [2] * len(found)
 
 
 @pytest.mark.parametrize(
@@ -405,8 +405,8 @@ def test_a_definition_of_which_no_code_is_made(source, severity, tmp_path):
     known.manifest = manifests.parse(known.package)
     known.spec = types.SimpleNamespace(**vars(known.spec), messages={}, services={})
     found = [*check_rules.of(messages.RULE, known)]
-    (one,) = [one for one in found if "Own.msg" in one.message]
-    assert (one.severity, len(found) == 1) == (severity, severity == WARNING)
+    (finding,) = [f for f in found if "Own.msg" in f.message]
+    assert (finding.severity, len(found) == 1) == (severity, severity == WARNING)
 
 
 @pytest.mark.parametrize(
@@ -421,7 +421,7 @@ def test_a_definition_of_which_no_code_is_made(source, severity, tmp_path):
 )
 def test_a_module_of_python_2(lines, found, tmp_path):
     said = check_rules.python_findings(tmp_path, f"{lines}\n")
-    assert [one.expected for one in said if "Python 2" in one.message] == found
+    assert [finding.expected for finding in said if "Python 2" in finding.message] == found
 
 
 SCRIPT = "#!/usr/bin/env {}\nimport rospy\nrospy.init_node('a')\n"
@@ -440,7 +440,7 @@ def test_what_runs_messages_is_missed_at_its_own_tag(tmp_path):
         "msg__A_DOT_msg": "",
     }
     package = check_rules.make(tmp_path / "some_pkg", package_DOT_xml=manifest, **files)
-    (found,) = [one for one in of_any(messages, package) if "<exec_depend>" in one.message]
+    (found,) = [f for f in of_any(messages, package) if "<exec_depend>" in f.message]
     assert package.line("package.xml", found.line).strip() == own
 
 
@@ -450,7 +450,7 @@ def test_a_call_that_cmake_did_not_come_to_may_be_made(ends, ids, tmp_path):
     rest = {"rest_DOT_cmake": "catkin_package()\n"}
     package = check_rules.make(tmp_path / "some_pkg", CMakeLists_DOT_txt=text, **rest)
     model = Model(package.root, parsed(text, "CMakeLists.txt"), complete=ends)
-    assert [one.id for one in of_any(cmake_rule, package, model=model)] == ids
+    assert [finding.id for finding in of_any(cmake_rule, package, model=model)] == ids
 
 
 @pytest.mark.parametrize(("name", "number"), [("catkin", 1), ("catkin_simple", 0)])
@@ -459,5 +459,5 @@ def test_catkin_simple_finds_what_package_xml_names(name, number, tmp_path):
     text += "\nadd_executable(a src/a.cpp)\n"
     source = {"src__a_DOT_cpp": "#include <ros/ros.h>\n"}
     package = check_rules.make(tmp_path / "some_pkg", CMakeLists_DOT_txt=text, **source)
-    found = [one for one in of_any(dependencies, package) if "find_package" in one.message]
+    found = [f for f in of_any(dependencies, package) if "find_package" in f.message]
     assert len(found) == number

@@ -32,9 +32,9 @@ class Reader(Room):
         super().__init__(folder, **options)
         self.seen = {}
 
-    def report_of(self, one, name):
-        self.seen[name] = {path: (one.text(path), one.is_executable(path)) for path in one.files}
-        return super().report_of(one, name)
+    def report_of(self, pkg, name):
+        self.seen[name] = {path: (pkg.text(path), pkg.is_executable(path)) for path in pkg.files}
+        return super().report_of(pkg, name)
 
 
 @pytest.fixture
@@ -61,17 +61,17 @@ def state(folder):
 def read(uploads, **options):
     """Check the class; return the Reader, after a look at what has changed."""
     before, room = state(uploads.parent), Reader(uploads, **options)
-    room.results_of = {one.name: one for one in room.check()}
+    room.results_of = {result.name: result for result in room.check()}
     assert state(uploads.parent) == before
     return room
 
 
 def reason(uploads, **options):
     """Return why the only submission could not be checked."""
-    (one,) = read(uploads, **options).results_of.values()
-    assert one.report["verdict"] == check.UNCHECKED, one.name
-    assert one.name.replace("\n", " ") in one.report["reason"]
-    return one.report["reason"]
+    (result,) = read(uploads, **options).results_of.values()
+    assert result.report["verdict"] == check.UNCHECKED, result.name
+    assert result.name.replace("\n", " ") in result.report["reason"]
+    return result.report["reason"]
 
 
 @pytest.mark.parametrize("name", handed_in.TAKEN)
@@ -81,7 +81,7 @@ def test_the_package_is_found(uploads, name):
     seen = {unicodedata.normalize("NFC", path): known for path, known in seen.items()}
     executable = handed_in.EXECUTABLE.get(name, ("src/node.py",))
     # A name that is not UTF-8 is not looked at.
-    files = {path: one for path, one in FILES.items() if path.isascii() or name != "explorer.zip"}
+    files = {path: data for path, data in FILES.items() if path.isascii() or name != "explorer.zip"}
     assert seen == {path: (content, path in executable) for path, content in files.items()}
 
 
@@ -188,7 +188,7 @@ def test_each_entry_has_its_line_and_its_own_result(uploads):
     (uploads / "empty").mkdir()
     for name in (".DS_Store", "._anna.zip", "__MACOSX", ".git"):
         (uploads / name).mkdir()
-    verdicts = {name: one.report["verdict"] for name, one in read(uploads).results_of.items()}
+    verdicts = {name: result.report["verdict"] for name, result in read(uploads).results_of.items()}
     assert verdicts == {
         "anna": check.FINDINGS,
         "anna.json": check.FINDINGS,
@@ -197,7 +197,7 @@ def test_each_entry_has_its_line_and_its_own_result(uploads):
         "report.pdf": check.UNCHECKED,
     }
     again = read(uploads)
-    assert (again.checked, {one.kept for one in again.results_of.values()}) == ([], {True, False})
+    assert (again.checked, {r.kept for r in again.results_of.values()}) == ([], {True, False})
     zip_(uploads / "anna.zip", {**FILES, "zap.py": ""})
     assert read(uploads).checked == ["anna.zip"]
 
@@ -226,9 +226,9 @@ def test_a_file_that_is_too_large_is_left_out(uploads):
     made = hand_in(uploads, "berta")
     with open(made / "rosbag.bag", "wb") as file:
         file.truncate(MAX_BYTES + 1)
-    one = Package(made)
-    assert ("rosbag.bag" in one.files, one.left_out) == (False, ["rosbag.bag"])
-    case = types.SimpleNamespace(package=one, model=types.SimpleNamespace(relayed=list))
+    package = Package(made)
+    assert ("rosbag.bag" in package.files, package.left_out) == (False, ["rosbag.bag"])
+    case = types.SimpleNamespace(package=package, model=types.SimpleNamespace(relayed=list))
     (finding,) = text.RULE.ask(case)
     assert (finding.certainty, finding.file) == (HINT, "rosbag.bag")
 
@@ -243,9 +243,9 @@ BOMB = f"""<!DOCTYPE x [<!ENTITY a "0123456789">{ENTITIES}]>
 
 def test_an_xml_bomb_is_reported(uploads):
     handed_in.folder(uploads / "anna", {"package.xml": BOMB})
-    one = Package(uploads / "anna")
-    found, finding = manifest.parse(one)
-    assert (found, one.name) == (None, "anna")
+    package = Package(uploads / "anna")
+    found, finding = manifest.parse(package)
+    assert (found, package.name) == (None, "anna")
     assert finding.message == (
         "package.xml isn't valid XML: an entity is declared, noticed on line 1."
     )

@@ -32,7 +32,7 @@ def checked(tmp_path, programs):
         with kept_folder("this version") as kept:
             ids = [] if static else ["compile"]
             report = check_sets.check_tutorial(place, *ids, kept=kept, static=static)
-        return [one.id for one in report.findings], "catkin_make" in programs
+        return [finding.id for finding in report.findings], "catkin_make" in programs
 
     return once
 
@@ -54,9 +54,9 @@ def test_second_check_makes_nothing_again_and_follows_no_link(checked, temporary
 
 
 def test_two_at_the_same_time_share_nothing():
-    with kept_folder("1") as one, kept_folder("1") as other:
-        assert one != other
-    assert one.exists() and not other.exists()
+    with kept_folder("1") as first, kept_folder("1") as other:
+        assert first != other
+    assert first.exists() and not other.exists()
 
 
 def test_another_version_trusts_nothing_of_it():

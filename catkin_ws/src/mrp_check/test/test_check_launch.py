@@ -143,7 +143,7 @@ def test_nodes_may_be_in_an_included_file(program, found, tmp_path):
     inner = f"<launch>\n{nodes.replace('subscriber_py_node.py', program)}</launch>\n"
     text = LAUNCH.replace(nodes, '<include file="$(find some_pkg)/launch/nodes.launch"/>\n')
     said = findings(tmp_path, text, launch__nodes_DOT_launch=inner)
-    assert [(one.id, one.file, one.line) for one in said] == found
+    assert [(finding.id, finding.file, finding.line) for finding in said] == found
 
 
 @pytest.mark.quick
@@ -183,4 +183,4 @@ def test_what_went_with_noetic(line, found, tmp_path):
     text = f"<launch>\n{line}\n</launch>\n"
     made = check_rules.make(tmp_path, launch__a_DOT_launch=text)
     said = check_rules.file_findings(launch_nodes, made, launch_nodes.gone)
-    assert [(one.severity, one.line) for one in said] == found
+    assert [(finding.severity, finding.line) for finding in said] == found

@@ -33,8 +33,8 @@ def test_a_person_s_marks_stand_apart_from_what_was_measured(tmp_path):
     file = written(tmp_path, BY_HAND.replace("berta", "\nberta"), "utf-8-sig")
     found = by_hand.read(file, [entry.name for entry in room.entries], most)
     results = room.check()
-    for one in results:
-        one.by_hand = found.get(one.name)
+    for result in results:
+        result.by_hand = found.get(result.name)
     rows = list(csv.DictReader(class_table.csv_text(results, CONTRACT).splitlines()))
     assert {row["submission"]: float(row["mark"]) for row in rows} == {
         "anna": 33.5,

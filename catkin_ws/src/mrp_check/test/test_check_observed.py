@@ -216,8 +216,8 @@ def test_observer_leaves_nothing_in_tmp(tmp_path, monkeypatch):
 
 def test_what_a_dead_node_would_do_was_never_seen(tmp_path):
     spec = spec_of(["right"], [])
-    asked = [one for one in REQUIREMENTS.items() if spec.asks(one[0])]
-    of_run = [id_ for id_, one in asked if one.stage in ("run", "stop")]
+    asked = [item for item in REQUIREMENTS.items() if spec.asks(item[0])]
+    of_run = [id_ for id_, requirement in asked if requirement.stage in ("run", "stop")]
     dead = DirectResult({"publisher_right": Alone(code=1, ended_after=0.1)})
     _, unseen = judged(tmp_path, of_run, direct=dead)
     # Nobody asks it to hear anything.
@@ -389,7 +389,7 @@ def test_a_publisher_that_lets_nobody_in_while_it_announces_is_heard_afterwards(
     runs = case.observed.launch, case.observed.direct
     case.close()
     for run in runs:
-        assert any(one.topic.endswith("/of_right") for one in run.seen.messages)
+        assert any(message.topic.endswith("/of_right") for message in run.seen.messages)
 
 
 @pytest.mark.parametrize(("module", "severity"), [("tkinter", NOTE), ("no_such_module", ERROR)])

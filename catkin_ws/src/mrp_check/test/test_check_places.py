@@ -128,7 +128,7 @@ RULES = homes, ignored
 
 def findings(package, facts):
     known = types.SimpleNamespace(package=package, facts=facts)
-    return {(one.line, one.certainty) for rule in RULES for one in check_rules.of(rule.RULE, known)}
+    return {(f.line, f.certainty) for rule in RULES for f in check_rules.of(rule.RULE, known)}
 
 
 def test_what_may_go_wrong_is_found_at_its_line(tmp_path):
@@ -143,7 +143,7 @@ def test_what_may_go_wrong_is_found_at_its_line(tmp_path):
         for number, line in enumerate(source.splitlines(), 1)
         if "  // " in line
     }
-    assert {line: ", ".join(sorted(one)) for line, one in found.items()} == said
+    assert {line: ", ".join(sorted(listed)) for line, listed in found.items()} == said
     right = "offers serves asks reads commands ends starts kills keyboard arguments loop".split()
     lines = {number for number, text in said.items() if text.split()[0].strip(",") not in right}
     assert {line for line, _ in findings(package, facts)} == lines
@@ -151,7 +151,7 @@ def test_what_may_go_wrong_is_found_at_its_line(tmp_path):
 
 def test_what_only_looks_wrong_is_not_flagged(tmp_path):
     package, facts = facts_of(tmp_path, VALID)
-    assert [one.value for one in facts.places if one.kind is Kind.EXIT] == [1, 1, -1]
-    assert {one for one in findings(package, facts) if one[1] != "hint"} == set()
+    assert [place.value for place in facts.places if place.kind is Kind.EXIT] == [1, 1, -1]
+    assert {finding for finding in findings(package, facts) if finding[1] != "hint"} == set()
     used = {Kind.ARGUMENTS, Kind.ELSEWHERE, Kind.KEYBOARD, Kind.PATH}
-    assert not used & {one.kind for one in facts.places}
+    assert not used & {place.kind for place in facts.places}

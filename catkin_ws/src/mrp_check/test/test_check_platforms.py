@@ -28,8 +28,8 @@ VISIBILITY = {"hidden", "after_due_date", "after_published", "visible", None}
 
 def assert_gradescope_takes(found):
     assert found.keys() <= RESULTS and found.keys() & {"score", "tests"}
-    for one in (found, *found.get("tests", ())):
-        assert isinstance(one.get("score", 0), (int, float)) and one.get("visibility") in VISIBILITY
+    for row in (found, *found.get("tests", ())):
+        assert isinstance(row.get("score", 0), (int, float)) and row.get("visibility") in VISIBILITY
     for test in found.get("tests", ()):
         assert {"score"} <= test.keys() <= TEST and test["status"] in ("passed", "failed")
 
@@ -53,18 +53,18 @@ def report(*findings, reason=""):
     return Report("a_pkg", "An exercise", verdict, list(findings), verdicts, reason, unseen)
 
 
-def results(one, contract=CONTRACT):
-    found = json.loads(gradescope.text(one, contract))
+def results(report_, contract=CONTRACT):
+    found = json.loads(gradescope.text(report_, contract))
     assert_gradescope_takes(found)
     return found
 
 
-def submission(name, one):
-    return class_table.Submission(name, json_.data(one))
+def submission(name, report_):
+    return class_table.Submission(name, json_.data(report_))
 
 
 @pytest.mark.parametrize(
-    "one",
+    "report_",
     [
         report(),
         report(SPIN, SILENT, VALUES),
@@ -73,9 +73,9 @@ def submission(name, one):
     ],
     ids=range(4),
 )
-def test_results_have_the_fields_that_gradescope_names(one):
-    text = gradescope.text(one, CONTRACT)
-    results(one)
+def test_results_have_the_fields_that_gradescope_names(report_):
+    text = gradescope.text(report_, CONTRACT)
+    results(report_)
     assert "\x1b" not in text and text.encode()
 
 
@@ -96,29 +96,29 @@ def test_each_requirement_is_a_test_with_its_points():
 
 
 def test_what_could_not_be_checked_says_why_and_earns_nothing():
-    one = report(reason="No time was left.")
-    one.requirements.update(dict.fromkeys(ASKED, UNCHECKED))
-    one.unseen.update(dict.fromkeys(ASKED, "No time was left."))
-    found = results(one)
+    report_ = report(reason="No time was left.")
+    report_.requirements.update(dict.fromkeys(ASKED, UNCHECKED))
+    report_.unseen.update(dict.fromkeys(ASKED, "No time was left."))
+    found = results(report_)
     assert sum(test["score"] for test in found["tests"]) == 0
     assert found["output"].endswith("\nNo time was left.")
     assert "couldn't be checked: No time was left." in found["tests"][0]["output"]
 
 
-def shown_by_gradescope(one):
-    found = results(one)
+def shown_by_gradescope(report_):
+    found = results(report_)
     return found["output"], [t for t in found["tests"] if t["visibility"] == "visible"]
 
 
 # What a student is shown of a report.
 SHOWN = {
     "gradescope": shown_by_gradescope,
-    "console": lambda one: terminal.text(public(one, CONTRACT.hidden)),
-    "page": lambda one: html.text(public(one, CONTRACT.hidden)),
-    "json": lambda one: json_.text(public(one, CONTRACT.hidden)),
+    "console": lambda report_: terminal.text(public(report_, CONTRACT.hidden)),
+    "page": lambda report_: html.text(public(report_, CONTRACT.hidden)),
+    "json": lambda report_: json_.text(public(report_, CONTRACT.hidden)),
     # Without the line of the mark: what is hidden counts.
-    "mail": lambda one: mail.text(submission("anna", one), CONTRACT).split("\n", 2)[2],
-    "moodle": lambda one: moodle.text([submission(NAMED, one)], CONTRACT).split("\n", 3)[3],
+    "mail": lambda report_: mail.text(submission("anna", report_), CONTRACT).split("\n", 2)[2],
+    "moodle": lambda report_: moodle.text([submission(NAMED, report_)], CONTRACT).split("\n", 3)[3],
 }
 NAMED = "Anna Lee_12345_assignsubmission_file_"
 
@@ -139,9 +139,9 @@ def test_a_cause_that_is_hidden_is_not_named(kind):
 
 @pytest.mark.parametrize("kind", SHOWN)
 def test_a_hidden_requirement_that_a_comment_suppresses_is_not_named(kind):
-    one = report()
-    one.suppressed = [dataclasses.replace(f, suppressed="I know.") for f in (SPIN, VALUES)]
-    text = str(SHOWN[kind](one))
+    report_ = report()
+    report_.suppressed = [dataclasses.replace(f, suppressed="I know.") for f in (SPIN, VALUES)]
+    text = str(SHOWN[kind](report_))
     assert "It never spins." not in text and "(spin)" not in text
     assert "suppressed: 1" in text or kind == "json"
 
@@ -216,7 +216,7 @@ def test_text_for_a_mail(tmp_path):
     results = [*CLASS[:2], submission("n" * 252, report())]
     (failed,) = mail.write(tmp_path, results, CONTRACT)
     assert failed.endswith("nn.txt can't be written: File name too long.")
-    anna, bea = ((tmp_path / f"{one.name}.txt").read_text() for one in CLASS[:2])
+    anna, bea = ((tmp_path / f"{result.name}.txt").read_text() for result in CLASS[:2])
     most = class_table.most(CONTRACT)
     assert f"{NAMED}: mark {most - 7.5:g} of {most:g}\n" in anna
     assert "src/a.py:9: error: It publishes <2>." in anna and "spin" not in anna

@@ -116,7 +116,7 @@ def test_a_package_that_is_not_here(module, declared, found, tmp_path):
     text = replaced("import rospy\n", f"import rospy\nfrom {module}.srv import Go\n")
     manifest = check_rules.MANIFEST.replace("roscpp", declared)
     said = check_rules.python_findings(tmp_path, text, package_DOT_xml=manifest)
-    assert [(one.id, one.certainty) for one in said] == found
+    assert [(finding.id, finding.certainty) for finding in said] == found
 
 
 EXCEPT = "try:\n    pass\nexcept OSError{} e:\n    pass\n"
@@ -148,7 +148,7 @@ def test_a_comma_behind_except_is_python_2(tmp_path):
 def test_facts_say_what_a_source_does(code, kind, value, tmp_path):
     text = f"import multiprocessing, os, rospy, subprocess, sys\n{code}\n"
     _, found = check_rules.python_facts_of(tmp_path, text)
-    assert [(one.kind, one.line, one.value) for one in found.places] == [(kind, 2, value)]
+    assert [(place.kind, place.line, place.value) for place in found.places] == [(kind, 2, value)]
 
 
 @pytest.mark.parametrize(
@@ -163,7 +163,7 @@ def test_facts_are_no_words(code, tmp_path):
 def test_a_publisher_may_latch(given, latch, tmp_path):
     text = f"import rospy\nrospy.Publisher('a', None, queue_size=1{given})\n"
     _, found = check_rules.python_facts_of(tmp_path, text)
-    assert [one.latch for one in found.places] == [latch]
+    assert [place.latch for place in found.places] == [latch]
 
 
 def test_facts_say_what_the_source_says(tmp_path):
@@ -242,9 +242,9 @@ def test_missing_spin_belongs_to_the_end(indent, line, tmp_path):
 def test_condition_before_publish(condition, tmp_path):
     text = replaced("self.publisher.publish", f"{condition}self.publisher.publish")
     package, facts = check_rules.python_facts_of(tmp_path, text)
-    one = check_rules.case_of(package, tmp_path / "scratch", facts=facts, observed=None)
-    place = one.places.condition_of_publish("publisher_py_node")
-    one.close()
+    case = check_rules.case_of(package, tmp_path / "scratch", facts=facts, observed=None)
+    place = case.places.condition_of_publish("publisher_py_node")
+    case.close()
     assert place == (("src/odd.py", 15) if condition else None)
 
 
@@ -261,8 +261,8 @@ def test_condition_before_publish(condition, tmp_path):
 )
 def test_a_name_of_python_2_is_found_where_nothing_asks_for_it(code, line, tmp_path):
     found = check_rules.python_findings(tmp_path, f"import sys\nimport six\n{code}\n")
-    names = [one for one in found if one.message.startswith("Python 3 has no")]
-    assert [one.line for one in names] == ([line] if line else [])
+    names = [finding for finding in found if finding.message.startswith("Python 3 has no")]
+    assert [finding.line for finding in names] == ([line] if line else [])
 
 
 @pytest.mark.parametrize(
@@ -296,7 +296,7 @@ def test_what_import_star_brings_is_known_of_messages_and_of_python(imports, nam
     package = {"msg__Tell_DOT_msg": "string text\n", "srv__Ask_DOT_srv": "---\n"}
     code = f"{imports}\nprint(AskRequest, Tell, String, sin)\n"
     found = check_rules.python_findings(tmp_path, code, **package)
-    said = [one.message for one in found if one.message.startswith("Nothing is called")]
+    said = [finding.message for finding in found if finding.message.startswith("Nothing is called")]
     assert sorted(text.split()[3].rstrip(":") for text in said) == names
 
 
@@ -358,8 +358,8 @@ def test_only_a_client_of_a_service_needs_no_init_node(call, found, tmp_path):
     known = facts.Facts(places=python_facts.places(read), sources={"odd.py": ["src/odd.py"]})
     spec = executables.spec(package, model)
     cases = [
-        types.SimpleNamespace(coded=[one])
-        for one in source_node.nodes(package, spec, model, None, known)
+        types.SimpleNamespace(coded=[node])
+        for node in source_node.nodes(package, spec, model, None, known)
     ]
     rule = check_rules.node_start.RULE
     said = [[*rule.findings(case)] for case in cases]

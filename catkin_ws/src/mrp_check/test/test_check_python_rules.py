@@ -114,7 +114,7 @@ def test_what_answers_a_service_returns_a_response(body, severities, tmp_path):
     service = "\n\n\nrospy.init_node('a')\nrospy.Service('switch', SetBool, switch)\nrospy.spin()\n"
     text = f"{head}def switch(request):\n{body}{service}"
     found = check_rules.python_findings(tmp_path, text)
-    assert [one.severity for one in found if one.id == "callbacks"] == severities
+    assert [finding.severity for finding in found if finding.id == "callbacks"] == severities
 
 
 @pytest.mark.parametrize(
@@ -134,7 +134,7 @@ def test_what_answers_a_service_returns_a_response(body, severities, tmp_path):
 )
 def test_what_is_typed_is_a_text(code, found, tmp_path):
     said = check_rules.python_findings(tmp_path, f"import rospy\n{code}\n")
-    assert [(one.severity, one.line - 1) for one in said if one.severity != "note"] == found
+    assert [(f.severity, f.line - 1) for f in said if f.severity != "note"] == found
 
 
 @pytest.mark.parametrize(

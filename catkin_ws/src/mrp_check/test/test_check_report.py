@@ -66,9 +66,9 @@ REPORTS = [
 ]
 
 
-@pytest.mark.parametrize("one", REPORTS, ids=lambda one: one.verdict)
-def test_json_is_as_its_schema_says(one, report_schema):
-    jsonschema.validate(json.loads(json_.text(one)), report_schema)
+@pytest.mark.parametrize("report_", REPORTS, ids=lambda report_: report_.verdict)
+def test_json_is_as_its_schema_says(report_, report_schema):
+    jsonschema.validate(json.loads(json_.text(report_)), report_schema)
 
 
 def test_schema_refuses_what_is_no_report(report_schema):
@@ -93,13 +93,13 @@ def test_junit_is_xml_whatever_was_printed():
     ElementTree.fromstring(text)
 
 
-@pytest.mark.parametrize("one", REPORTS, ids=lambda one: one.verdict)
-def test_page_needs_nothing_else(one):
-    page = Tags(html_report.text(one))
+@pytest.mark.parametrize("report_", REPORTS, ids=lambda report_: report_.verdict)
+def test_page_needs_nothing_else(report_):
+    page = Tags(html_report.text(report_))
     assert not {*page.tags} & {"script", "link", "img", "iframe"}
-    for finding in one.findings:
+    for finding in report_.findings:
         assert finding.message in page.text
-    assert one.reason in page.text
+    assert report_.reason in page.text
 
 
 def test_each_folder_that_the_checker_reads_is_installed():
@@ -135,34 +135,34 @@ def test_console_shows_verdicts_causes_first_and_pages(monkeypatch):
 
 def test_console_shows_one_cause_once_and_notes_on_request():
     others = [dataclasses.replace(CAUSE, file=f"src/{name}.py", severity="") for name in "bc"]
-    one = report(CAUSE, *others, HINTED, RESULT)
-    text = terminal.text(one)
+    report_ = report(CAUSE, *others, HINTED, RESULT)
+    text = terminal.text(report_)
     assert text.count("It never spins.") == 1
     assert "  also at:  src/b.py:3, src/c.py:3\n" in text
     assert "It is not kept." not in text and "No value came." not in text
-    one.left_out = ["values"]
-    assert "[OK]" not in terminal.text(one)
-    assert terminal.text(one).endswith(
+    report_.left_out = ["values"]
+    assert "[OK]" not in terminal.text(report_)
+    assert terminal.text(report_).endswith(
         "Errors: 3; warnings: 0 (2 more with --all; with make: ALL=1)."
     )
-    assert "[OK]" in terminal.text(one, everything=True)
+    assert "[OK]" in terminal.text(report_, everything=True)
 
 
 def test_console_says_of_a_warning_without_a_contract_what_no_other_line_says():
     more = {"expected": "a.b()", "fix": "Write a.b().", "why": "script-crlf"}
-    one = report(Finding("text", "It.", "a.py", 1, severity="warning", **more))
+    report_ = report(Finding("text", "It.", "a.py", 1, severity="warning", **more))
     lines = ["expected:", "fix:", "page:", "why:"]
-    assert [word for word in lines if word in terminal.text(one)] == lines
-    one.left_out = ["values"]
-    assert [word for word in lines if word in terminal.text(one)] == ["fix:", "why:"]
+    assert [word for word in lines if word in terminal.text(report_)] == lines
+    report_.left_out = ["values"]
+    assert [word for word in lines if word in terminal.text(report_)] == ["fix:", "why:"]
 
 
 def test_console_and_page_name_the_text_that_a_tool_prints(monkeypatch):
     monkeypatch.setenv("MRP_PAGES", "https://a.example/mrp/")
-    one = report(Finding("text", "It.", "a.py", 1, why="script-crlf"))
+    report_ = report(Finding("text", "It.", "a.py", 1, why="script-crlf"))
     address = "https://a.example/mrp/pages/why.html#script-crlf"
-    assert f"\n  why:      {address}\n" in terminal.text(one)
-    assert "pages/why.html#script-crlf" in Tags(html_report.text(one)).text
+    assert f"\n  why:      {address}\n" in terminal.text(report_)
+    assert "pages/why.html#script-crlf" in Tags(html_report.text(report_)).text
 
 
 def test_console_has_colours_only_where_asked():
@@ -180,14 +180,14 @@ def repository(tmp_path):
 
 def test_sarif_has_each_finding_with_its_place(repository, monkeypatch):
     monkeypatch.setenv("MRP_PAGES", "https://a.example/mrp")
-    one = dataclasses.replace(report(CAUSE, RESULT, CHANGE), folder=repository)
-    (run,) = sarif.data(one)["runs"]
+    report_ = dataclasses.replace(report(CAUSE, RESULT, CHANGE), folder=repository)
+    (run,) = sarif.data(report_)["runs"]
     assert run["originalUriBaseIds"]["SRCROOT"]["uri"] == f"{repository.parents[1].as_uri()}/"
     rules = run["tool"]["driver"]["rules"]
     assert [rule["id"] for rule in rules] == [*REQUIREMENTS]
     spin = rules[[*REQUIREMENTS].index("spin")]
     assert "https://a.example/mrp/pages/publisher.html" in spin["help"]["text"]
-    for result, finding in zip(run["results"], one.findings):
+    for result, finding in zip(run["results"], report_.findings):
         assert rules[result["ruleIndex"]]["id"] == result["ruleId"] == finding.id
         level = "note" if finding.consequence_of else finding.severity
         assert (result["level"], result["suppressions"]) == (level, [])
@@ -206,9 +206,9 @@ def test_sarif_says_why_it_could_not_be_checked():
 
 
 def test_github_s_annotations_are_escaped_as_its_own_toolkit_does(repository):
-    one = report(CAUSE, RESULT, CHANGE, HINTED, reason="No.")  # without the note
-    one = dataclasses.replace(one, folder=repository)
-    lines = github.text(one).split("\n")
+    report_ = report(CAUSE, RESULT, CHANGE, HINTED, reason="No.")  # without the note
+    report_ = dataclasses.replace(report_, folder=repository)
+    lines = github.text(report_).split("\n")
     assert lines[0].startswith(
         "::error file=src/a_pkg/src/a.py,line=3,title=mrp_check%3A spin::"
         "It never spins.%0A  expected"
@@ -244,18 +244,18 @@ def test_a_reader_s_paths_begin_at(git, working, base, repository, tmp_path, mon
 
 
 def test_what_is_suppressed_is_shown_with_its_reason():
-    one = REPORTS[0]
+    report_ = REPORTS[0]
     line = "src/a.py:4: suppressed (lifetime): It is kept elsewhere."
-    assert line in terminal.text(one) and line in Tags(html_report.text(one)).text
-    assert terminal.text(one).endswith("; suppressed: 1.")
-    assert f"<system-out>{line}</system-out>" in junit.text(one)
-    (shown,) = json.loads(json_.text(one))["suppressed"]
+    assert line in terminal.text(report_) and line in Tags(html_report.text(report_)).text
+    assert terminal.text(report_).endswith("; suppressed: 1.")
+    assert f"<system-out>{line}</system-out>" in junit.text(report_)
+    (shown,) = json.loads(json_.text(report_))["suppressed"]
     assert (shown["id"], shown["reason"]) == ("lifetime", "It is kept elsewhere.")
-    (result,) = sarif.data(one)["runs"][0]["results"]
+    (result,) = sarif.data(report_)["runs"][0]["results"]
     assert result["suppressions"] == [
         {"kind": "inSource", "justification": "It is kept elsewhere."}
     ]
-    assert one.verdict == check.MET
+    assert report_.verdict == check.MET
 
 
 DIGITS = "0123456789abcdefghij"

@@ -36,7 +36,7 @@ def findings(rule, runs, **known):
 
 
 def severities(rule, runs, **known):
-    return [one.severity for one in findings(rule, runs, **known)]
+    return [finding.severity for finding in findings(rule, runs, **known)]
 
 
 @pytest.mark.parametrize(
@@ -57,7 +57,7 @@ def test_two_programs_of_one_name(files, anonymous, found, tmp_path):
     places = [Place(file, 1, Kind.INIT, "talker", anonymous=anonymous) for file in files]
     facts = Facts(places, {f"node_{number}": [file] for number, file in enumerate(files)})
     known = types.SimpleNamespace(package=package, facts=facts, launch=None, launches=[])
-    assert [one.file for one in check_rules.of(same_name.RULE, known)] == found
+    assert [finding.file for finding in check_rules.of(same_name.RULE, known)] == found
 
 
 def launched(file, topic, *names):
@@ -75,7 +75,7 @@ def test_names_that_a_launch_file_may_give(files, found):
     """Without one, all nodes run together; one that starts others may rename these."""
     runs = [launched("", "/hear/raw", "hear", "say")]
     known = {"launches": [types.SimpleNamespace(file=file) for file in files]}
-    assert [one for one in severities(meeting, runs, **known) if one == ERROR] == found
+    assert [level for level in severities(meeting, runs, **known) if level == ERROR] == found
 
 
 @pytest.mark.parametrize(
@@ -100,8 +100,8 @@ def test_a_topic_of_another_name(topic, names, down, found):
     seen.seen.seen.publications[:] = [Registration("/say", "/say", "std_msgs/String", 1)]
     nodes = {"b": types.SimpleNamespace(is_up=not down)}
     said = findings(meeting, [seen], nodes=nodes, facts=Facts(sources={"b": down}))
-    assert [one.severity for one in said] == found
-    assert [one for one in said if "first slash" in one.fix] == said * (topic == "/robot/say")
+    assert [f.severity for f in said] == found
+    assert [f for f in said if "first slash" in f.fix] == said * (topic == "/robot/say")
 
 
 @pytest.mark.parametrize(
@@ -115,9 +115,9 @@ def test_a_topic_of_another_name(topic, names, down, found):
 )
 def test_a_topic_of_several_types(file, others, found):
     types_ = ["std_msgs/Int8", *others]
-    said = [Registration(f"/say{n}", "/a", one, 1) for n, one in enumerate(types_)]
+    said = [Registration(f"/say{n}", "/a", type_, 1) for n, type_ in enumerate(types_)]
     heard = [Registration("/hear", "/a", "std_msgs/String", 1)]
-    nodes = {"/hear": "hear", **{one.node: "say" for one in said}}
+    nodes = {"/hear": "hear", **{registration.node: "say" for registration in said}}
     seen = types.SimpleNamespace(seen=Seen(publications=said, subscriptions=heard))
     assert severities(meeting, [Launched(file, nodes, seen)]) == found
 
@@ -304,13 +304,13 @@ def test_what_dies_only_under_a_launch_file(alone, logs, says):
     case = types.SimpleNamespace(package=PACKAGE, launches=[], **known)
     case.spec = types.SimpleNamespace(is_contract=False)
     found = [*exceptions.under_launch_files(case)]
-    assert [says in one.message for one in found] == [True] * bool(says)
+    assert [says in f.message for f in found] == [True] * bool(says)
     seen = (
         "ValueError: no, in: " if "ValueError" in logs else "killed by signal 11 (invalid memory)"
     )
-    assert all((one.certainty, one.seen) == (SEEN, seen) for one in found)
-    assert not [one for one in found if "spin" in one.fix]
-    assert all(starts.weigh_start(case, node, one) == (not found) for one in node.not_up)
+    assert all((f.certainty, f.seen) == (SEEN, seen) for f in found)
+    assert not [f for f in found if "spin" in f.fix]
+    assert all(starts.weigh_start(case, node, finding) == (not found) for finding in node.not_up)
 
 
 @pytest.mark.parametrize(("code", "found"), [(0, WARNING), (1, WARNING), (-11, ERROR)])
@@ -323,7 +323,7 @@ def test_what_ends_with_an_error_has_ended(code, found):
     spec = types.SimpleNamespace(is_contract=False, shutdown=Shutdown(seconds=5))
     case = types.SimpleNamespace(spec=spec, nodes={"a": node})
     said = [*check_rules.of(exit.RULE, case, exit.findings)]
-    assert [one.severity for one in said] == [found]
+    assert [f.severity for f in said] == [found]
 
 
 NOT_THERE = "open: No such file or directory"
@@ -362,5 +362,5 @@ def test_ros_reads_each_line_of_a_definition(name, text, said, tmp_path):
     model = types.SimpleNamespace(message_files={name})
     known = types.SimpleNamespace(package=package, model=model)
     found = [*check_rules.of(messages.RULE, known, messages.definitions)]
-    assert [(one.file, one.line) for one in found] == ([(name, 2)] if said else [])
-    assert all(said in one.message for one in found)
+    assert [(f.file, f.line) for f in found] == ([(name, 2)] if said else [])
+    assert all(said in f.message for f in found)

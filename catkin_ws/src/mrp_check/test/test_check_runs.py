@@ -31,15 +31,15 @@ def test_faults_that_only_a_run_shows(tmp_path):
     report = check.check(package, None)
     assert not report.reason
     found = report.findings
-    missed = [one for one in FOUND if not any(is_told(f, package.root, *one) for f in found)]
+    missed = [row for row in FOUND if not any(is_told(f, package.root, *row) for f in found)]
     assert not missed, shown(found)
-    nodes = {one.node or one.file for one in found if one.severity == ERROR}
+    nodes = {finding.node or finding.file for finding in found if finding.severity == ERROR}
     assert not nodes & {"talker.py", "client.py", "caller.py"}
 
 
 def test_the_same_nodes_without_a_fault(tmp_path):
     report = check.check(run_packages.make(tmp_path, is_right=True), None)
-    found = [one for one in report.findings if one.severity in (ERROR, WARNING)]
+    found = [finding for finding in report.findings if finding.severity in (ERROR, WARNING)]
     assert (report.reason, found) == ("", [])
 
 

@@ -40,7 +40,7 @@ def test_first_line(first, is_wrong, is_relayed, has_contract, tmp_path):
     package = check_rules.make(tmp_path, src__odd_DOT_py=source, CMakeLists_DOT_txt=text_)
     known = {"spec": check_rules.PUB_SUB if has_contract else WITHOUT}
     known["started"] = {} if is_relayed else {"src/odd.py": None}
-    found = [(one.severity, one.line) for one in file_findings(scripts, package, **known)]
+    found = [(f.severity, f.line) for f in file_findings(scripts, package, **known)]
     severity = "warning" if is_relayed and not has_contract else "error"
     assert found == [(severity, 1)] * (not is_relayed if is_wrong is None else is_wrong)
 

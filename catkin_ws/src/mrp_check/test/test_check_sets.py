@@ -74,16 +74,18 @@ def test_correct_package_is_met(style, tmp_path, run_check):
     check_sets.lay_out(style, folder)
     report = run_check(folder, check_sets.spec_of(style))
     warns = check_sets.fields_of(style).get("Warns", [])
-    found = [one for one in report["findings"] if one["severity"] != "note"]
-    others = [one for one in found if one["id"] not in warns]
+    found = [finding for finding in report["findings"] if finding["severity"] != "note"]
+    others = [finding for finding in found if finding["id"] not in warns]
     assert (report["verdict"], shown(others)) == ("met", "")
-    assert {one["id"] for one in found} == set(warns)
+    assert {finding["id"] for finding in found} == set(warns)
 
 
 @pytest.mark.parametrize(
     "defect",
-    parameters([one for one in check_sets.DEFECTS if not one.order], lambda one: one.name),
-    ids=lambda one: one.name,
+    parameters(
+        [defect for defect in check_sets.DEFECTS if not defect.order], lambda defect: defect.name
+    ),
+    ids=lambda defect: defect.name,
 )
 def test_defect_is_found(defect, tmp_path, run_check):
     folder = tmp_path / "package"
@@ -107,21 +109,19 @@ def assert_fixes_fit(findings, folder):
 
 def assert_one_defect(findings, defect, folder, severities=("error",)):
     """Raise AssertionError unless the defect is found, and nothing that does not follow from it."""
-    causes = [
-        one for one in findings if one["severity"] in severities and not one["consequence_of"]
-    ]
-    told = [one for one in causes if check_sets.is_found(one, defect, folder)]
+    causes = [f for f in findings if f["severity"] in severities and not f["consequence_of"]]
+    told = [cause for cause in causes if check_sets.is_found(cause, defect, folder)]
     if defect.missed:
         assert not told, "it is found: take its line Missed away"
         return
     assert told, f"expected: {defect}\nfound:\n{shown(findings)}"
     if defect.why:
-        assert {one["why"] for one in told} == {defect.name.replace("_", "-")}
-    others = [one for one in causes if one not in told]
+        assert {cause["why"] for cause in told} == {defect.name.replace("_", "-")}
+    others = [cause for cause in causes if cause not in told]
     assert not others, f"besides the defect:\n{shown(others)}"
 
 
-@pytest.mark.parametrize("exercise", EXERCISES, ids=lambda one: one.name)
+@pytest.mark.parametrize("exercise", EXERCISES, ids=lambda defect: defect.name)
 def test_exercise_fails_for_its_own_reason_and_its_solution_passes(exercise, tmp_path, run_check):
     folder = tmp_path / "package"
     check_sets.lay_out(exercise.base, folder)
@@ -155,13 +155,13 @@ def test_a_contract_is_written_from_a_correct_package(style, tmp_path, run_check
     nodes = spec.read(path).nodes
     assert len(path.read_text().splitlines()) <= 15 * max(len(nodes), 2), path.read_text()
     report = run_check(folder, path)
-    found = [one for one in report["findings"] if one["severity"] != "note"]
+    found = [finding for finding in report["findings"] if finding["severity"] != "note"]
     assert report["verdict"] == "met" and not found, f"{path.read_text()}\n{shown(found)}"
 
-    (defect,) = [one for one in check_sets.DEFECTS if one.name == WRITTEN[style]]
+    (defect,) = [defect for defect in check_sets.DEFECTS if defect.name == WRITTEN[style]]
     check_sets.break_(folder, defect)
     report = run_check(folder, path)
-    found = {one["id"] for one in report["findings"] if one["severity"] == "error"}
+    found = {finding["id"] for finding in report["findings"] if finding["severity"] == "error"}
     assert found & {*defect.finds.split("|")}, f"{path.read_text()}\n{shown(report['findings'])}"
 
 

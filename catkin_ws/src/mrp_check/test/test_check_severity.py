@@ -39,11 +39,11 @@ def test_a_habit_never_becomes_an_error(rule, has_contract):
     habits = [Finding(id_, "It works.", "a.py", 1, HABIT) for id_ in rule.ids]
     seen = [Finding(id_, "It fails.", "a.py", 1, SEEN) for id_ in rule.ids]
     habits = [*Rule(rule.stage, (), lambda case: habits, also=rule.ids).ask(None)]
-    for one in (*seen, *habits):
-        one.stage, one.severity = rule.stage, severity(one.certainty, has_contract=True)
+    for finding in (*seen, *habits):
+        finding.stage, finding.severity = rule.stage, severity(finding.certainty, has_contract=True)
     known = causes.without_repeats([*habits, *seen], None, None, has_contract)
     weigh(known, has_contract)
-    assert {one.severity for one in habits} == {"warning"}
+    assert {habit.severity for habit in habits} == {"warning"}
 
 
 def test_what_follows_from_a_warning_of_the_same_rule_counts():
@@ -59,7 +59,7 @@ def test_what_follows_from_a_consequence_is_one():
     ids = {"targets": None, "starts": "targets", "exit": "starts"}
     chain = [Finding(id_, "It fails.", certainty=SEEN, consequence_of=ids[id_]) for id_ in ids]
     weigh(chain, has_contract=True)
-    assert [one.consequence_of for one in chain] == [*ids.values()]
+    assert [finding.consequence_of for finding in chain] == [*ids.values()]
 
 
 def _certainties(path):
@@ -79,7 +79,7 @@ def test_what_is_only_read_is_not_said_to_be_seen(path):
 def test_what_was_only_read_is_an_error_where_it_was_seen():
     read = [Finding("spin", "It says so.", file, 1, READ) for file in ("a.py", "b.py")]
     weigh([*read, Finding("spin", "It fails.", "a.py", 9, SEEN)], has_contract=False)
-    assert [one.severity for one in read] == ["error", "warning"]
+    assert [finding.severity for finding in read] == ["error", "warning"]
 
 
 @pytest.mark.parametrize(("cause", "severity"), [("targets", "error"), ("python-names", "warning")])
@@ -88,20 +88,20 @@ def test_only_what_fails_because_of_it_confirms_what_was_read(cause, severity):
     files = ("a.py", "b.py") if cause == "python-names" else ("CMakeLists.txt", "a.cmake")
     read = [Finding(cause, "It says so.", file, 1, READ, stage="files") for file in files]
     failed = Finding("starts", "It ends.", "a.py", 9, SEEN, stage="run", node="a")
-    for one in (*read, failed):
-        one.severity = "error"
+    for finding in (*read, failed):
+        finding.severity = "error"
     facts = Facts(sources={"a": ["a.py"]})
     found = causes.without_repeats([*read, failed], facts, {}, has_contract=False)
     weigh(found, has_contract=False)
-    assert [one.severity for one in read] == [severity, "warning"]
+    assert [finding.severity for finding in read] == [severity, "warning"]
 
 
 def test_what_was_seen_is_the_cause_before_what_was_only_read():
     read = Finding("messages", "It says so.", "CMakeLists.txt", 1, READ, stage="files")
     seen = Finding("compile", "It stops.", "a.cpp", 3, SEEN, stage="build")
     failed = Finding("starts", "There is no executable.", None, None, SEEN, stage="run", node="a")
-    for one in (read, seen, failed):
-        one.severity = "error"
+    for finding in (read, seen, failed):
+        finding.severity = "error"
     facts = Facts(sources={"a": ["a.cpp"]})
     weigh(causes.without_repeats([read, seen, failed], facts, {}, False), has_contract=False)
     assert (failed.consequence_of, read.severity) == ("compile", "warning")

@@ -65,7 +65,7 @@ rospy.spin()
 
 
 def manifest(name, *needed):
-    tags = "".join(f"  <depend>{one}</depend>\n" for one in needed)
+    tags = "".join(f"  <depend>{dependency}</depend>\n" for dependency in needed)
     return check_rules.MANIFEST.replace("some_pkg", name).replace("</package>", f"{tags}</package>")
 
 
@@ -88,12 +88,12 @@ def test_a_package_needs_what_its_manifest_names_and_what_that_needs(workspace):
     check_rules.make(last, package_DOT_xml=manifest("last", "a_nodes", "roscpp", "nowhere"))
     found = {path.name: path for path in siblings.packages_in(workspace)}
     assert [*found] == ["a_msgs", "a_nodes", "last"]
-    assert [one.name for one in siblings.needed(Package(last))] == ["a_nodes", "a_msgs"]
+    assert [package.name for package in siblings.needed(Package(last))] == ["a_nodes", "a_msgs"]
     assert siblings.needed(Package(found["a_msgs"])) == []
     alone = check_rules.make(workspace / "elsewhere", package_DOT_xml=manifest("alone", "a_msgs"))
     assert siblings.needed(alone) == []  # without a repository, only what lies in the same folder
     (workspace / ".git").mkdir()
-    assert [one.name for one in siblings.needed(alone)] == ["a_msgs"]
+    assert [package.name for package in siblings.needed(alone)] == ["a_msgs"]
 
 
 @pytest.mark.quick

@@ -69,17 +69,17 @@ def python_case(folder, **known):
 
 def test_pylint_knows_rospy(tmp_path):
     found = [*pylint.RULE.ask(python_case(tmp_path))]
-    assert {(one.line, one.certainty) for one in found} == {
+    assert {(f.line, f.certainty) for f in found} == {
         *((15, "read"), (16, "read"), (18, "read"), (18, "habit"), (19, "read"), (20, "habit")),
         (26, "hint"),
     }
-    assert not [one for one in found if not one.expected.startswith("nothing that pylint calls ")]
+    assert not [f for f in found if not f.expected.startswith("nothing that pylint calls ")]
 
 
 def test_what_another_rule_has_said_pylint_does_not_repeat(tmp_path):
-    one = python_case(tmp_path)
-    one.facts.python["src/odd.py"].told.update({15: None, 16: None, 18: None})
-    assert [finding.line for finding in pylint.RULE.ask(one)] == [19, 20, 26]
+    case_ = python_case(tmp_path)
+    case_.facts.python["src/odd.py"].told.update({15: None, 16: None, 18: None})
+    assert [finding.line for finding in pylint.RULE.ask(case_)] == [19, 20, 26]
 
 
 CMAKE = "project(some_pkg)\nfind_package(catkin REQUIRED COMPONENTS roscpp)\ncatkin_package()\n"
@@ -94,9 +94,9 @@ def test_catkin_lint_is_asked_only_of_packages_of_catkins(tmp_path):
 def test_catkin_lint_gives_notes(tmp_path):
     package = check_rules.make(tmp_path / "some_pkg", CMakeLists_DOT_txt=CMAKE)
     found = [*catkin_lint.RULE.ask(case(package))]
-    assert {one.certainty for one in found} == {"hint"}
-    assert any("passes on" in one.message or "pass on" in one.message for one in found)
-    assert any("doesn't look for" in one.message for one in found)
+    assert {f.certainty for f in found} == {"hint"}
+    assert any("passes on" in f.message or "pass on" in f.message for f in found)
+    assert any("doesn't look for" in f.message for f in found)
 
 
 CPP = (
@@ -115,8 +115,8 @@ def test_what_compiles_and_does_something_else(tmp_path):
     done = run(*command, str(package.root / "src" / "a.cpp"))
     built = types.SimpleNamespace(output=done.errors)
     found = [*gcc.RULE.ask(case(package, built=built))]
-    assert {one.certainty for one in found} == {"habit"}
-    assert sorted((one.line, one.message.split()[0]) for one in found) == [
+    assert {f.certainty for f in found} == {"habit"}
+    assert sorted((f.line, f.message.split()[0]) for f in found) == [
         *((5, "On"), (10, "The"), (11, "Perhaps"), (12, "A"), (13, "This"), (15, "This")),
         *((16, "This"), (17, "A")),
     ]
@@ -126,8 +126,8 @@ def test_a_tool_that_is_missing_is_said_once(tmp_path, monkeypatch):
     missing = types.SimpleNamespace(
         code=1, output="", errors="/usr/bin/python3: No module named pylint"
     )
-    one = python_case(tmp_path, run_once=lambda *command, of: missing)
+    case_ = python_case(tmp_path, run_once=lambda *command, of: missing)
     monkeypatch.setattr(catkin_lint, "search_path", lambda: "/nowhere")
     for rule, package in ((pylint, "pylint"), (catkin_lint, "catkin-lint")):
         with pytest.raises(NotHere, match=f"Debian package {package}"):
-            [*rule.RULE.ask(one)]
+            [*rule.RULE.ask(case_)]

@@ -55,25 +55,25 @@ def test_a_rule_that_fails_costs_its_own_requirements_alone(
         rule(wrong, ids=("cmake",)),
         rule(ids=("manifest",), stage="static"),
     ]
-    one = examined(tmp_path, rules, monkeypatch, only=("text", "cmake", "manifest"))
-    assert one.verdict == check.FINDINGS
-    assert one.requirements == {
+    report = examined(tmp_path, rules, monkeypatch, only=("text", "cmake", "manifest"))
+    assert report.verdict == check.FINDINGS
+    assert report.requirements == {
         "manifest": check.MET,
         "cmake": check.BROKEN,
         "text": check.UNCHECKED,
     }
-    assert [finding.message for finding in one.findings] == ["It is wrong."]
-    assert re.search(says, one.reason) and re.search(says, one.unseen["text"])
-    jsonschema.validate(json.loads(json_.text(one)), report_schema)
-    for text in (terminal.text(one), junit.text(one), html_report.text(one)):
+    assert [finding.message for finding in report.findings] == ["It is wrong."]
+    assert re.search(says, report.reason) and re.search(says, report.unseen["text"])
+    jsonschema.validate(json.loads(json_.text(report)), report_schema)
+    for text in (terminal.text(report), junit.text(report), html_report.text(report)):
         assert str(fails) in text
 
 
 def test_a_rule_reports_no_other_requirement_than_it_says(tmp_path, monkeypatch):
     other = rule(Finding("spin", "It never spins."), ids=("text",))
-    one = examined(tmp_path, [other], monkeypatch, only=("text",))
-    assert (one.verdict, one.findings) == (check.UNCHECKED, [])
-    assert "a rule reports spin, and does not say so" in one.reason
+    report = examined(tmp_path, [other], monkeypatch, only=("text",))
+    assert (report.verdict, report.findings) == (check.UNCHECKED, [])
+    assert "a rule reports spin, and does not say so" in report.reason
 
 
 @pytest.mark.slow
@@ -89,9 +89,9 @@ def test_what_failed_once_is_not_tried_again(tmp_path, monkeypatch):
         Rule("files", ("model",), list, also=("text",)),
         Rule("files", ("facts",), list, also=("cmake",)),
     ]
-    one = examined(tmp_path, rules, monkeypatch, only=("text", "cmake"))
-    assert (one.reason, len(tried)) == ("CMake did not end.", 1)
-    assert {*one.requirements.values()} == {check.UNCHECKED}
+    report = examined(tmp_path, rules, monkeypatch, only=("text", "cmake"))
+    assert (report.reason, len(tried)) == ("CMake did not end.", 1)
+    assert {*report.requirements.values()} == {check.UNCHECKED}
 
 
 STATIC = [rule for rule in RULES if rule.stage in ("files", "static")]
@@ -110,17 +110,17 @@ def test_one_requirement_alone_is_checked_as_among_all(id_):
 
 def test_what_was_never_seen_is_neither_met_nor_paid(tmp_path, monkeypatch):
     """Checks a package without sources: nobody can know what its nodes do."""
-    one = examined(tmp_path, STATIC, monkeypatch, only=STATIC_IDS)
+    report = examined(tmp_path, STATIC, monkeypatch, only=STATIC_IDS)
     never = {"dependencies", "python-syntax", "node-start", "spin", "lifetime", "queue"}
-    assert {id_ for id_ in never if one.requirements[id_] != check.UNCHECKED} == set()
-    assert one.unseen["spin"] == "no source of publisher_cpp_node was found"
-    assert "[--]   Each node waits for callbacks (spin): no source of" in terminal.text(one)
-    assert "no source of publisher_cpp_node" in html_report.text(one)
-    assert "no source of publisher_cpp_node" in junit.text(one)
-    assert json.loads(json_.text(one))["unseen"] == one.unseen
-    assert one.requirements["manifest"] == check.MET
-    submission = class_table.Submission("anna", json_.data(one))
-    met = [id_ for id_, verdict in one.requirements.items() if verdict == check.MET]
+    assert {id_ for id_ in never if report.requirements[id_] != check.UNCHECKED} == set()
+    assert report.unseen["spin"] == "no source of publisher_cpp_node was found"
+    assert "[--]   Each node waits for callbacks (spin): no source of" in terminal.text(report)
+    assert "no source of publisher_cpp_node" in html_report.text(report)
+    assert "no source of publisher_cpp_node" in junit.text(report)
+    assert json.loads(json_.text(report))["unseen"] == report.unseen
+    assert report.requirements["manifest"] == check.MET
+    submission = class_table.Submission("anna", json_.data(report))
+    met = [id_ for id_, verdict in report.requirements.items() if verdict == check.MET]
     assert submission.points(check_rules.PUB_SUB) == len(met) < 8
 
 
@@ -142,10 +142,10 @@ def test_a_comment_with_a_reason_suppresses_a_finding(tmp_path):
     found = [dataclasses.replace(f, certainty=SEEN) for f in (SPINS, FOLLOWS, DROPPED)]
     stay, suppressed = suppression.applied(package, found, {"spin", "lifetime", "queue"}, False)
     weigh(stay, has_contract=True)
-    assert [(one.id, one.suppressed) for one in suppressed] == [
+    assert [(finding.id, finding.suppressed) for finding in suppressed] == [
         ("spin", "it sleeps in a loop of its own")
     ]
-    assert [(one.id, one.line, one.severity, one.consequence_of) for one in stay] == [
+    assert [(f.id, f.line, f.severity, f.consequence_of) for f in stay] == [
         ("values", 3, "error", None),
         ("lifetime", 4, "error", None),
         ("lifetime", 4, "warning", None),
@@ -153,7 +153,7 @@ def test_a_comment_with_a_reason_suppresses_a_finding(tmp_path):
         ("queue", 6, "warning", None),
     ]
     says = ["gives no reason", "Did you mean 'spin'", "no such finding here"]
-    assert all(word in one.message for word, one in zip(says, stay[2:]))
+    assert all(word in finding.message for word, finding in zip(says, stay[2:]))
 
 
 def test_what_could_not_be_checked_is_no_idle_comment(tmp_path):
@@ -174,7 +174,7 @@ def test_what_could_not_be_checked_is_no_idle_comment(tmp_path):
 def test_a_comment_is_one_of_its_language(file, line, tmp_path):
     name = file.replace("__", "/").replace("_DOT_", ".")
     package = check_rules.make(tmp_path, **{file: line + "\n", "src__b_DOT_cpp": "# " + line})
-    (comment,) = (one for one in suppression.comments(package) if one.file != "src/b.cpp")
+    (comment,) = (entry for entry in suppression.comments(package) if entry.file != "src/b.cpp")
     assert comment == suppression.Comment(name, 1, "spin", "why")
 
 
@@ -182,7 +182,7 @@ def test_under_a_contract_a_comment_suppresses_nothing(tmp_path, monkeypatch):
     wrong = Finding("cmake", "It is wrong.", "CMakeLists.txt", 1)
     text = "# mrp_check: ignore cmake: it is as I want it\n"
     rules = [rule(wrong, ids=("cmake",))]
-    one = examined(tmp_path, rules, monkeypatch, only=("cmake",), CMakeLists_DOT_txt=text)
-    assert (one.requirements, one.suppressed) == ({"cmake": check.BROKEN}, [])
-    assert [finding.severity for finding in one.findings] == ["error", "note"]
-    assert "a contract says what counts" in one.findings[1].message
+    report = examined(tmp_path, rules, monkeypatch, only=("cmake",), CMakeLists_DOT_txt=text)
+    assert (report.requirements, report.suppressed) == ({"cmake": check.BROKEN}, [])
+    assert [finding.severity for finding in report.findings] == ["error", "note"]
+    assert "a contract says what counts" in report.findings[1].message

@@ -20,7 +20,7 @@ ALL = defects.read_all()
 TESTS = check_sets.TUTORIAL / "test"
 
 
-@pytest.mark.parametrize("defect", ALL, ids=lambda one: one.name)
+@pytest.mark.parametrize("defect", ALL, ids=lambda defect: defect.name)
 def test_defect_can_be_injected_and_taken_back(defect, tmp_path):
     check_sets.lay_out(defect.base, tmp_path)
     correct = check_sets.contents(tmp_path)
@@ -40,7 +40,7 @@ EXERCISE = ("Order", "Kind", "Task", "Hint", "Learned")
 TOGETHER = {("Fails", "Says"): (), ("Finds", "In", "Tells"): (), EXERCISE: ("Finds",)}
 
 
-@pytest.mark.parametrize("defect", ALL, ids=lambda one: one.name)
+@pytest.mark.parametrize("defect", ALL, ids=lambda defect: defect.name)
 def test_head_has_all_that_it_needs(defect):
     fields = defects.fields(defect.path)
     needed = set() if "Fails" in fields else {"Finds"}
@@ -55,7 +55,7 @@ def test_head_has_all_that_it_needs(defect):
     assert not defect.fails or defect.base == "mrp"
 
 
-@pytest.mark.parametrize("defect", ALL, ids=lambda one: one.name)
+@pytest.mark.parametrize("defect", ALL, ids=lambda defect: defect.name)
 def test_head_names_what_is_there(defect):
     assert defect.base in check_sets.STYLES
     assert [id_ for id_ in defect.finds.split("|") if id_ and id_ not in REQUIREMENTS] == []
@@ -69,10 +69,10 @@ def test_head_names_what_is_there(defect):
 
 def test_exercises_are_a_path():
     exercises = defects.exercises()
-    assert [one.order for one in exercises] == [*range(1, len(exercises) + 1)]
-    kinds = [one.kind for one in exercises]
+    assert [exercise.order for exercise in exercises] == [*range(1, len(exercises) + 1)]
+    kinds = [exercise.kind for exercise in exercises]
     assert {*kinds} == {*defects.KINDS} == {*kinds[20:], "read"} and kinds[0] == "read"
-    endings = [pathlib.Path(file).suffix for one in exercises for file in changed(one)]
+    endings = [pathlib.Path(file).suffix for exercise in exercises for file in changed(exercise)]
     assert abs(endings.count(".py") - endings.count(".cpp") - endings.count(".cc")) <= 2
     assert {*endings} == {".py", ".cpp", ".cc", ".launch", ".txt", ".xml"}
 
@@ -82,7 +82,7 @@ def changed(defect):
     return re.findall(r"^\+\+\+ b/(\S+)", defect.path.read_text(), re.MULTILINE)
 
 
-@pytest.mark.parametrize("exercise", defects.exercises(), ids=lambda one: one.name)
+@pytest.mark.parametrize("exercise", defects.exercises(), ids=lambda defect: defect.name)
 def test_exercise_has_a_page_and_a_short_hint(exercise):
     assert (check_sets.TUTORIAL / "doc" / "pages" / f"{exercise.page}.rst").exists()
     assert exercise.task.startswith("# ")

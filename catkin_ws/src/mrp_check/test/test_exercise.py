@@ -136,7 +136,7 @@ def test_passed_goes_on_to_the_next_until_all_are_passed(tmp_path, capsys, check
         assert f"Exercise {number} of {COUNT}\n" in printed
     plain.run_once(tmp_path)
     assert f"You have finished all {COUNT}. Well done!" in capsys.readouterr().out
-    assert checked.folders == [one.place for one in Course(tmp_path).exercises]
+    assert checked.folders == [exercise.place for exercise in Course(tmp_path).exercises]
 
 
 def test_another_number_changes_neither_the_progress_nor_the_copy(tmp_path, checked, monkeypatch):
@@ -149,8 +149,8 @@ def test_another_number_changes_neither_the_progress_nor_the_copy(tmp_path, chec
     for kept in (f"{passed.name}\n", f"01_{passed.name}\n"):
         (tmp_path / "passed.txt").write_text(kept)
         course = Course(tmp_path)
-        assert [course.is_passed(one) for one in course.exercises] == [False, False, True]
-        assert [one.place for one in course.exercises[1:]] == [copied.place, passed.place]
+        assert [course.is_passed(exercise) for exercise in course.exercises] == [False, False, True]
+        assert [exercise.place for exercise in course.exercises[1:]] == [copied.place, passed.place]
         assert course.exercises[0].place.name.startswith("01_")
 
 
@@ -202,7 +202,7 @@ def test_each_save_is_checked_and_an_editors_own_files_are_not(tmp_path, checked
     second = watched.check
     watched.look()
     assert second.passed and watched.course.is_passed(watched.exercise)
-    assert [one.number for one in Course(tmp_path / "mine").open][:2] == [2, 3]
+    assert [exercise.number for exercise in Course(tmp_path / "mine").open][:2] == [2, 3]
     watched.reset()
     assert (place / "src" / "subscriber_py_node.py").read_text() != ""
 
@@ -222,7 +222,7 @@ def test_what_is_found_early_is_known_early(tmp_path, monkeypatch):
 
     def found():
         watched.look()
-        return [one.message for one in watched.check.findings] if watched.check else []
+        return [finding.message for finding in watched.check.findings] if watched.check else []
 
     wait_until(lambda: found() == ["In the files."], "what is found first")
     assert not watched.check.done

@@ -161,17 +161,17 @@ def test_others_come_first(monkeypatch):
 
     monkeypatch.setattr(listener.rospy, "Subscriber", subscriber)
     monkeypatch.setattr(listener.time, "monotonic", lambda: now)
-    one = listener.Listener(settle=3.0)
-    one.follow(observation())
+    listener_ = listener.Listener(settle=3.0)
+    listener_.follow(observation())
     now += 2.0
-    one.follow(observation("/joins"))
+    listener_.follow(observation("/joins"))
     now += 2.0
-    one.follow(observation("/joins"))
+    listener_.follow(observation("/joins"))
     now += 2.0
-    one.follow(observation())  # it has left
+    listener_.follow(observation())  # it has left
     now += 2.9
-    one.follow(observation())
+    listener_.follow(observation())
     assert topics == [listener.LOG_TOPIC]
     now += 0.1
-    one.follow(observation())
+    listener_.follow(observation())
     assert topics == [listener.LOG_TOPIC, "/t"]

@@ -106,14 +106,14 @@ class TestFaults(unittest.TestCase):
                     "four islands in each group",
                 )
                 wanted = {
-                    (f"/{group}/publisher_{one}", f"/{group}/publisher_{one}/great_topic")
+                    (f"/{group}/publisher_{suffix}", f"/{group}/publisher_{suffix}/great_topic")
                     for group in ("by_code", "by_remap")
-                    for one in ("cpp", "py")
+                    for suffix in ("cpp", "py")
                 }
                 wanted |= {
-                    (f"/{group}/subscriber_{one}/great_topic", f"/{group}/subscriber_{one}")
+                    (f"/{group}/subscriber_{suffix}/great_topic", f"/{group}/subscriber_{suffix}")
                     for group in ("by_code", "by_remap")
-                    for one in ("cpp", "py")
+                    for suffix in ("cpp", "py")
                 }
                 page.wait_for(lambda: set(page.edges()) == wanted, "each on its own topic alone")
 

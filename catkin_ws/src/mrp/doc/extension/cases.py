@@ -79,7 +79,7 @@ def _python_cases(path, text):
     file = ast.parse(text)
     for node in ast.walk(file):
         if isinstance(node, ast.FunctionDef) and node.name.startswith("test"):
-            first = min([node.lineno, *(one.lineno for one in node.decorator_list)])
+            first = min([node.lineno, *(decorator.lineno for decorator in node.decorator_list)])
             source = textwrap.dedent("\n".join(text.splitlines()[first - 1 : node.end_lineno]))
             language = re.search("_(cpp|py)(?=_|$)", node.name)
             language = _LANGUAGES[language[1]] if language else ""
@@ -116,7 +116,7 @@ def result(name):
         and re.match(rf"{re.escape(case)}([\[@]|$)", case_name)
     ]
     worst = ("failed", "skipped", "passed")
-    return min(ends, key=lambda one: worst.index(one[0]), default=None)
+    return min(ends, key=lambda pair: worst.index(pair[0]), default=None)
 
 
 def is_of_test_all(name):
@@ -140,7 +140,7 @@ def ended(pattern):
         except ElementTree.ParseError:  # a test is still writing it
             continue
         for case in cases:
-            tags = {one.tag for one in case}
+            tags = {child.tag for child in case}
             end = "skipped" if "skipped" in tags else "passed"
             end = "failed" if tags & {"failure", "error"} else end
             found.append((case.get("classname", "").split("."), case.get("name"), end, day))

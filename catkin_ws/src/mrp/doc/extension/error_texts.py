@@ -19,7 +19,7 @@ import why_entries as tool
 class Why(Generated):
     def text(self):
         parts = []
-        for theme, entries in itertools.groupby(tool.entries(), lambda one: one.theme):
+        for theme, entries in itertools.groupby(tool.entries(), lambda entry: entry.theme):
             parts += [theme, "-" * len(theme), ""]
             parts += itertools.chain.from_iterable(map(_section, entries))
         for path in tool.FOLDER.glob("*.txt"):

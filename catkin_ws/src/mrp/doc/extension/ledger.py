@@ -113,7 +113,7 @@ def faults(rows, page):
             yield row.line, f"expected the name of a test above this sentence: {row.text}"
         mine = [(block, found) for block, found in proved if row.in_text(block.text)]
         if not mine:
-            sentences = [one for block in page for one in re.split(r"(?<=[.!?]) ", block.text)]
+            sentences = [text for block in page for text in re.split(r"(?<=[.!?]) ", block.text)]
             yield row.line, f"the page has no such sentence: {row.text}{_hint(row.text, sentences)}"
         for block, found in mine:
             for sentence in row.in_text(block.text):

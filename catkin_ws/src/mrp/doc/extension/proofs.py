@@ -41,7 +41,7 @@ def _mark(app, doctree):
             marked.append((block, claims))
         elif "to-prove" in block.node["classes"]:
             logger.warning("no row of the ledger proves: %s", block.text, location=block.node)
-    app.env.metadata[page]["claims"] = [(_section(one.node), claims) for one, claims in marked]
+    app.env.metadata[page]["claims"] = [(_section(block.node), claims) for block, claims in marked]
     if not marked:
         return
     boxes = []

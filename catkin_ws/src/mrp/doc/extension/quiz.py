@@ -39,7 +39,7 @@ class Question(SphinxDirective):
         *prompt, choices = content.children or [None]
         if not prompt or not isinstance(choices, nodes.bullet_list):
             raise self.error("expected a question, and then a list of its answers")
-        if any(len(one) != 2 for one in choices) or right not in range(1, len(choices) + 1):
+        if any(len(choice) != 2 for choice in choices) or right not in range(1, len(choices) + 1):
             raise self.error(
                 "expected what to say to each answer, and :right: as the number of one of them; "
                 f"found {len(choices)} answers and :right: {right}"

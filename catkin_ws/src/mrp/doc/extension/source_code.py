@@ -68,7 +68,7 @@ class File(Excerpt):
 
 def block_of(node):
     """Return the literal block, which may be in a container with its caption."""
-    return next(node.findall(lambda one: one.tagname == "literal_block"))
+    return next(node.findall(lambda child: child.tagname == "literal_block"))
 
 
 class Quote(SphinxDirective):

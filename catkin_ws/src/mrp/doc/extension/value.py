@@ -39,7 +39,7 @@ class Sources(dict):
     def __init__(self, folder=WORKSPACE / "src"):
         super().__init__(len=len, word=lambda number: WORDS[int(number)])
         self.used = set()
-        self.files = {path.stem: path for one in FILES for path in folder.glob(one)}
+        self.files = {path.stem: path for pattern in FILES for path in folder.glob(pattern)}
         self.modules = {"contract": "mrp_testing.contract", **{name: name for name in ROS}}
         sys.path.insert(0, str(folder / "mrp_testing" / "src"))
 
@@ -56,7 +56,7 @@ class Sources(dict):
 def read(path):
     """Return what a launch file says."""
     root = ElementTree.parse(path).getroot()
-    args = {one.get("name"): _typed(one.get("default", "")) for one in root.iter("arg")}
+    args = {arg.get("name"): _typed(arg.get("default", "")) for arg in root.iter("arg")}
     found = Names(args, nodes=[])
     _add(root, found, {})
     return found
@@ -65,15 +65,15 @@ def read(path):
 def _add(element, found, private):
     """Add the nodes of a <launch> or <group>. private: parameters of all nodes that follow."""
     private = dict(private)
-    for one in element:
-        if one.tag == "param" and one.get("name").startswith("~"):
-            private[one.get("name")[1:]] = _value(one, found)
-        elif one.tag == "node":
-            own = {param.get("name"): _value(param, found) for param in one.iter("param")}
-            found[one.get("name")] = Names({**private, **own})
-            found["nodes"].append(one.get("name"))
-        elif one.tag == "group":
-            _add(one, found, private)
+    for child in element:
+        if child.tag == "param" and child.get("name").startswith("~"):
+            private[child.get("name")[1:]] = _value(child, found)
+        elif child.tag == "node":
+            own = {param.get("name"): _value(param, found) for param in child.iter("param")}
+            found[child.get("name")] = Names({**private, **own})
+            found["nodes"].append(child.get("name"))
+        elif child.tag == "group":
+            _add(child, found, private)
 
 
 def _value(param, args):

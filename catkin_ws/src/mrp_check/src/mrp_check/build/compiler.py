@@ -80,8 +80,8 @@ def _first(found: list[Problem], copy: pathlib.Path) -> list[Problem]:
     first: dict[str, list[Problem]] = {}
     for problem in found:
         of_file = first.setdefault(problem.file, [])
-        lines = {one.line for one in of_file}
-        is_alone = all(map(_ALONE.search, (one.text for one in of_file)))
+        lines = {earlier.line for earlier in of_file}
+        is_alone = all(map(_ALONE.search, (earlier.text for earlier in of_file)))
         if problem.line not in lines and (is_alone or _is_other(problem, of_file, copy)):
             of_file.append(problem)
     return [problem for of_file in first.values() for problem in of_file]
@@ -90,11 +90,11 @@ def _first(found: list[Problem], copy: pathlib.Path) -> list[Problem]:
 def _is_other(problem: Problem, before: list[Problem], copy: pathlib.Path) -> bool:
     """Return whether an error about a name follows from none of those before, all about names."""
     named = _NAMED.search(problem.text)
-    if not named or not all(_NAMED.search(one.text) for one in before):
+    if not named or not all(_NAMED.search(earlier.text) for earlier in before):
         return False
     lines = (copy / problem.file).read_text(errors="replace").splitlines()
     # What a line before was to declare, or names as well, is missing because of it.
-    told = " ".join(lines[one.line - 1] for one in before if 0 < one.line <= len(lines))
+    told = " ".join(lines[earlier.line - 1] for earlier in before if 0 < earlier.line <= len(lines))
     return not re.search(rf"\b{named['name'] or named['member']}\b", told)
 
 

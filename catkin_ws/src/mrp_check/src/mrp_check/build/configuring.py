@@ -166,7 +166,7 @@ def _no_target(package: Package, model: Model, match: re.Match[str], text: str) 
 
 def _no_dependency(package: Package, model: Model, match: re.Match[str], text: str) -> _Said:
     name = match.group(1)
-    near = nearest(name, [*model.targets, *(f"{package.name}_{one}" for one in _MESSAGE_TARGETS)])
+    near = nearest(name, [*model.targets, *(f"{package.name}_{kind}" for kind in _MESSAGE_TARGETS)])
     return (
         f"there's no target {name} to wait for.{perhaps(near)}",
         f"Write {near} for {name}." if near else f"Remove {name}.",

@@ -83,19 +83,19 @@ def csv_text(submissions, spec):
     asked = asked_by(spec)
     columns = "submission package verdict points of by_hand mark".split()
     writer.writerow([*columns, *asked, "why", "isolation"])
-    for one in submissions:
+    for result in submissions:
         writer.writerow(
             [
-                cell(one.name),
-                cell(one.report["package"]),
-                one.report["verdict"],
-                f"{one.points(spec):g}",
+                cell(result.name),
+                cell(result.report["package"]),
+                result.report["verdict"],
+                f"{result.points(spec):g}",
                 f"{most(spec):g}",
-                cell(str(one.by_hand or "")),
-                f"{one.mark(spec):g}",
-                *map(one.verdict_on, asked),
-                cell(" | ".join(one.causes()[:_MOST_CAUSES])),
-                cell(one.report.get("isolation", "")),
+                cell(str(result.by_hand or "")),
+                f"{result.mark(spec):g}",
+                *map(result.verdict_on, asked),
+                cell(" | ".join(result.causes()[:_MOST_CAUSES])),
+                cell(result.report.get("isolation", "")),
             ]
         )
     return file.getvalue()
@@ -124,9 +124,9 @@ def html_text(submissions, spec, pages):
     pages: the folder of the submissions' own pages; the table links to them
     """
 
-    def page_of(one):
-        page = pathlib.Path(pages) / f"{one.name}.html"
-        return page.resolve().as_uri() if one.report["requirements"] and page.is_file() else ""
+    def page_of(result):
+        page = pathlib.Path(pages) / f"{result.name}.html"
+        return page.resolve().as_uri() if result.report["requirements"] and page.is_file() else ""
 
     return html.render(
         "class.html",
@@ -147,14 +147,16 @@ def text(submissions, spec):
     """Return the table for the console."""
     width = max(len(submission.name) for submission in submissions)
     lines = []
-    for one in submissions:
-        broken = [id_ for id_ in OF_CONTRACT if one.verdict_on(id_) == BROKEN]
-        reason = one.report.get("reason") or ", ".join(broken)
-        points = f"{one.points(spec):g}/{most(spec):g}"
+    for result in submissions:
+        broken = [id_ for id_ in OF_CONTRACT if result.verdict_on(id_) == BROKEN]
+        reason = result.report.get("reason") or ", ".join(broken)
+        points = f"{result.points(spec):g}/{most(spec):g}"
         lines.append(
-            f"{one.name:{width}}  {one.report['verdict']:9}  {points:>7}  {reason}".rstrip()
+            f"{result.name:{width}}  {result.report['verdict']:9}  {points:>7}  {reason}".rstrip()
         )
-    lines += [f"{one.name}: {said_of_mark(one, spec)}" for one in submissions if one.by_hand]
+    lines += [
+        f"{entry.name}: {said_of_mark(entry, spec)}" for entry in submissions if entry.by_hand
+    ]
     return terminal.plain("\n".join([*lines, *isolations(submissions)]))
 
 
@@ -169,7 +171,7 @@ def isolations(submissions):
     )
 
 
-def said_of_mark(one, spec):
+def said_of_mark(submission, spec):
     """Return a submission's mark, and what a person has set."""
-    said = f"mark {one.mark(spec):g} of {most(spec):g}"
-    return f"{said}, by hand: {one.by_hand}" if one.by_hand else said
+    said = f"mark {submission.mark(spec):g} of {most(spec):g}"
+    return f"{said}, by hand: {submission.by_hand}" if submission.by_hand else said

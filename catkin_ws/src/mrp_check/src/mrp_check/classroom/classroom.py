@@ -80,8 +80,8 @@ class Classroom:
             futures = [pool.submit(self._checked, entry) for entry in self.entries]
             try:
                 for number, future in enumerate(concurrent.futures.as_completed(futures), 1):
-                    one = future.result()
-                    said = f"{one.name}: {one.report['verdict']}{', as before' * one.kept}"
+                    result = future.result()
+                    said = f"{result.name}: {result.report['verdict']}{', as before' * result.kept}"
                     self.progress(said, number, len(self.entries))
             except BaseException:  # such as Ctrl-C, or a cluster that is gone
                 for future in futures:
@@ -130,7 +130,10 @@ class Classroom:
         digest = hashlib.sha256()
         files = [*package.files, *package.not_utf8] if package else []
         of_package = [(name, package.root / name) for name in files]
-        for name, path in [*((f"{self.package}/{one.name}", one) for one in packed), *of_package]:
+        for name, path in [
+            *((f"{self.package}/{archive.name}", archive) for archive in packed),
+            *of_package,
+        ]:
             entry = path.stat()
             known = f"{name}\0{entry.st_mode & 0o111}\0{entry.st_size}\0"
             digest.update(known.encode(errors="surrogateescape"))

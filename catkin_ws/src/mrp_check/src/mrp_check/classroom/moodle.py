@@ -24,22 +24,22 @@ def text(submissions, spec):
     file = io.StringIO()
     writer = csv.writer(file)
     writer.writerow(_COLUMNS.split(","))
-    for one, name, number in _numbered(submissions):
-        mark, most = f"{one.mark(spec):g}", f"{class_table.most(spec):g}"
+    for submission, name, number in _numbered(submissions):
+        mark, most = f"{submission.mark(spec):g}", f"{class_table.most(spec):g}"
         row = [f"Participant {number}", class_table.cell(name), mark, most, "-"]
-        writer.writerow([*row, f"<pre>{html.escape(mail.text(one, spec))}</pre>"])
+        writer.writerow([*row, f"<pre>{html.escape(mail.text(submission, spec))}</pre>"])
     return file.getvalue()
 
 
 def left_out(submissions):
     """Return the names of the submissions that are not in the worksheet."""
-    there = {one.name for one, _, _ in _numbered(submissions)}
+    there = {submission.name for submission, _, _ in _numbered(submissions)}
     return [submission.name for submission in submissions if submission.name not in there]
 
 
 def _numbered(submissions):
     """Return (submission, student's name, number) of those whose number is in one name alone."""
     found = [(submission, _DOWNLOADED.fullmatch(submission.name)) for submission in submissions]
-    named = [(one, match[1], match[2]) for one, match in found if match]
+    named = [(submission, match[1], match[2]) for submission, match in found if match]
     counts = collections.Counter(number for _, _, number in named)
     return [entry for entry in named if counts[entry[2]] == 1]

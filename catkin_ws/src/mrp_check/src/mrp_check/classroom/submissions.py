@@ -27,7 +27,7 @@ def entries(path: str | os.PathLike[str]) -> list[pathlib.Path]:
             f"{path} is a package: expected the folder above it, which has one for each student."
             " To check this one, leave out --class."
         )
-    found = [one for one in sorted(path.iterdir()) if not _is_hidden(one.name)]
+    found = [entry for entry in sorted(path.iterdir()) if not _is_hidden(entry.name)]
     if not found:
         raise PackageError(
             f"{path} has nothing in it: expected one folder, or one archive, for each student."
@@ -50,8 +50,8 @@ def archives(entry: pathlib.Path) -> list[pathlib.Path]:
     if not entry.is_dir() and not entry.is_file():
         raise PackageError(f"{entry.name} is neither a folder nor a file.")
     packages, packed, _ = _found_in(entry)
-    for one in [] if packages else packed:
-        archive.refuse_huge(one)
+    for file in [] if packages else packed:
+        archive.refuse_huge(file)
     return [] if packages else packed
 
 
@@ -92,13 +92,13 @@ def _packages(
     packages, packed, others = _found_in(place)
     found = {str(path.relative_to(place)): path for path in packages}
     problems = [_no_package(name, others)]
-    for one in packed[:_MOST_ARCHIVES] if not packages and depth < _MOST_NESTED else []:
+    for file in packed[:_MOST_ARCHIVES] if not packages and depth < _MOST_NESTED else []:
         try:
-            below = _packages(archive.unpack(one, scratch), one.name, scratch, depth + 1)
+            below = _packages(archive.unpack(file, scratch), file.name, scratch, depth + 1)
         except PackageError as error:
             problems.append(error)
             continue
-        within = one.name if place.is_dir() else ""
+        within = file.name if place.is_dir() else ""
         found.update(
             {os.path.normpath(os.path.join(within, path)): root for path, root in below.items()}
         )

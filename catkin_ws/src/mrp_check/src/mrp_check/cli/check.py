@@ -187,8 +187,8 @@ def run_class(options):
             checked = room.check(machines)
     finally:
         progress.clear()
-    for one in checked:
-        one.by_hand = set_.get(one.name)
+    for result in checked:
+        result.by_hand = set_.get(result.name)
     for name, (_, text) in OF_CLASS.items():
         write(getattr(options, name), text, checked, contract, room.results)
     for sentence in mail.write(room.results, checked, contract):
@@ -224,14 +224,14 @@ def run_packages(options):
         options.path = paths[0] if paths else options.path
         return run_package(options)
     verdicts = []
-    for number, one in enumerate(paths):
-        print("\n" * bool(number) + f"{terminal.plain(str(one))}:")
+    for number, root in enumerate(paths):
+        print("\n" * bool(number) + f"{terminal.plain(str(root))}:")
         named = {}  # the reports' files, with the package's name in theirs
         for name in OF_PACKAGE:
             if file := getattr(options, name):
                 file = pathlib.Path(file)
-                named[name] = file.with_name(f"{file.stem}-{printable(one.name)}{file.suffix}")
-        verdicts.append(run_package(argparse.Namespace(**{**vars(options), **named, "path": one})))
+                named[name] = file.with_name(f"{file.stem}-{printable(root.name)}{file.suffix}")
+        verdicts.append(run_package(argparse.Namespace(**{**vars(options), **named, "path": root})))
     return max(verdicts, key=(MET, UNCHECKED, FINDINGS).index)
 
 
@@ -245,8 +245,8 @@ def run_package(options):
             package = Package(unpacked(options, scratch))
             if options.any:
                 package.siblings = siblings.needed(package)
-            for one in package.siblings:
-                print(f"check: builds {one.name} with {package.name}.", file=sys.stderr)
+            for sibling in package.siblings:
+                print(f"check: builds {sibling.name} with {package.name}.", file=sys.stderr)
             say_how_apart()
             if contract and not _names_a_node(package, contract):
                 advice = (

@@ -75,4 +75,6 @@ class Facts:
         """
         names = [node] if node else self.sources
         sources = [self.python.get(file) for name in names for file in self.sources.get(name, ())]
-        return {module: said for one in sources if one for module, said in one.absent.items()}
+        return {
+            module: said for source in sources if source for module, said in source.absent.items()
+        }

@@ -50,7 +50,7 @@ def argument(call: ast.Call, position: int, name: str) -> ast.expr | None:
         if keyword.arg == name:
             return keyword.value
     if position < len(call.args) and not any(
-        isinstance(one, ast.Starred) for one in call.args[: position + 1]
+        isinstance(given, ast.Starred) for given in call.args[: position + 1]
     ):
         return call.args[position]
     return None
@@ -69,7 +69,7 @@ def in_threads(source: Source) -> set[ast.AST]:
     what these call."""
     calls = ((call, source.dotted(call.func) or "") for call in source.nodes(ast.Call))
     given = [argument(call, *_CALLED[name]) for call, name in calls if name in _CALLED]
-    called = [one for one in map(source.definition, given) if one]
+    called = [function for function in map(source.definition, given) if function]
     return {*called, *source.called(called)}
 
 
@@ -85,7 +85,7 @@ def _places_of(source: Source, node: ast.AST) -> Iterable[Place]:
 
 
 def last_line(node: ast.stmt) -> int:
-    return max((getattr(one, "lineno", 0) for one in ast.walk(node)), default=node.lineno)
+    return max((getattr(part, "lineno", 0) for part in ast.walk(node)), default=node.lineno)
 
 
 def is_unused(source: Source, definition: Definition) -> bool:
@@ -156,8 +156,8 @@ class _Node:
         """Look at counter = counter + 2 and the like."""
         target = node.targets[0]
         own = self.source.key(target) if len(node.targets) == 1 else None
-        inside = [one for one in ast.walk(node.value) if isinstance(one, (ast.Name, ast.Attribute))]
-        if own and any(self.source.key(one) == own for one in inside):
+        inside = [n for n in ast.walk(node.value) if isinstance(n, (ast.Name, ast.Attribute))]
+        if own and any(self.source.key(part) == own for part in inside):
             yield self.place(Kind.STEP)
             yield from self.first_values(target)
 
@@ -169,9 +169,9 @@ class _Node:
 
     def loop(self, node: ast.While | ast.For) -> Iterator[Place]:
         """Look at a loop, and whether Ctrl-C ends it."""
-        within = [part for one in (node, *self.source.called([node])) for part in ast.walk(one)]
-        named = {getattr(one, "attr", getattr(one, "id", "")) for one in within}
-        leaves = any(isinstance(one, (ast.Break, ast.Raise, ast.Return)) for one in within)
+        within = [part for root in (node, *self.source.called([node])) for part in ast.walk(root)]
+        named = {getattr(part, "attr", getattr(part, "id", "")) for part in within}
+        leaves = any(isinstance(part, (ast.Break, ast.Raise, ast.Return)) for part in within)
         is_deaf = not leaves and not named & _ENDS and not self.is_in_thread()
         test = node.test if isinstance(node, ast.While) else None
         is_endless = is_deaf and isinstance(test, ast.Constant) and bool(test.value)
@@ -185,7 +185,7 @@ class _Node:
         """Look for a call that waits for something, and whose result nobody looks at."""
         call = node.value
         name = getattr(call.func, "attr", "") if isinstance(call, ast.Call) else ""
-        asks = {one.attr for one in self.source.nodes(ast.Attribute)}
+        asks = {attribute.attr for attribute in self.source.nodes(ast.Attribute)}
         is_seen = name == "wait_for_result" and "get_state" in asks
         if isinstance(call, ast.Call) and name in _FAIL and not is_seen:
             if call.args or call.keywords:  # without a limit, it only fails on Ctrl-C
@@ -316,7 +316,7 @@ _CALLS = (
     (("signal.signal",), _Node.signal),
     (("itertools.count",), _Node.count),
     (
-        tuple(f"rospy.{one}_param" for one in ("get", "has", "search"))
+        tuple(f"rospy.{verb}_param" for verb in ("get", "has", "search"))
         + ("rospy.get_param_cached",),
         _Node.parameter,
     ),

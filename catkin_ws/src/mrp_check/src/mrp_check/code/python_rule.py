@@ -56,8 +56,8 @@ class PythonRule:
     def has_module(self, name: str) -> bool:
         """Return whether a file of the package is a module of that name."""
         path = name.replace(".", "/")
-        paths = [f"/{one}" for one in self.package.of_kind("python")]
-        return any(one.endswith((f"/{path}.py", f"/{path}/__init__.py")) for one in paths)
+        paths = [f"/{file}" for file in self.package.of_kind("python")]
+        return any(file.endswith((f"/{path}.py", f"/{path}/__init__.py")) for file in paths)
 
     def written(self, node: ast.expr) -> str:
         """Return an expression as it is written."""

@@ -88,14 +88,14 @@ class Source:
                 if isinstance(target, (ast.Name, ast.Attribute)):
                     self._store(target, node.value)
                 else:
-                    for one in ast.walk(target):
-                        self._store(one, None)
+                    for part in ast.walk(target):
+                        self._store(part, None)
         elif isinstance(node, (ast.AugAssign, ast.For, ast.comprehension)):
-            for one in ast.walk(node.target):
-                self._store(one, None)
+            for part in ast.walk(node.target):
+                self._store(part, None)
         elif isinstance(node, ast.withitem) and node.optional_vars:
-            for one in ast.walk(node.optional_vars):
-                self._store(one, None)
+            for part in ast.walk(node.optional_vars):
+                self._store(part, None)
         elif isinstance(node, ast.arg):
             self._store(node, None)
         elif isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)):
@@ -150,15 +150,17 @@ class Source:
     def scope(self, node: ast.AST) -> ast.AST:
         """Return the function, lambda, class or module in which the node stands."""
         kinds = (*_FUNCTIONS, ast.ClassDef)
-        return next((one for one in self.above(node) if isinstance(one, kinds)), self.tree)
+        return next((outer for outer in self.above(node) if isinstance(outer, kinds)), self.tree)
 
     def function(self, node: ast.AST) -> ast.AST:
         """Return the function in which the node stands, or the module."""
-        return next((one for one in self.above(node) if isinstance(one, _FUNCTIONS)), self.tree)
+        return next(
+            (outer for outer in self.above(node) if isinstance(outer, _FUNCTIONS)), self.tree
+        )
 
     def class_(self, node: ast.AST) -> ast.ClassDef | None:
         """Return the class of the method in which the node stands, or None."""
-        return next((one for one in self.above(node) if isinstance(one, ast.ClassDef)), None)
+        return next((outer for outer in self.above(node) if isinstance(outer, ast.ClassDef)), None)
 
     def is_guarded(self, node: ast.AST, *errors: str) -> bool:
         """Return whether the node stands in the body of a `try` that catches one of the errors."""
@@ -167,7 +169,7 @@ class Source:
             if isinstance(parent, ast.Try) and child in parent.body:
                 for handler in parent.handlers:
                     named = ast.walk(handler.type) if handler.type else ()
-                    if handler.type is None or caught & {getattr(one, "id", "") for one in named}:
+                    if handler.type is None or caught & {getattr(part, "id", "") for part in named}:
                         return True
             child = parent
         return False
@@ -276,10 +278,10 @@ class Source:
         found: list[ast.FunctionDef] = []
         nodes = [node for part in parts for node in ast.walk(part)]
         for node in nodes:  # it grows
-            one = self.definition(node.func) if isinstance(node, ast.Call) else None
-            if isinstance(one, ast.FunctionDef) and one not in found:
-                found.append(one)
-                nodes += ast.walk(one)
+            function = self.definition(node.func) if isinstance(node, ast.Call) else None
+            if isinstance(function, ast.FunctionDef) and function not in found:
+                found.append(function)
+                nodes += ast.walk(function)
         return found
 
     # Which values are plain.

@@ -70,7 +70,7 @@ def _used_elsewhere(facts: Facts) -> None:
     for place in facts.places:
         if place.unused:
             others = (names[file] for file in names if file != place.file)
-            place.unused = not any(place.text in one for one in others)
+            place.unused = not any(place.text in known for known in others)
 
 
 def _relevant(package: Package, model: Model, launch: Launch | None, facts: Facts) -> list[str]:

@@ -83,7 +83,7 @@ class Activity:
         """Return whether a node has announced all that it has, as far as one can see."""
         seen = self.observer.seen
         records = [*seen.publications, *seen.subscriptions, *seen.services]
-        times = [one.time for one in records if one.node == node]
+        times = [record.time for record in records if record.node == node]
         is_late = bool(times) and is_over(time.monotonic() - max(times), _CALM)
         return is_late and not self.observer.is_held(node)
 
@@ -93,7 +93,7 @@ class Activity:
         records: List[Union[Message, Log, Registration]] = [*seen.publications, *seen.subscriptions]
         records += seen.services
         records += [*seen.messages[-_RECENT:], *seen.logs[-_RECENT:]]
-        return max((one.time for one in records if one.node == node), default=None)
+        return max((record.time for record in records if record.node == node), default=None)
 
 
 def processor_seconds(pid: Optional[int]) -> Optional[float]:

@@ -39,7 +39,7 @@ def run(plan: DirectPlan, observer: Observer, starter: apart.Starter) -> DirectR
     """Run the nodes until they have done enough, and end them."""
     began, activity = time.monotonic(), Activity(observer)
     given = observer, starter, activity
-    nodes = [RunningNode(key, one, plan.common, *given) for key, one in plan.nodes.items()]
+    nodes = [RunningNode(key, planned, plan.common, *given) for key, planned in plan.nodes.items()]
 
     def send() -> None:
         for node in nodes:
@@ -111,7 +111,7 @@ class RunningNode:
         """Return the node's own name, or None as long as it has not registered."""
         inside, seen = self.plan.namespace + "/", self.observer.seen
         records = seen.publications + seen.subscriptions + seen.services
-        names = [one.node for one in records]
+        names = [record.node for record in records]
         return next((name for name in names if name.startswith(inside)), None)
 
     def watch(self) -> None:
@@ -138,10 +138,10 @@ class RunningNode:
             for registration in self.observer.seen.subscriptions
             if registration.node == name
         ]
-        topics = [one for one in own if one.topic not in _OF_ROS]
+        topics = [record for record in own if record.topic not in _OF_ROS]
         # Of several, the one of the contract's type first, and of these that of its name.
-        topics.sort(key=lambda one: not one.topic.endswith(f"/{self.plan.topic}"))
-        topics.sort(key=lambda one: one.type != self.plan.type)
+        topics.sort(key=lambda record: not record.topic.endswith(f"/{self.plan.topic}"))
+        topics.sort(key=lambda record: record.type != self.plan.type)
         if not topics:
             return
         if self.publisher is None:

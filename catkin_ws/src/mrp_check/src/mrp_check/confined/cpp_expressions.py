@@ -217,7 +217,7 @@ class Unit:
 
     def function(self, cursor: Cursor) -> Cursor | None:
         """Return the function in which a cursor stands, or None."""
-        return next((one for one in self.above(cursor) if one.kind.name in _FUNCTIONS), None)
+        return next((outer for outer in self.above(cursor) if outer.kind.name in _FUNCTIONS), None)
 
     def base(self, call: Cursor) -> Cursor | None:
         """Return the expression before the dot of a call, or None."""

@@ -170,7 +170,7 @@ class _Source(Counters, Habits):
                 if made.kind == self.kinds.CALL_EXPR
                 else []
             )
-            text = next((one for one in texts if isinstance(one, str)), None)
+            text = next((value for value in texts if isinstance(value, str)), None)
         return text or None
 
     def look_at_kept(self, call: Cursor) -> None:
@@ -178,7 +178,7 @@ class _Source(Counters, Habits):
         kinds = self.kinds
         # The second is as in (void)nh.subscribe(...).
         wrapping = (kinds.UNEXPOSED_EXPR, kinds.CSTYLE_CAST_EXPR)
-        around = [one for one in self.above(call) if one.kind not in wrapping][:1]
+        around = [outer for outer in self.above(call) if outer.kind not in wrapping][:1]
         for parent in around:
             if parent.kind == kinds.COMPOUND_STMT:
                 self.add(call, Kind.DISCARDED, call.spelling)

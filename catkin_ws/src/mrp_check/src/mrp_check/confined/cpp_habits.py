@@ -23,7 +23,7 @@ _LEAVES = {"BREAK_STMT", "RETURN_STMT", "CXX_THROW_EXPR", "GOTO_STMT"}
 class Habits(Unit):
     def calls(self, cursors: Iterable[Cursor]) -> set[str]:
         """Return the names of all functions that are called there."""
-        return {one.spelling for one in cursors if one.kind == self.kinds.CALL_EXPR}
+        return {cursor.spelling for cursor in cursors if cursor.kind == self.kinds.CALL_EXPR}
 
     @functools.cached_property
     def all_calls(self) -> set[str]:
@@ -61,7 +61,7 @@ class Habits(Unit):
     def look_at_ignored(self, kind: Kind, call: Cursor, arguments: Sequence[Cursor]) -> None:
         """Note a call whose result nobody looks at; of waitForResult(), the state says it, too."""
         wrapping = (self.kinds.UNEXPOSED_EXPR, self.kinds.PAREN_EXPR)
-        parent = next((one for one in self.above(call) if one.kind not in wrapping), None)
+        parent = next((outer for outer in self.above(call) if outer.kind not in wrapping), None)
         is_statement = parent is not None and parent.kind == self.kinds.COMPOUND_STMT
         is_seen = call.spelling == "waitForResult" and "getState" in self.all_calls
         if is_statement and not is_seen:
@@ -74,7 +74,7 @@ class Habits(Unit):
 
     def look_at_keyboard(self, cursor: Cursor) -> None:
         """Note std::cin >> and getline(std::cin)."""
-        named = (one.spelling for one in cursor.get_children() for one in one.walk_preorder())
+        named = (part.spelling for side in cursor.get_children() for part in side.walk_preorder())
         if cursor.spelling in ("operator>>", "getline") and "cin" in named:
             self.add(cursor, Kind.KEYBOARD)
 
@@ -83,8 +83,8 @@ class Habits(Unit):
             return
         within = [*loop.walk_preorder()]
         called = self.calls(within)
-        leaves = bool(_LEAVES & {one.kind.name for one in within})
-        asks = bool(_ASKS_TO_END & called) or any(self.asks(one) for one in within)
+        leaves = bool(_LEAVES & {cursor.kind.name for cursor in within})
+        asks = bool(_ASKS_TO_END & called) or any(self.asks(cursor) for cursor in within)
         is_deaf = not leaves and not asks
         endless = "endless" if is_deaf and self.is_endless(loop) else None
         self.add(loop, Kind.LOOP, endless, end=loop.extent.end.line)

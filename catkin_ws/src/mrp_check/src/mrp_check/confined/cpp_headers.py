@@ -45,7 +45,7 @@ def make(path: pathlib.Path) -> pathlib.Path:
 def installed() -> str:
     """Return a text that is another one when other packages are installed."""
     stats = [os.stat(path) for path in _INSTALLED if os.path.exists(path)]
-    known = repr([(one.st_mtime_ns, one.st_size) for one in stats])
+    known = repr([(stat.st_mtime_ns, stat.st_size) for stat in stats])
     return hashlib.sha256(known.encode()).hexdigest()[:16]
 
 

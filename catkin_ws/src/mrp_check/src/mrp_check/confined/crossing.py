@@ -52,16 +52,16 @@ def _read(kind: typing.Any, data: typing.Any, where: str) -> object:
     if origin is typing.Union:
         return _first(of, data, where)
     if origin is list and isinstance(data, list):
-        return [_read(of[0], one, f"{where}[{index}]") for index, one in enumerate(data)]
+        return [_read(of[0], item, f"{where}[{index}]") for index, item in enumerate(data)]
     if origin is tuple and isinstance(data, list) and len(data) == len(of):
-        return tuple(_read(one, part, where) for one, part in zip(of, data))
+        return tuple(_read(expected, part, where) for expected, part in zip(of, data))
     if origin is dict and isinstance(data, dict):
-        return {key: _read(of[1], one, f"{where}.{key}") for key, one in data.items()}
+        return {key: _read(of[1], value, f"{where}.{key}") for key, value in data.items()}
     if dataclasses.is_dataclass(kind) and isinstance(data, dict):
         return _read_fields(kind, data, where)
     if isinstance(kind, enum.EnumMeta):
         members: typing.Iterable[enum.Enum] = kind.__members__.values()
-        found = [one for one in members if one.value == data]
+        found = [member for member in members if member.value == data]
         if found:
             return found[0]
     raise CrossingError(f"{where}: expected {_name(kind)}; found {str(data)[:50]!r}.")
@@ -83,7 +83,7 @@ def _read_fields(kind: typing.Any, data: typing.Dict[str, object], where: str) -
     unknown = sorted(data.keys() - hints.keys())
     if unknown:
         raise CrossingError(f"{where}: expected the fields of {_name(kind)}; found {unknown[0]!r}.")
-    values = {name: _read(hints[name], one, f"{where}.{name}") for name, one in data.items()}
+    values = {name: _read(hints[name], value, f"{where}.{name}") for name, value in data.items()}
     try:
         return kind(**values)
     except TypeError as error:

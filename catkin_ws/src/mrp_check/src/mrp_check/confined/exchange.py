@@ -78,32 +78,32 @@ class Exchange:
                 threading.Thread(target=self._ask, args=(service, full), daemon=True).start()
         if self.plan.example and self.given is None and self._is_ready(name):
             self.given = len(self.observer.seen.messages) if self.plan.example.gives else 0
-            for one in self.plan.example.gives:
-                publisher, kind = self.publishers[one.topic]
-                publisher.publish(messages.of_fields(kind, one.fields))
+            for given in self.plan.example.gives:
+                publisher, kind = self.publishers[given.topic]
+                publisher.publish(messages.of_fields(kind, given.fields))
 
     def _is_ready(self, name: str) -> bool:
         """Return whether the node publishes all that it should, and hears what it is to be sent."""
         example = self.plan.example
         published = {p.topic for p in list(self.observer.seen.publications) if p.node == name}
         wanted = {_full(topic, name) for topic in example.expects} if example else set()
-        ends = [self._publisher(one, name) for one in example.gives] if example else []
+        ends = [self._publisher(given, name) for given in example.gives] if example else []
         return wanted <= published and all(end and end.get_num_connections() for end in ends)
 
-    def _publisher(self, one: Given, name: str) -> Any:
-        if one.topic not in self.publishers:
-            topic = _full(one.topic, name)
+    def _publisher(self, given: Given, name: str) -> Any:
+        if given.topic not in self.publishers:
+            topic = _full(given.topic, name)
             kinds = {
                 s.type
                 for s in list(self.observer.seen.subscriptions)
                 if (s.node, s.topic) == (name, topic)
             }
-            kind = messages.of_type(one.type, self.own)
-            if not kinds & {one.type, "*"} or kind is None:
+            kind = messages.of_type(given.type, self.own)
+            if not kinds & {given.type, "*"} or kind is None:
                 return None
             publisher = rospy.Publisher(topic, kind, queue_size=_SENDING)
-            self.publishers[one.topic] = publisher, kind
-        return self.publishers[one.topic][0]
+            self.publishers[given.topic] = publisher, kind
+        return self.publishers[given.topic][0]
 
     # --- What came of it
 

@@ -107,7 +107,7 @@ def _load(path: str, given: List[str]) -> Dump:
         error,
         [_started(node) for node in config.nodes],
         [os.path.realpath(name) for name in config.roslaunch_files],
-        {name: one.value for name, one in config.params.items() if _is_plain(one.value)},
+        {name: param.value for name, param in config.params.items() if _is_plain(param.value)},
         config.config_errors,
     )
 

@@ -70,10 +70,10 @@ Answer = Tuple[int, str, Any]  # of ROS's master: a code, a sentence, a value
 def _bad_rotation(transforms: List[Any]) -> str:
     """Return the frame of a transform whose rotation tf2 refuses, if there is one: its quaternion
     has another length than 1 (QUATERNION_NORMALIZATION_TOLERANCE of tf2's buffer_core.cpp)."""
-    for one in transforms:
-        q = one.transform.rotation
+    for tf in transforms:
+        q = tf.transform.rotation
         if abs(q.x**2 + q.y**2 + q.z**2 + q.w**2 - 1) > 0.01:
-            return str(one.child_frame_id)
+            return str(tf.child_frame_id)
     return ""
 
 
@@ -179,9 +179,9 @@ class Observer:
 
         def records(items: Iterable[Record]) -> List[Record]:
             found = [dataclasses.replace(item, time=item.time - began) for item in list(items)]
-            for one in found:
-                if isinstance(one, Registration) and one.answered:
-                    one.answered -= began
+            for record in found:
+                if isinstance(record, Registration) and record.answered:
+                    record.answered -= began
             return found
 
         found = self.seen
@@ -222,7 +222,7 @@ class Observer:
                 self._types[key] = messages.of_definition(key[0], header["message_definition"])
             found = self._types[key]().deserialize(message._buff)
             if key[0] == "tf2_msgs/TFMessage":
-                pairs = [(one.header.frame_id, one.child_frame_id) for one in found.transforms]
+                pairs = [(tf.header.frame_id, tf.child_frame_id) for tf in found.transforms]
                 frames = " ".join(name.lstrip("/") for pair in pairs for name in pair)
                 return {"frames": frames, "bad_rotation": _bad_rotation(found.transforms)}
             return messages.flatten(found)
@@ -251,8 +251,8 @@ class Observer:
     def latched(self) -> Dict[str, List[str]]:
         """Return topic -> the nodes that latch it."""
         found: Dict[str, List[str]] = {}
-        for one in {(one.topic, one.node) for one in list(self.seen.publications)}:
-            topic, node = one
+        known = {(record.topic, record.node) for record in list(self.seen.publications)}
+        for topic, node in known:
             if topic != "/rosout" and self.is_registered(node) and self.is_latched(node, topic):
                 found.setdefault(topic, []).append(node)
         return found
@@ -273,8 +273,8 @@ class Observer:
 
     def ask_types(self) -> None:
         """Find out the types of the services that were announced: the master does not know them."""
-        for one in self.seen.services:
-            one.type = one.type or self._type_of(one.topic)
+        for service in self.seen.services:
+            service.type = service.type or self._type_of(service.topic)
 
     def _type_of(self, service: str) -> str:
         header = {"probe": "1", "md5sum": "*", "callerid": NAME, "service": service}
@@ -383,7 +383,7 @@ class _Master(rosmaster.master_api.ROSMasterHandler):  # type: ignore[misc]  # i
 
     def lookupService(self, caller_id: str, service: str) -> Answer:  # noqa: N802
         lookups = self._observer.seen.lookups
-        known = any((one.node, one.topic) == (caller_id, service) for one in list(lookups))
+        known = any((lookup.node, lookup.topic) == (caller_id, service) for lookup in list(lookups))
         if not known and len(lookups) < _KEEP:
             self._note(lookups, caller_id, service)
         answer: Answer = super().lookupService(caller_id, service)

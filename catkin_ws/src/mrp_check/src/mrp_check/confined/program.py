@@ -138,7 +138,7 @@ def left_behind(programs: Mapping[Optional[str], Program]) -> List[Left]:
     found = [
         Left(
             warden.command_of(process),
-            next((key for key, one in programs.items() if one.owns(process)), None),
+            next((key for key, program in programs.items() if program.owns(process)), None),
         )
         for process in left
     ]

@@ -86,7 +86,7 @@ class RunningLaunch:
         if not self.is_uncalled(node):
             return False
         seen = self.observer.seen
-        topics = {one.topic: one.time for one in list(seen.subscriptions) if one.node == node.path}
+        topics = {sub.topic: sub.time for sub in list(seen.subscriptions) if sub.node == node.path}
         if not topics:
             return False
         heard = (m.time for m in list(seen.messages) if m.time > topics.get(m.topic, m.time))
@@ -126,7 +126,7 @@ class RunningLaunch:
         """Return whether a node has heard as much as it should, if it should hear anything."""
         subscriptions, logs = self.observer.seen.subscriptions, self.observer.seen.logs
         # It may be that nobody sends it anything.
-        if node.hears and not any(one.node == node.path for one in list(subscriptions)):
+        if node.hears and not any(sub.node == node.path for sub in list(subscriptions)):
             return False
         if not node.received:
             return node.publishes or self.activity.is_calm(node.path)
@@ -148,7 +148,7 @@ class RunningLaunch:
     def _own_pid(self, node: LaunchNode) -> Optional[str]:
         """Return the process id that a node has where it runs, or None."""
         started = [_STARTED.search(text) for _, _, text in list(self.roslaunch.lines)]
-        pids = (one["pid"] for one in started if one and "/" + one["name"] == node.path)
+        pids = (match["pid"] for match in started if match and "/" + match["name"] == node.path)
         return next(pids, None)
 
     def _has_died(self, node: LaunchNode) -> bool:

@@ -60,7 +60,7 @@ def _has_modes(archive: str) -> bool:
     commit as the comment, gives modes only to what is."""
     with zipfile.ZipFile(archive) as file:
         is_of_git = re.fullmatch(rb"[0-9a-f]{40}", file.comment)
-        return bool(is_of_git) or any(one.create_system == _OF_UNIX for one in file.infolist())
+        return bool(is_of_git) or any(entry.create_system == _OF_UNIX for entry in file.infolist())
 
 
 def _make_scripts_executable() -> None:

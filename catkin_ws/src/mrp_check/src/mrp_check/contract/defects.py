@@ -154,4 +154,6 @@ def read_all(folder: pathlib.Path | None = None) -> list[Defect]:
 
 def exercises(folder: pathlib.Path | None = None) -> list[Defect]:
     """Return the defects that are exercises, in their order. Raises DefectError as read_all."""
-    return sorted((one for one in read_all(folder) if one.order), key=lambda one: one.order)
+    return sorted(
+        (defect for defect in read_all(folder) if defect.order), key=lambda defect: defect.order
+    )

@@ -182,7 +182,9 @@ class NodeSpec:
     @property
     def of_itself(self) -> bool:
         """Whether it publishes without being sent anything; one that relays does, if others do."""
-        after = {name for one in self.examples if one.receives for name in one.publishes}
+        after = {
+            name for example in self.examples if example.receives for name in example.publishes
+        }
         timed = {role.topic.name for role in self.published if role.period}
         return any(topic.name in timed or topic.name not in after for topic in self.publishing)
 

@@ -84,4 +84,4 @@ NEEDS = {
 
 def closure(needs: Iterable[str]) -> set[str]:
     """Return all that must be known for what is needed."""
-    return {one for need in needs for one in (need, *closure(NEEDS[need]))}
+    return {known for need in needs for known in (need, *closure(NEEDS[need]))}

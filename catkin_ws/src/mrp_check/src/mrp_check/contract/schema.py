@@ -60,11 +60,11 @@ def listed(data: Any, entry: Mapping[str, Any], definitions: Mapping[str, Any]) 
     if entry.get("alone") and data is not None and not isinstance(data, list):
         data = [data]
     if isinstance(data, list):
-        return [listed(one, entry.get("items", {}), definitions) for one in data]
+        return [listed(item, entry.get("items", {}), definitions) for item in data]
     if not isinstance(data, dict):
         return data
     known, other = entry.get("properties", {}), entry.get("additionalProperties") or {}
-    return {key: listed(one, known.get(key, other), definitions) for key, one in data.items()}
+    return {key: listed(value, known.get(key, other), definitions) for key, value in data.items()}
 
 
 def no_such(kind: str, name: str, names: Iterable[str]) -> str:

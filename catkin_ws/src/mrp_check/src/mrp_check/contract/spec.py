@@ -303,12 +303,12 @@ class _Reader:
             roles["relays"] = Relays(*ends, **rest)
         for key in ("offers", "calls"):
             roles[key] = tuple(
-                self.one_of(services, one, [*place, key, index], "service")
-                for index, one in enumerate(entry.get(key, ()))
+                self.one_of(services, service, [*place, key, index], "service")
+                for index, service in enumerate(entry.get(key, ()))
             )
         roles["examples"] = tuple(
-            self.example(one, topics, [*place, "examples", index])
-            for index, one in enumerate(entry.get("examples", ()))
+            self.example(example, topics, [*place, "examples", index])
+            for index, example in enumerate(entry.get("examples", ()))
         )
         plain = ("language", "anonymous", "executable", "ends", "parameters")
         rest = {key: entry[key] for key in plain if key in entry}
@@ -319,8 +319,8 @@ class _Reader:
             return self.one_of(topics, name, [*place, *above, name], "topic")
 
         receives = []
-        for index, one in enumerate(entry.get("receives", ())):
-            for name, message in one.items():
+        for index, received in enumerate(entry.get("receives", ())):
+            for name, message in received.items():
                 receives.append((topic(name, "receives", index), message))
                 self.message(receives[-1][0].type, message, [*place, "receives", index, name])
         for name, messages in entry["publishes"].items():

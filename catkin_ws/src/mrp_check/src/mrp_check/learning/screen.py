@@ -135,7 +135,7 @@ class _Screen:
 
     def _next(self) -> None:
         course, exercise = self.watched.course, self.watched.exercise
-        later = [one for one in course.open if one.number > exercise.number]
+        later = [other for other in course.open if other.number > exercise.number]
         if not course.is_passed(exercise):
             self.note = "This exercise is still open. To leave it for later, choose another with l."
         elif not course.open:

@@ -251,7 +251,7 @@ class Model:
 
     def all_sources(self, target: Target) -> list[str]:
         """Return the sources of a target, and of the package's libraries that it is linked with."""
-        return list(dict.fromkeys(file for one in self.linked(target) for file in one.sources))
+        return list(dict.fromkeys(file for part in self.linked(target) for file in part.sources))
 
     def _project(self, call: Call) -> None:
         self.project = self.project or (call.arguments[0], call)
@@ -298,7 +298,7 @@ class Model:
                 continue
             # CMake before 3.20 adds the ending itself (policy CMP0115).
             paths = (self.path(name, call) for name in (source, f"{source}.cpp"))
-            path = next((one for one in paths if one and (self.folder / one).is_file()), None)
+            path = next((path for path in paths if path and (self.folder / path).is_file()), None)
             if path is None:
                 target.missing.append((self.path(source, call) or source, call.file, call.line))
             else:

@@ -142,7 +142,7 @@ def _of_package(workspace: Workspace, dump: Dump, file: str) -> Launch:
         node.file = relative(node.file or "", copy.resolve())
     _find_lines(workspace.package, launch.nodes)
     launch.files = [
-        name for name in (relative(one, copy.resolve()) for one in launch.files) if name
+        name for name in (relative(path, copy.resolve()) for path in launch.files) if name
     ]
     return launch
 

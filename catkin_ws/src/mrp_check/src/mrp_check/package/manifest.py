@@ -61,7 +61,7 @@ def replace(workspace: Workspace) -> None:
         f'<package format="3"><name>{xml.sax.saxutils.escape(name)}</name><version>0.0.0</version>'
         '<description>x</description><maintainer email="x@x.example">x</maintainer>'
         "<license>x</license><buildtool_depend>catkin</buildtool_depend>"
-        + "".join(f"<depend>{one}</depend>" for one in ("roscpp", "rospy", "std_msgs"))
+        + "".join(f"<depend>{needed}</depend>" for needed in ("roscpp", "rospy", "std_msgs"))
         + "<depend>message_generation</depend><depend>message_runtime</depend></package>"
     )
 
@@ -70,7 +70,7 @@ def of_ros_2(manifest: Manifest | None) -> str:
     """Return what a package of ROS 2 needs that ROS 1 has not, such as ament_cmake; or nothing."""
     if manifest is None:
         return ""
-    names = [one.name for one in manifest.buildtool_depends + manifest.exec_depends]
+    names = [depend.name for depend in manifest.buildtool_depends + manifest.exec_depends]
     is_catkins = "catkin" in names
     return next((n for n in names if n.startswith(_OF_ROS_2) and not is_catkins), "")
 
@@ -94,7 +94,7 @@ def named(manifest: Manifest, tests: bool = True) -> set[str]:
 def first_dependency(package: Package, tag: str = "") -> int:
     """Return the line in package.xml at which its dependencies begin, other than catkin, or those
     with a tag, if there are any: where a reader looks for one that is missing."""
-    named = [one for one in elements(package.bytes(FILE)) if one.tag.endswith("depend")]
-    named = [one for one in named if one.tag != "buildtool_depend"] or named
-    named = [one for one in named if one.tag == tag] or named
+    named = [element for element in elements(package.bytes(FILE)) if element.tag.endswith("depend")]
+    named = [element for element in named if element.tag != "buildtool_depend"] or named
+    named = [element for element in named if element.tag == tag] or named
     return named[0].line if named else package.find_line(FILE, "<package", 1)

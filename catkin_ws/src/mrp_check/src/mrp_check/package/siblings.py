@@ -23,7 +23,7 @@ def packages_in(folder: pathlib.Path, deepest: int = _DEEPEST) -> list[pathlib.P
             found.append(pathlib.Path(here))
         if "package.xml" in files or is_built or depth >= deepest:
             folders.clear()
-        folders[:] = sorted(one for one in folders if not (is_of_tools(one) or one[0] == "."))
+        folders[:] = sorted(name for name in folders if not (is_of_tools(name) or name[0] == "."))
         if len(found) > _MOST:
             raise PackageError(f"{folder} has more than {_MOST} packages: expected one workspace.")
     return found
@@ -41,8 +41,8 @@ def needed(package: Package) -> list[Package]:
     known = {other.name: other for other in others if other.name != package.name}
     found: dict[str, Package] = {}
     queue = [package]
-    for one in queue:  # it grows
-        for name in sorted(_named(one) & known.keys() - found.keys()):
+    for current in queue:  # it grows
+        for name in sorted(_named(current) & known.keys() - found.keys()):
             found[name] = known[name]
             queue.append(known[name])
     return [*found.values()]

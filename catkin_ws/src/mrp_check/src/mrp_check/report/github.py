@@ -36,7 +36,7 @@ def text(report):
 
 
 def _command(name, properties, message):
-    written = ",".join(f"{key}={_escaped(one, _OF_PROPERTY)}" for key, one in properties.items())
+    written = ",".join(f"{key}={_escaped(item, _OF_PROPERTY)}" for key, item in properties.items())
     return f"::{name} {written}::{_escaped(message, _OF_MESSAGE)}"
 
 

@@ -33,9 +33,9 @@ def data(report):
 
 def report_of(data):
     """Return the Report that data() was made of, without what only the checker needs to know."""
-    findings = [_finding(one) for one in data["findings"]]
+    findings = [_finding(entry) for entry in data["findings"]]
     suppressed = [
-        _finding({**one, "suppressed": one["reason"]}) for one in data.get("suppressed", ())
+        _finding({**entry, "suppressed": entry["reason"]}) for entry in data.get("suppressed", ())
     ]
     return Report(**{**data, "findings": findings, "suppressed": suppressed})
 

@@ -29,7 +29,9 @@ def data(report):
         "tool": {"driver": {"name": "mrp_check", "rules": [_rule(id_) for id_ in rules]}},
         "automationDetails": {"id": f"mrp_check/{report.package}/"},
         "invocations": [_invocation(report)],
-        "results": [_result(one, report, rules) for one in report.findings + report.suppressed],
+        "results": [
+            _result(finding, report, rules) for finding in report.findings + report.suppressed
+        ],
     }
     if report.folder:
         run["originalUriBaseIds"] = {_BASE: {"uri": base_of(report.folder).as_uri() + "/"}}

@@ -92,7 +92,7 @@ def text(report, colours=False, everything=False, is_sent=False):
             head, mark, message = first.partition(f" {finding.severity}: ")
             lines += ["", f"{head} {paint(mark.strip(), finding.severity)} {message}", *rest]
         if others:
-            places = ", ".join(where(one, report) for one in others)
+            places = ", ".join(where(other, report) for other in others)
             lines += _wrapped("  also at:  ", places, " " * 12)
     for finding in report.suppressed:
         lines += ["", *_wrapped("", suppressed_line(finding, report), "  ")]
@@ -231,10 +231,10 @@ def summary(report):
         return "Nothing could be checked."
     verdicts = list(report.requirements.values())
     causes_ = [finding for finding in report.findings if not finding.consequence_of]
-    warnings = sum(one.severity == WARNING for one in causes_)
+    warnings = sum(cause.severity == WARNING for cause in causes_)
     suppressed = f"; suppressed: {len(report.suppressed)}" if report.suppressed else ""
     if report.left_out:
-        errors = sum(one.severity == ERROR for one in causes_)
+        errors = sum(cause.severity == ERROR for cause in causes_)
         notes = len(report.findings) - errors - warnings
         rest = f" ({notes} more with --all; with make: ALL=1)" if notes else ""
         return f"Errors: {errors}; warnings: {warnings}{suppressed}{rest}."

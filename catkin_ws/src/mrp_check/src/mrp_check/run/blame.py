@@ -40,7 +40,7 @@ _OF_FRAMES = {"LookupException", "ConnectivityException", "TransformException"}
 _BY_USER = {"EOFError", "termios.error", "_curses.error", "KeyboardInterrupt"}
 _NOT_STARTED = "cannot launch node of type ["  # what roslaunch says
 _CRASHES = {
-    -one for one in (signal.SIGSEGV, signal.SIGFPE, signal.SIGILL, signal.SIGBUS, signal.SIGABRT)
+    -code for code in (signal.SIGSEGV, signal.SIGFPE, signal.SIGILL, signal.SIGBUS, signal.SIGABRT)
 }
 _THROWN = re.compile(r"terminate called after throwing an instance of '(?:[\w:]+<)?(?:\w+::)*(\w+)")
 
@@ -89,7 +89,7 @@ def _given(case: Case, node: str, launch_file: str) -> Iterator[str]:
     """Yield the arguments and the parameters that a launch file gives to a node."""
     for launch in case.launches:
         if launch.file == launch_file:
-            yield from (one.arguments for one in launch.nodes if one.type == node)
+            yield from (started.arguments for started in launch.nodes if started.type == node)
             yield from map(str, launch.params.values())
 
 
@@ -100,10 +100,12 @@ def _lacks(case: Case, node: str, end: End, launched: Launched) -> bool:
         return True
     seen = launched.seen.seen
     paths = {path for path, name in launched.nodes.items() if name == node}
-    sent, offered = {one.topic for one in seen.publications}, {one.topic for one in seen.services}
+    sent, offered = {pub.topic for pub in seen.publications}, {srv.topic for srv in seen.services}
     if end.kind in _OF_FRAMES and not sent & {"/tf", "/tf_static"}:
         return True
     if "NoneType" in end.text:  # a message may not have come
-        return any(one.node in paths and one.topic not in sent for one in seen.subscriptions)
-    sought = {one.topic for one in seen.lookups if one.node in paths and one.topic[0] != "~"}
+        return any(sub.node in paths and sub.topic not in sent for sub in seen.subscriptions)
+    sought = {
+        lookup.topic for lookup in seen.lookups if lookup.node in paths and lookup.topic[0] != "~"
+    }
     return not sought <= offered

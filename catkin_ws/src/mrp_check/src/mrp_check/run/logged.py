@@ -53,7 +53,7 @@ class Run(NamedTuple):
 
 def runs(observed: Observed) -> Iterator[Run]:
     """Yield each node's runs: under the launch files, and by itself."""
-    launches = [(one.where, bool(one.file), one.nodes, one.seen) for one in observed.launches]
+    launches = [(run.where, bool(run.file), run.nodes, run.seen) for run in observed.launches]
     if observed.launch:
         paths = {started.path: name for name, started in observed.started.items()}
         launches.append(("under the launch file", True, paths, observed.launch))

@@ -53,7 +53,7 @@ class _Run:
         return [message for message in sent if of_all or message.node == self.path]
 
     def numbers(self, topic: Topic, of_all: bool = False) -> list[Number]:
-        sent = [(one.fields or {}).get(topic.field) for one in self.messages(topic, of_all)]
+        sent = [(message.fields or {}).get(topic.field) for message in self.messages(topic, of_all)]
         return [value for value in sent if isinstance(value, (int, float))]
 
     def lines(self) -> list[str]:
@@ -79,8 +79,8 @@ class Node:
         direct: DirectResult | None,
     ) -> None:
         self.executable = executable
-        self.launched = [_Run(path, one.seen, one.asked, one.latched) for path, one in launched]
-        self.ends = any(ends(one.until_asked()).get(path) == 0 for path, one in launched)
+        self.launched = [_Run(path, run.seen, run.asked, run.latched) for path, run in launched]
+        self.ends = any(ends(run.until_asked()).get(path) == 0 for path, run in launched)
         self.alone = None
         found = direct.nodes.get(executable) if direct else None
         if direct and found and found.name:
@@ -92,7 +92,7 @@ class Node:
     def named(self, records: Callable[[Seen], Iterable[Registration]]) -> list[Topic]:
         """Return the topics, or services, of some records, as the node asked for them."""
         run = self.runs[-1]  # by itself, in a namespace: so it shows whether a name follows that
-        found = {one.topic: one.type for one in records(run.seen) if one.node == run.path}
+        found = {asked.topic: asked.type for asked in records(run.seen) if asked.node == run.path}
         group = run.path.rsplit("/", 1)[0] + "/"
         starts = {"private": f"{run.path}/", "group": group, "global": "/"}
         named = []
@@ -122,7 +122,7 @@ class Node:
         rows = [row for row in (run.numbers(topic) for run in self.runs) if len(row) >= FEW]
         steps = {b - a for row in rows for a, b in zip(row, row[1:])}
         numbers = [*{row[0] for row in rows}, *steps]
-        if len(numbers) == 2 and all(one == int(one) for one in numbers) and numbers[1]:
+        if len(numbers) == 2 and all(number == int(number) for number in numbers) and numbers[1]:
             said["values"] = {"start": int(numbers[0]), "step": int(numbers[1])}
         elif steps and min(steps) > 0:
             said["rises"] = True
@@ -133,10 +133,10 @@ class Node:
         on a topic, from it or from all nodes."""
         logged = [run.lines() for run in self.runs]
         first = logged[0] if len(logged) > 1 else []
-        once = [line for line in first if all(one.count(line) == 1 for one in logged)]
+        once = [line for line in first if all(other.count(line) == 1 for other in logged)]
         sure = [line for line in dict.fromkeys(once) if not _NUMBER.search(line)]
         for run, lines in zip(self.launched, logged):
-            known = {float(one) for one in run.numbers(topic, of_all)} if topic else set()
+            known = {float(number) for number in run.numbers(topic, of_all)} if topic else set()
             said: dict[str, list[float]] = {}
             for line in lines:
                 numbers = _NUMBER.findall(line.replace("\\", ""))
@@ -176,20 +176,22 @@ class _Writer:
 
     def _launch(self) -> tuple[str, dict[str, Started]]:
         """Return (path, name -> node) of the launch file that starts all nodes in one namespace."""
-        for one in self.case.observed.launches:
-            found = [launch for launch in self.case.launches if launch.file == one.file]
-            started = [node for node in found[0].nodes if node.path in one.nodes] if found else []
+        for run in self.case.observed.launches:
+            found = [launch for launch in self.case.launches if launch.file == run.file]
+            started = [node for node in found[0].nodes if node.path in run.nodes] if found else []
             if not {*self.case.observed.executables} <= {node.type for node in started}:
                 continue
             names, spaces = {node.name for node in started}, {node.namespace for node in started}
             if len(names) == len(started) and len(spaces) == 1 and all(map(_is_word, names)):
                 (space,) = spaces
                 if space == "/" or _is_word(space.strip("/")):
-                    return one.file, {node.name: node for node in started}
+                    return run.file, {node.name: node for node in started}
         return "", {}
 
     def _nodes(self) -> Iterator[tuple[str, Node]]:
-        wanted: list[tuple[str, Started | None]] = [(one.type, one) for one in self.launch.values()]
+        wanted: list[tuple[str, Started | None]] = [
+            (started.type, started) for started in self.launch.values()
+        ]
         for name, started in wanted or [(name, None) for name in self.case.spec.nodes]:
             runs: list[tuple[str, LaunchResult]] = [
                 (path, launch.seen)
@@ -199,7 +201,7 @@ class _Writer:
                 and (not started or (launch.file, path) == (self.file, started.path))
             ]
             # Of several that one executable makes, the run by itself shows only one.
-            is_only = len([one for one, _ in wanted if one == name]) < 2
+            is_only = len([other for other, _ in wanted if other == name]) < 2
             node = Node(name, runs, self.case.observed.direct if is_only else None)
             if node.runs:
                 own = last_part(node.runs[-1].path)

@@ -53,9 +53,9 @@ class Node(Traces):
             yield self
             return
         for role in self.wanted.published:
-            one = copy.copy(self)
-            one.wanted = dataclasses.replace(self.wanted, published=(role,))
-            yield one
+            view = copy.copy(self)
+            view.wanted = dataclasses.replace(self.wanted, published=(role,))
+            yield view
 
     def ran_for(self, number: int) -> Alone | None:
         """Return what was seen of the run for one of its examples, or None."""
@@ -98,7 +98,7 @@ class Node(Traces):
             return []
         messages = itertools.chain(*self.runs())
         said = [(message.fields or {}).get(topic.field) for message in messages]
-        return [one for one in said if isinstance(one, str) and topic.value_in(one) is None]
+        return [text for text in said if isinstance(text, str) and topic.value_in(text) is None]
 
     def has_wrapped(self) -> bool:
         """Return whether it was seen what is published past the largest value: in Python when it
@@ -131,7 +131,7 @@ def each_node(
     def of_all(case: HasNodes) -> Iterator[Finding]:
         for node in case.nodes.values():
             if node.is_up or also_dead:
-                for one in node.of_topics() if each_topic else (node,):
-                    yield from findings(one)
+                for view in node.of_topics() if each_topic else (node,):
+                    yield from findings(view)
 
     return of_all

@@ -36,8 +36,8 @@ _DIED = re.compile(
 def ends(lines: Iterable[str]) -> dict[str, int]:
     """Return full name -> exit code of each node whose end roslaunch tells of in these lines: of
     one that was started again, the first."""
-    found = [one for one in map(_DIED.search, lines) if one]
-    return {f"/{one['name']}": int(one["code"] or 0) for one in reversed(found)}
+    found = [match for match in map(_DIED.search, lines) if match]
+    return {f"/{match['name']}": int(match["code"] or 0) for match in reversed(found)}
 
 
 @dataclasses.dataclass
@@ -60,7 +60,7 @@ class Launched:
     def kept_up(self) -> set[str]:
         """Return the nodes of the spec that came up under a launch file, and did not end."""
         seen, ended = self.seen.seen, self.died()
-        paths = {one.node for one in [*seen.publications, *seen.subscriptions, *seen.services]}
+        paths = {entry.node for entry in [*seen.publications, *seen.subscriptions, *seen.services]}
         up = {name for path, name in self.nodes.items() if path in paths and name not in ended}
         return up if self.file else set()
 

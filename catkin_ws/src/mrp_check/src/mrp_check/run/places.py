@@ -93,7 +93,7 @@ class Places:
         """Return the place at which a node names a service or a parameter; without that name the
         first one of its kind, and without any where the node begins."""
         said = self.facts.asked(self.sources(node), what)
-        said.sort(key=lambda one: one.base != name)
+        said.sort(key=lambda place: place.base != name)
         return (said[0].file, said[0].line) if said else self.of(node, Kind.INIT)
 
     def of_text(self, node: str, said: str) -> Line | None:
@@ -236,7 +236,7 @@ def _counting_line(tree: ast.AST, names: Collection[str], reset: Number | None) 
         if isinstance(node, ast.AugAssign) and _last_name(node.target) in names:
             return node.lineno
         if isinstance(node, ast.Assign) and _last_name(node.targets[0]) in names:
-            used = {_last_name(one) for one in ast.walk(node.value)}
+            used = {_last_name(part) for part in ast.walk(node.value)}
             if _last_name(node.targets[0]) in used:
                 return node.lineno
     return None

@@ -186,12 +186,12 @@ class Planner:
                 rule = dataclasses.asdict(role.values)
                 wrap = plans.Wrap(role.topic.field, told=plans.TOLD, **rule)
                 hook = dataclasses.replace(hook, events=f"{hook.events}_wrap", wrap=wrap)
-                one = self._direct_node(node, path, f"/check_wrap_{index}", hook)
-                nodes[WRAP + name] = dataclasses.replace(one, publishes=0, values=[], paced=[])
+                plan = self._direct_node(node, path, f"/check_wrap_{index}", hook)
+                nodes[WRAP + name] = dataclasses.replace(plan, publishes=0, values=[], paced=[])
             for number, example in enumerate(node.examples):
                 space = f"/check_example_{index}_{number}"
-                one = self._direct_node(node, path, space, None)
-                nodes[f"{EXAMPLE}{name}:{number}"] = self._example(one, node, example, space)
+                plan = self._direct_node(node, path, space, None)
+                nodes[f"{EXAMPLE}{name}:{number}"] = self._example(plan, node, example, space)
         number = getattr(signal, self.spec.shutdown.signal)
         return plans.DirectPlan(common, nodes, number)
 
@@ -236,7 +236,7 @@ class Planner:
         return plans.Service(resolved(service, f"{namespace}/~"), kind, calls)
 
     def _example(
-        self, one: plans.DirectNode, node: specs.NodeSpec, example: specs.Example, namespace: str
+        self, plan: plans.DirectNode, node: specs.NodeSpec, example: specs.Example, namespace: str
     ) -> plans.DirectNode:
         """Return the node as it is run for one of its examples: with no other parameters."""
         package, path = self.workspace.package.name, f"{namespace}/~"
@@ -250,12 +250,12 @@ class Planner:
         }
         periods = [r.period for r in node.published if r.topic.name in example.publishes]
         is_among = bool(gives and any(periods))
-        given = [word for word in one.command if not re.match(r"_[A-Za-z]\w*:=", word)]
+        given = [word for word in plan.command if not re.match(r"_[A-Za-z]\w*:=", word)]
         own = f"{namespace}/{node.name}/"
         return dataclasses.replace(
-            one,
+            plan,
             command=[*given, *_arguments(example.parameters)],
-            params={name: value for name, value in one.params.items() if own not in name},
+            params={name: value for name, value in plan.params.items() if own not in name},
             values=[],
             paced=[],
             offers=[],

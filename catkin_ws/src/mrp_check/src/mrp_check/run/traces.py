@@ -58,12 +58,12 @@ class Traces:
         """Return topic -> type of what it publishes (Kind.PUBLISHER), or subscribes to."""
         seen = self.seen_alone if alone else self.seen
         records = seen.publications if kind is Kind.PUBLISHER else seen.subscriptions
-        return {one.topic: one.type for one in records if one.topic not in ROS_TOPICS}
+        return {record.topic: record.type for record in records if record.topic not in ROS_TOPICS}
 
     def is_unheard(self, topic: str) -> bool:
         """Return whether nothing is known of what it publishes on a topic that it announces."""
         announced = [*self.seen.publications, *self.seen_alone.publications]
-        return any(one.topic == topic and not one.heard for one in announced)
+        return any(record.topic == topic and not record.heard for record in announced)
 
     def died(self) -> int | None:
         """Return the exit code if roslaunch says that the node ended by itself, or None."""

@@ -54,12 +54,12 @@ def observe(
         planner.preload = _preloaded(workspace)
     direct = planner.direct()
     direct.common.seconds = _SECONDS
-    for key, one in direct.nodes.items():
+    for key, node in direct.nodes.items():
         # Its launch file may give it parameters under this name.
         started_as = result.started.get(key)
         names = [f"__name:={started_as.name}"] if started_as else []
         direct.nodes[key] = dataclasses.replace(
-            one, publishes=enough, command=[*one.command, *names]
+            node, publishes=enough, command=[*node.command, *names]
         )
     problems = result.problems
     ran = workspace.submit(sessions.result, direct, DirectResult, problems)

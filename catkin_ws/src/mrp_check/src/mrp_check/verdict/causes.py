@@ -81,9 +81,9 @@ def without_repeats(findings, facts=None, nodes=None, has_contract=True):
         # A rule about a source knows no node; one about the node that it makes says the same again.
         same = finding.node in of_nodes or finding.file and None in of_nodes
         if same and finding.severity != NOTE:
-            for one in kept:  # what a source says was seen, too
-                if finding.certainty == SEEN and (one.id, one.file, one.line) == what[:3]:
-                    one.certainty = SEEN
+            for other in kept:  # what a source says was seen, too
+                if finding.certainty == SEEN and (other.id, other.file, other.line) == what[:3]:
+                    other.certainty = SEEN
             continue
         of_nodes.add(finding.node)
         kept.append(finding)
@@ -94,10 +94,10 @@ def without_repeats(findings, facts=None, nodes=None, has_contract=True):
         # only read may do no harm, and what is not declared may be found all the same.
         ordered = sorted(
             enumerate(kept),
-            key=lambda one: (
-                not _is_beside(one[1], finding),
-                not has_contract and one[1].certainty == READ,
-                one[1].id == "dependencies",
+            key=lambda pair: (
+                not _is_beside(pair[1], finding),
+                not has_contract and pair[1].certainty == READ,
+                pair[1].id == "dependencies",
             ),
         )
         for number, cause in ordered:

@@ -146,8 +146,8 @@ class _Examination:
 
     def _provide(self, need):
         """Have the case know what is needed. What once failed is not tried again."""
-        for one in closure({need}) & {*self.lost}:
-            raise self.lost[one]
+        for missing in closure({need}) & {*self.lost}:
+            raise self.lost[missing]
         try:
             _KNOWN[need](self.case)
         except Exception as error:

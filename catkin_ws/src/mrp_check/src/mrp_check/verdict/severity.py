@@ -23,12 +23,16 @@ def weigh(findings: Iterable[Finding], has_contract: bool) -> None:
     findings = list(findings)
     # What was only read is seen, too, if the same fails in the same file. verdict/causes.py says so
     # of what was seen to fail because of it.
-    seen = {(one.id, one.file) for one in findings if one.certainty == SEEN}
+    seen = {(finding.id, finding.file) for finding in findings if finding.certainty == SEEN}
     for finding in findings:
         if finding.certainty == READ and (finding.id, finding.file) in seen:
             finding.certainty = SEEN
         finding.severity = severity(finding.certainty, has_contract)
-    errors = {one.id for one in findings if one.severity == ERROR and one.consequence_of != one.id}
+    errors = {
+        finding.id
+        for finding in findings
+        if finding.severity == ERROR and finding.consequence_of != finding.id
+    }
     for finding in findings:
         if finding.severity != ERROR or finding.consequence_of not in errors:
             finding.consequence_of = None

@@ -56,7 +56,7 @@ def applied(
     heeded = [] if has_contract else written
     suppressed = []
     for finding in findings:
-        comment = next((one for one in heeded if one.suppresses(finding)), None)
+        comment = next((comment for comment in heeded if comment.suppresses(finding)), None)
         if comment:
             finding.suppressed = comment.reason
             suppressed.append(finding)
@@ -66,9 +66,9 @@ def applied(
     for finding in stay:
         if finding.consequence_of in gone:
             finding.consequence_of = None
-    for one in written:
-        idle = one.id in checked and not any(one.suppresses(finding) for finding in suppressed)
-        stay += _wrong(one, idle, has_contract)
+    for entry in written:
+        idle = entry.id in checked and not any(entry.suppresses(finding) for finding in suppressed)
+        stay += _wrong(entry, idle, has_contract)
     return stay, suppressed
 
 

@@ -287,8 +287,8 @@ def _slots_of(
         slots = getattr(type(held), "__slots__", ())
         for attribute in [*getattr(held, "__dict__", ()), *slots]:
             setter = functools.partial(setattr, held, attribute)
-            one = getattr(held, attribute, None)
-            yield from _slots_of(one, (*key, attribute), attribute, setter, depth + 1)
+            value = getattr(held, attribute, None)
+            yield from _slots_of(value, (*key, attribute), attribute, setter, depth + 1)
 
 
 def _is_of_package(held: object) -> bool:

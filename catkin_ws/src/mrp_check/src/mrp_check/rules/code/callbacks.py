@@ -61,10 +61,10 @@ class EarlyCallback(PythonRule):
             for argument in arguments_of(call) if later else ():
                 function = self.source.definition(argument)
                 used = self._used(function, [])
-                name = next((one for one in later if one in used), None)
+                name = next((variable for variable in later if variable in used), None)
                 given = self.source.stored(name) if name else []
                 if isinstance(function, ast.FunctionDef) and name:
-                    if any(one and self.source.function(one) is function for one in given):
+                    if any(value and self.source.function(value) is function for value in given):
                         continue  # perhaps it has given it a value before
                     place, said = later[name], ast.unparse(used[name])
                     yield self.finding(
@@ -92,10 +92,10 @@ class EarlyCallback(PythonRule):
             for key, statements in made.items()
             if not may_be_inherited(key)
             and all(
-                one in [statement.value for statement in statements]
-                or isinstance(one, ast.expr)
-                and self.source.function(one) in called
-                for one in self.source.stored(key)
+                value in [statement.value for statement in statements]
+                or isinstance(value, ast.expr)
+                and self.source.function(value) in called
+                for value in self.source.stored(key)
             )
         }
 
@@ -129,7 +129,7 @@ def may_be_inherited(key: Variable) -> bool:
     class_, name = key
     if not isinstance(class_, ast.ClassDef):
         return False
-    own = [target for one in class_.body for target in getattr(one, "targets", [])]
+    own = [target for statement in class_.body for target in getattr(statement, "targets", [])]
     bases = [base for base in class_.bases if getattr(base, "id", "") != "object"]
     return bool(bases) or any(getattr(target, "id", "") == name for target in own)
 

@@ -28,7 +28,7 @@ def _findings(case: Case) -> Iterator[Finding]:
         yield from _first_of_each(file, found)
     for file in package.of_kind("launch"):
         yield from _first_of_each(file, _in_text(uses.code(package, file)))
-    for file in (one for one in package.files if one.endswith(_PARAMETERS)):
+    for file in (path for path in package.files if path.endswith(_PARAMETERS)):
         yield from _first_of_each(file, _in_text(_COMMENT.sub("", package.text(file))))
 
 

@@ -181,10 +181,10 @@ class Names(PythonRule):
 
         https://docs.python.org/3/reference/executionmodel.html#resolution-of-names"""
         source = self.source
-        if _HIDES & {*source.imports, *(one.id for one in source.nodes(ast.Name))}:
+        if _HIDES & {*source.imports, *(node.id for node in source.nodes(ast.Name))}:
             return False
         found: list[Definition] = [*source.nodes(ast.FunctionDef), *source.nodes(ast.ClassDef)]
-        around = [one for one in found if one.lineno <= line <= last_line(one)]
+        around = [node for node in found if node.lineno <= line <= last_line(node)]
         if any(is_unused(source, definition) for definition in around):
             return False
         return not self._is_asked_for(name, line)
@@ -197,7 +197,7 @@ class Names(PythonRule):
                 return True
             for parent in self.source.above(node):
                 asked = ast.walk(parent.test) if isinstance(parent, (ast.If, ast.IfExp)) else ()
-                words = (getattr(one, "attr", getattr(one, "id", "")) for one in asked)
+                words = (getattr(part, "attr", getattr(part, "id", "")) for part in asked)
                 if any(re.search(r"version|PY_?[23]|python[23]", word) for word in words):
                     return True
         return not used

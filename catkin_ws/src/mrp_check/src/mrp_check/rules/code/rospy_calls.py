@@ -111,7 +111,7 @@ class Calls(PythonRule):
 
     def _bound(self, function: Function, is_attribute: bool) -> int | None:
         """Return how many arguments a method is called with by itself; None if nobody knows."""
-        decorators = {getattr(one, "id", "") for one in getattr(function, "decorator_list", ())}
+        decorators = {getattr(node, "id", "") for node in getattr(function, "decorator_list", ())}
         if decorators:
             return 0 if decorators == {"staticmethod"} else None
         in_class = isinstance(self.source.parents.get(function), ast.ClassDef)

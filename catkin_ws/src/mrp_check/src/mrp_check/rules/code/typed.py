@@ -48,9 +48,9 @@ class Typed(PythonRule):
         """Yield what needs a number: all of it, the part that is one, and what it does with it."""
         for node in self.source.nodes(ast.expr):
             if isinstance(node, ast.Compare) and isinstance(node.ops[0], _ORDERS + _EQUALITIES):
-                for one, other in (pair := (node.left, node.comparators[0])), pair[::-1]:
+                for side, other in (pair := (node.left, node.comparators[0])), pair[::-1]:
                     if self._is_number(other):
-                        yield node, one, "compares it with a number"
+                        yield node, side, "compares it with a number"
             elif isinstance(node, ast.BinOp) and isinstance(node.op, _NUMERIC):
                 yield node, node.left, "computes with it"
                 yield node, node.right, "computes with it"
@@ -76,7 +76,7 @@ class Typed(PythonRule):
         if isinstance(node, ast.BinOp):
             return isinstance(node.op, (*_NUMERIC, ast.Mult))
         stored = self.source.stored(self.source.key(node))
-        values = [self.source.value(one) for one in stored if one is not None] or [
+        values = [self.source.value(given) for given in stored if given is not None] or [
             self.source.value(node)
         ]
         return all(isinstance(value, _NUMBER) for value in values)

@@ -37,7 +37,7 @@ def _of(node: SourceNode) -> Iterator[Finding]:
             )
         else:
             why = f"what happens past {2**enough - 1} is undefined in C++."
-        declared = [one for one in node.places(Kind.COUNTER) if one.text == place.text]
+        declared = [counter for counter in node.places(Kind.COUNTER) if counter.text == place.text]
         yield node.finding(
             "wrap",
             f"The counter {place.text} is a {kind}: {why}",

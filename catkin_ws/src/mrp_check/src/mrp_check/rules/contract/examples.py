@@ -60,16 +60,16 @@ def _of_example(node: Node, example: Example, ran: Alone) -> Finding | None:
         replies = (ran.replies or {}).get(resolved(node.spec.topics[name], path), [])
         periods = [role.period for role in node.wanted.published if role.topic.name == name]
         rest = example.tolerance, bool(example.receives and any(periods))
-        if fitting.follow([{**one} for one in wanted], replies, *rest):
+        if fitting.follow([{**message} for message in wanted], replies, *rest):
             continue
-        fields = list(dict.fromkeys(field for one in wanted for field in one))
+        fields = list(dict.fromkeys(field for message in wanted for field in message))
         seen: list[Message] = [
-            {field: one.get(field, "nothing") for field in fields} for one in replies
+            {field: reply.get(field, "nothing") for field in fields} for reply in replies
         ]
         wrong = {
             field: found[field]
-            for one, found in zip(wanted, seen)
-            for field, value in one.items()
+            for message, found in zip(wanted, seen)
+            for field, value in message.items()
             if not fitting.fits({field: value}, {**found}, example.tolerance)
         }
         place, why = _cause(node, example, ran, wrong)
@@ -104,7 +104,7 @@ def _cause(node: Node, example: Example, ran: Alone, wrong: Message) -> tuple[Wh
         return raised[0], f" {raised[1]}: {raised[2]}"
     reads = node.places.facts.asked(node.places.sources(node.name), Kind.READS)
     for name in example.parameters:
-        same = [one for one in reads if one.base == name]
+        same = [read for read in reads if read.base == name]
         if not same:
             place = (
                 (reads[0].file, reads[0].line) if reads else node.places.of(node.name, Kind.INIT)

@@ -87,7 +87,7 @@ def _line(nodes: Sequence[Started], elements: Sequence[Element], has_groups: boo
     around = [
         e
         for e in elements
-        if e.tag == "group" and "ns" in e.attributes and any(e in one.parents for one in here)
+        if e.tag == "group" and "ns" in e.attributes and any(e in inner.parents for inner in here)
     ]
     if around and not any(e.tag == "node" and "ns" in e.attributes for e in here):
         argument = re.search(r"\$\(arg (\w+)\)", around[-1].attributes["ns"])

@@ -16,10 +16,10 @@ def _of(node: SourceNode) -> Iterator[Finding]:
     wanted = node.wanted
     relays = [wanted.relays] if wanted.relays else []
     for kind, topic, asked in (
-        *((Kind.SUBSCRIBER, one.topic, one.queue) for one in wanted.subscribed),
-        *((Kind.PUBLISHER, one.topic, one.queue) for one in wanted.published),
-        *((Kind.SUBSCRIBER, one.source, one.queue) for one in relays),
-        *((Kind.PUBLISHER, one.target, one.queue) for one in relays),
+        *((Kind.SUBSCRIBER, role.topic, role.queue) for role in wanted.subscribed),
+        *((Kind.PUBLISHER, role.topic, role.queue) for role in wanted.published),
+        *((Kind.SUBSCRIBER, relay.source, relay.queue) for relay in relays),
+        *((Kind.PUBLISHER, relay.target, relay.queue) for relay in relays),
     ):
         if not asked:
             continue

@@ -48,9 +48,9 @@ def _rate(node: Node, role: Publishes, period: float) -> _Rate:
 
 
 def _is_open(node: Node) -> bool:
-    for one in node.of_topics():
-        role = one.wanted.publishes
-        if role and role.period and one.has_rate() and _rate(one, role, role.period).is_open:
+    for view in node.of_topics():
+        role = view.wanted.publishes
+        if role and role.period and view.has_rate() and _rate(view, role, role.period).is_open:
             return True
     return False
 

@@ -113,7 +113,7 @@ def _slow_finding(
     """Yield a Finding if a callback sleeps so long that its queue must overflow, had there been
     more to hear. On a busy machine some values come late: so the least time between two counts."""
     sleep = node.places.sleep_beside(node.name, Kind.LOG)
-    roles = [one for other in node.spec.nodes.values() for one in other.published]
+    roles = [theirs for other in node.spec.nodes.values() for theirs in other.published]
     arriving = sum(1 / r.period for r in roles if r.period and r.topic.name == role.topic.name)
     times = [g.time for g in logs if {*_values([g], pattern)} & {*BURST}]
     least = min((after - before for before, after in zip(times, times[1:])), default=0.0)

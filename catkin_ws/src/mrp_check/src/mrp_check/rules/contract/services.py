@@ -112,11 +112,11 @@ def _requests(
             expected=f"a call of {service.name}" + (f" with {expected}" if expected else ""),
             seen=few(sorted(others)) or "no call",
         )
-    for one in asked if service.examples else ():
-        known = [c for c in service.examples if fitting.fits({**c.request}, {**one}, c.tolerance)]
+    for sent in asked if service.examples else ():
+        known = [c for c in service.examples if fitting.fits({**c.request}, {**sent}, c.tolerance)]
         if not known:
             seen = fields_text(
-                {path: one.get(path, "nothing") for path in service.examples[0].request}
+                {path: sent.get(path, "nothing") for path in service.examples[0].request}
             )
             yield node.finding(
                 "services",

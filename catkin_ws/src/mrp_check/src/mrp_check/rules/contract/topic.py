@@ -27,7 +27,7 @@ def _of(node: Node) -> Iterator[Finding]:
         if not topics:
             yield from _unexpected_topic(node, seen, verb, kind)
         for topic in topics:
-            others = [resolved(one, node.path) for one in topics if one != topic]
+            others = [resolved(other, node.path) for other in topics if other != topic]
             rest = {name: type_ for name, type_ in seen.items() if name not in others}
             if node.in_launch:
                 yield from _topic_finding(node, rest, topic, verb, kind)

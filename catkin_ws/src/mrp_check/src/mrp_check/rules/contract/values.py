@@ -26,12 +26,12 @@ def _of(node: Node) -> Iterator[Finding]:
     messages = node.published()
     topic = resolved(role.topic, node.path)
     if topic in node.topics(Kind.PUBLISHER) and not messages and node.wanted.of_itself:
-        advertised = max([one.time for one in node.seen.publications] or [0])
+        advertised = max([publication.time for publication in node.seen.publications] or [0])
         silent = max(node.asked - advertised, 0)
         periods = [place.period for place in node.places.facts.of(node.name, Kind.TIMER)]
         numbers = [period for period in periods if isinstance(period, (int, float))]
         # Of a timer that is far too slow.
-        waits = next((one for one in numbers if one > 3 * (role.period or one)), None)
+        waits = next((period for period in numbers if period > 3 * (role.period or period)), None)
         if node.is_unheard(topic) or silent * (1 - node.waited) < 6 * (role.period or 0.5):
             return  # the machine was too busy to tell
         if node.published(alone=True):
@@ -121,7 +121,7 @@ def _relayed(node: Node) -> Iterator[Finding]:
         return
     target = resolved(relay.target, name)
     published = [message for message in node.seen_alone.messages if message.topic == target]
-    values = [node.value(one, relay.target) for one in published]
+    values = [node.value(message, relay.target) for message in published]
     expected = [relay.of(value) for value in sent]
     if values == expected or None in values:
         return

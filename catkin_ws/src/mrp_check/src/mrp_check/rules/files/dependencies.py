@@ -144,7 +144,7 @@ def undeclared(case: Case) -> Iterator[Finding]:
     package, (manifest, _) = case.package, case.manifest
     if manifest is None:
         return
-    names = {one.lower() for known in declared(manifest).values() for one in known}
+    names = {name.lower() for known in declared(manifest).values() for name in known}
     said: set[str] = set()
     for file, line, module in _used(case):
         top = module.partition(".")[0]

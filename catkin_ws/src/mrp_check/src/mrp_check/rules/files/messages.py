@@ -62,8 +62,8 @@ def _in_cmake(case: Case, files: list[str]) -> Iterator[Finding]:
         is_made = path in model.message_files or _is_of_action(path, model)
         if not is_made and (not own or file[:-4] in own):
             command = f"add_{case.package.kind(path)}_files"
-            named = (one for one in model.message_files if last_part(one) == file)
-            elsewhere = next((one for one in named if one not in case.package.files), None)
+            named = (other for other in model.message_files if last_part(other) == file)
+            elsewhere = next((other for other in named if other not in case.package.files), None)
             if elsewhere:
                 yield Finding(
                     "messages",
@@ -111,7 +111,7 @@ def _is_used(case: Case, path: str) -> bool:
 def _is_of_action(path: str, model: Model) -> bool:
     """Return whether a message is one that an action is made into: code is made of it."""
     actions = (file for file in model.message_files if file.endswith(".action"))
-    made = {name for one in actions for name in uses.generated(one)}
+    made = {name for action in actions for name in uses.generated(action)}
     return path.endswith(".msg") and last_part(path)[: -len(".msg")] in made
 
 
@@ -193,12 +193,12 @@ def _order(package: Package, model: Model) -> Iterator[Finding]:
     own = uses.made(package)
     for target in model.targets.values():
         used = [
-            one
-            for one in _included(package, model, target)
-            if one[2].split("/")[0] == package.name and last_part(one[2])[:-2] in own
+            include
+            for include in _included(package, model, target)
+            if include[2].split("/")[0] == package.name and last_part(include[2])[:-2] in own
         ]
         # CMake builds a library, and what that waits for, before what is linked with it.
-        awaited = [word for one in model.linked(target) for word in one.dependencies]
+        awaited = [word for part in model.linked(target) for word in part.dependencies]
         waits = any(_is_made(package, model, word) for word in awaited)
         if used and not waits and _knows_what_waits(model) and model.generate is not None:
             file, line, header = used[0]
@@ -271,7 +271,7 @@ def _of_line(
     except genmsg.InvalidMsgSpec as error:
         said, expected = f"{error}", "a type and a name, such as int32 count"
     else:
-        unknown = next(filter(None, (_unknown(package, one) for one in spec.types)), None)
+        unknown = next(filter(None, (_unknown(package, type_) for type_ in spec.types)), None)
         if unknown is None:
             return
         said, near = unknown
@@ -296,7 +296,7 @@ def _unknown(package: Package, type_: str) -> tuple[str, str | None] | None:
         return None
     if owner == package.name:
         made = package.of_kind("message", "action")
-        known = {one for path in made for one in uses.generated(path)}
+        known = {other for path in made for other in uses.generated(path)}
         near = _OF_LANGUAGES.get(name) or nearest(name, [*BUILTIN_TYPES, *known])
         said = f"there's no type {name}, and no msg/{name}.msg."
     else:

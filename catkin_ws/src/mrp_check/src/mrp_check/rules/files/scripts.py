@@ -149,7 +149,7 @@ def _of(
 def _not_there(package: Package, model: Model) -> list[Script]:
     """Return the scripts that CMakeLists.txt names, and that are no files of the package."""
     missing = [script for script in model.scripts if script.path not in package.files]
-    return [one for one in missing if "$" not in one.path and not one.path.startswith("/")]
+    return [named for named in missing if "$" not in named.path and not named.path.startswith("/")]
 
 
 def _is_misspelt(package: Package, model: Model, path: str) -> bool:

@@ -74,7 +74,7 @@ def _never_built(case: Case) -> Iterator[Finding]:
     """Yield a warning for each program that no target is made of, and that no call names."""
     package, model = case.package, case.model
     built = {source for target in model.targets.values() for source in target.sources}
-    files = [one for one in package.files if one.endswith(("CMakeLists.txt", ".cmake"))]
+    files = [file for file in package.files if file.endswith(("CMakeLists.txt", ".cmake"))]
     calls = [call for file in files for call in parsed(package.text(file), file)]
     named = {last_part(word) for call in calls for word in call.arguments}
     for source in package.of_kind("cpp"):

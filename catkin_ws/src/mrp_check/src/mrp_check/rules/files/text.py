@@ -93,7 +93,7 @@ def _encoding(data: bytes, path: str, kind: str, relayed: bool) -> Iterator[Find
         line = data.count(b"\n", 0, error.start) + 1
         byte = data[error.start]
     if kind == "python":
-        coding = [_CODING.match(one) for one in data.split(b"\n")[:2]]
+        coding = [_CODING.match(raw) for raw in data.split(b"\n")[:2]]
         named = next((match.group(1).decode() for match in coding if match), "utf-8")
         try:
             data.decode(named)

@@ -50,12 +50,12 @@ def _unheard(launch: LaunchResult, path: str) -> str | None:
         return None
     if waits - {registration.topic for registration in seen.services}:
         return None  # it waits for a service that nobody offers
-    for one in seen.subscriptions:
-        if one.node == path and one.topic not in ROS_TOPICS:
-            sent = [m.time for m in seen.messages if m.topic == one.topic and m.time > one.time + 1]
-            types = {p.type for p in seen.publications if p.topic == one.topic}
-            if one.type in types and len(sent) >= _FEW and launch.asked - sent[0] > _SECONDS:
-                return one.topic
+    for sub in seen.subscriptions:
+        if sub.node == path and sub.topic not in ROS_TOPICS:
+            sent = [m.time for m in seen.messages if m.topic == sub.topic and m.time > sub.time + 1]
+            types = {p.type for p in seen.publications if p.topic == sub.topic}
+            if sub.type in types and len(sent) >= _FEW and launch.asked - sent[0] > _SECONDS:
+                return sub.topic
     return None
 
 

@@ -47,8 +47,8 @@ def findings(case: Case) -> Iterator[Finding]:
 def _failed_siblings(case: Case) -> list[str]:
     """Return the names of the packages that make names as failed; none if it names this one."""
     failed = {*_FAILED.findall(case.built.output if case.built else "")}
-    folders = {printable(one.root.resolve().name): one.name for one in case.package.siblings}
-    return [folders[one] for one in sorted(failed)] if failed <= {*folders} else []
+    folders = {printable(other.root.resolve().name): other.name for other in case.package.siblings}
+    return [folders[folder] for folder in sorted(failed)] if failed <= {*folders} else []
 
 
 def _of_other_machines(case: Case) -> Iterator[Finding]:

@@ -20,18 +20,18 @@ def findings(case: Case) -> Iterator[Finding]:
     if case.built is not None:
         yield from _wants_tests(case)
         if case.catkin.stubs.names:
-            raise NotHere(uses.absent(one, "cpp") for one in case.catkin.stubs.names)
+            raise NotHere(uses.absent(name, "cpp") for name in case.catkin.stubs.names)
         return
     missing = stubs.absent(package, step.output, case.spec.is_contract)
     if missing:
         # CMake stops at the first.
         others = [
-            one
-            for one in case.catkin.model.components
-            if uses.is_called_so(package, one) and not uses.is_here(package, one)
+            component
+            for component in case.catkin.model.components
+            if uses.is_called_so(package, component) and not uses.is_here(package, component)
         ]
         names = dict.fromkeys([missing, *others])
-        raise NotHere(uses.absent(one, "cpp") for one in names)
+        raise NotHere(uses.absent(name, "cpp") for name in names)
     missing = configuring.without_definitions(step.output)
     if missing:
         raise NotHere([uses.absent(missing, "msg")])

@@ -162,7 +162,7 @@ def _loop_around(node: Node, place: Where | None) -> Where | None:
     file, line = place or (None, None)
     source = node.places.facts.python.get(file or "")
     loops = source.nodes(ast.While) if source and line else ()
-    around = [one.lineno for one in loops if one.lineno <= (line or 0) <= (one.end_lineno or 0)]
+    around = [loop.lineno for loop in loops if loop.lineno <= (line or 0) <= (loop.end_lineno or 0)]
     return (file, max(around)) if around else place
 
 
@@ -170,9 +170,9 @@ def _leaves(node: Node, code: int | None) -> Where:
     """Return the place at which a node says its exit code, or changes what Ctrl-C does."""
     exits = node.places.facts.of(node.name, Kind.EXIT)
     if code == -signal.SIGABRT:
-        exits = [one for one in exits if one.text == "abort"]
+        exits = [place for place in exits if place.text == "abort"]
     else:
-        exits = [one for one in exits if code and one.value % 256 == code]
+        exits = [place for place in exits if code and place.value % 256 == code]
     if exits:
         return exits[0].file, exits[0].line
     kinds = (Kind.SIGNAL, Kind.INIT) if code == -signal.SIGINT else (Kind.SPIN, Kind.INIT)
@@ -182,7 +182,7 @@ def _leaves(node: Node, code: int | None) -> Where:
 def _leftovers(case: Case) -> Iterator[Finding]:
     seen, spec, places = case.observed, case.spec, case.places
     reported: set[object] = set()
-    for left in [one for run in (seen.direct, seen.launch) if run for one in run.left]:
+    for left in [process for run in (seen.direct, seen.launch) if run for process in run.left]:
         name = left.node
         if name is None or name not in spec.nodes:
             found = re.search(r"__name:=(\w+)", left.command)

@@ -63,11 +63,11 @@ def _of_services(case: Case, launched: Launched) -> Iterator[Finding]:
     """Yield a finding for each service that a node seeks, if another node offers one whose name is
     alike, and which nobody seeks."""
     seen = launched.seen.seen
-    sought = {one.topic for one in seen.lookups}
-    offered = {one.topic: launched.nodes.get(one.node) for one in seen.services}
-    for topic, path in {one.topic: one.node for one in seen.lookups}.items():
+    sought = {lookup.topic for lookup in seen.lookups}
+    offered = {service.topic: launched.nodes.get(service.node) for service in seen.services}
+    for topic, path in {lookup.topic: lookup.node for lookup in seen.lookups}.items():
         node = launched.nodes.get(path)
-        near = nearest(topic, [one for one in offered if one not in sought], _ALIKE)
+        near = nearest(topic, [other for other in offered if other not in sought], _ALIKE)
         if node and near and topic not in offered and offered[near] not in (node, None):
             yield Finding(
                 "starts",
@@ -93,7 +93,7 @@ def _graphs(case: Case) -> Iterator[tuple[Graph, set[str]]]:
         yield _graph(where, launched.seen.seen, launched.nodes, lambda topic: topic), nodes
     direct = case.observed.direct
     if direct:
-        alone = {one.name: key for key, one in direct.nodes.items() if one.name}
+        alone = {node.name: key for key, node in direct.nodes.items() if node.name}
         # Each ran in a namespace of its own.
         yield _graph(_BY_ITSELF, direct.seen, alone, outside), {*alone.values()} - together
 
@@ -105,7 +105,7 @@ def _graph(
     plain: typing.Callable[[str], str],
 ) -> Graph:
     def ends(records: Iterable[typing.Any]) -> list[End]:
-        found = (End(nodes.get(one.node), plain(one.topic), one.type) for one in records)
+        found = (End(nodes.get(entry.node), plain(entry.topic), entry.type) for entry in records)
         return [end for end in dict.fromkeys(found) if end.topic not in ROS_TOPICS]
 
     return Graph(where, ends(seen.publications), ends(seen.subscriptions))
@@ -140,10 +140,10 @@ def _alone(case: Case, graph: Graph, end: End, published: set[str]) -> Iterator[
     is_actions = last_part(end.topic) in ("feedback", "result", "status")
     if is_actions and any(not node.is_up for node in case.nodes.values()):
         return  # the action is served by one that did not run
-    near.sort(key=lambda one: one.topic in heard)
+    near.sort(key=lambda publisher: publisher.topic in heard)
     file, line = case.places.of_topic(end.node or "", Kind.SUBSCRIBER, end.topic)
-    if not any(is_like(one, end) for one in near):
-        if any(_did_not_run_and_names(case, one.topic) for one in (end, *near)):
+    if not any(is_like(publisher, end) for publisher in near):
+        if any(_did_not_run_and_names(case, side.topic) for side in (end, *near)):
             return  # one that did not run may publish there
     if not near:
         nobody = "nobody" if last_part(end.topic) in published else "no node of this package"
@@ -163,7 +163,7 @@ def _alone(case: Case, graph: Graph, end: End, published: set[str]) -> Iterator[
     is_sure = other.topic not in heard or is_near and not _is_moved(other, end)
     # A launch file that doesn't start them here may give them other names elsewhere.
     is_sure = is_sure and (is_run or is_near and not case.launches)
-    digits = [re.sub(r"\d", "", one.topic) for one in (other, end)]
+    digits = [re.sub(r"\d", "", side.topic) for side in (other, end)]
     fix = "Give both topics one name; a <remap> in the launch file does so, too."
     if other.topic == f"/{last_part(end.topic)}":
         fix = (
@@ -187,7 +187,7 @@ def _alone(case: Case, graph: Graph, end: End, published: set[str]) -> Iterator[
 def _did_not_run_and_names(case: Case, topic: str) -> bool:
     """Return whether the sources of a node that is not up have the last part of a topic's name."""
     files = {
-        f for n, one in case.nodes.items() if not one.is_up for f in case.facts.sources.get(n, ())
+        f for n, node in case.nodes.items() if not node.is_up for f in case.facts.sources.get(n, ())
     }
     return any(last_part(topic) in case.package.text(file) for file in files)
 
@@ -199,7 +199,7 @@ def _meant(case: Case, end: End, publishers: list[End], subscribers: list[End]) 
     others = [
         publisher for publisher in publishers if publisher.node and publisher.node != end.node
     ]
-    near = [one for one in others if is_like(one, end)]
+    near = [other for other in others if is_like(other, end)]
     heard, published = ({o.topic for o in side} for side in (subscribers, publishers))
     alone = [
         publisher
@@ -207,22 +207,22 @@ def _meant(case: Case, end: End, publishers: list[End], subscribers: list[End]) 
         if publisher.type == end.type and publisher.topic not in heard
     ]
     waiting = {o.topic for o in subscribers if o.type == end.type and o.topic not in published}
-    is_one = len({one.topic for one in alone}) == len(waiting) == 1
+    is_one = len({publisher.topic for publisher in alone}) == len(waiting) == 1
     is_plain = end.type.partition("/")[0] in (case.package.name, "std_msgs")
-    return near or [one for one in alone if is_plain and is_one and one in others]
+    return near or [publisher for publisher in alone if is_plain and is_one and publisher in others]
 
 
-def is_like(one: End, other: End) -> bool:
+def is_like(end: End, other: End) -> bool:
     """Return whether two names are so alike that one of them is misspelt, or in another group."""
-    if one.type != other.type:
+    if end.type != other.type:
         return False
-    near = nearest(other.topic.lower(), [one.topic.lower()], _ALIKE)
-    return _is_moved(one, other) or near is not None
+    near = nearest(other.topic.lower(), [end.topic.lower()], _ALIKE)
+    return _is_moved(end, other) or near is not None
 
 
-def _is_moved(one: End, other: End) -> bool:
+def _is_moved(end: End, other: End) -> bool:
     """Return whether two names differ in their namespaces alone."""
-    return last_part(one.topic) == last_part(other.topic)
+    return last_part(end.topic) == last_part(other.topic)
 
 
 RULE = Rule("run", ("nodes",), _findings, also=("topic", "type", "starts"), only=ANY)

@@ -47,7 +47,7 @@ def _lacks_what_is_not_here(case: Case, node: Node) -> bool:
     if case.spec.is_contract or case.built and case.built.ok:
         return False
     files = case.facts.sources.get(node.name, ())
-    headers = (one for file in files for one, _ in uses.includes(case.package, file))
+    headers = (header for file in files for header, _ in uses.includes(case.package, file))
     return any(uses.absent_header(case.package, header) for header in headers)
 
 
@@ -115,8 +115,8 @@ def weigh_start(case: Case, node: Node, finding: Finding) -> bool:
     Return whether this is the finding to report: if the node only dies under its launch file,
     rules/run/exceptions.py says how.
     """
-    runs = (one for one in case.observed.launches if one.file)
-    launched = next((one for one in runs if one.died().get(node.name)), None)
+    runs = (run for run in case.observed.launches if run.file)
+    launched = next((run for run in runs if run.died().get(node.name)), None)
     code = node.direct.code if node.direct else None
     if code == 0:
         # It may have meant to end, unless it was waiting for messages.
@@ -144,7 +144,7 @@ def add_name_that_is_set(case: Case, finding: Finding) -> None:
     """Add the name under which a launch file sets the parameter that a node doesn't find."""
     asked_for = re.search(r"KeyError: '[~/]?([^']+)'", finding.seen)
     given = (name for launch in case.launches for name in launch.params)
-    other = next((one for one in given if asked_for and one.endswith(f"/{asked_for[1]}")), None)
+    other = next((name for name in given if asked_for and name.endswith(f"/{asked_for[1]}")), None)
     if other:
         finding.message += f" The launch file sets {other}, which is another name."
         finding.fix = (

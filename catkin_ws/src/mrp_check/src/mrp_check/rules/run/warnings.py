@@ -124,7 +124,7 @@ def _of_libraries(node: Node, run: Run, lines: list[Log]) -> Iterator[Finding]:
         skipped = any(part in text for part in (*_RACES, *_OF_OTHERS))
         if skipped or logged.is_own(node.package, log) or _FRAMES.search(text):
             continue
-        known = next((one for one in _KNOWN if one.says in text), None)
+        known = next((warning for warning in _KNOWN if warning.says in text), None)
         why = logged.answer(text)
         if known:
             said = f"{node.name} {known.means}, {run.where}. ROS says: {text[:300]}"
@@ -148,7 +148,7 @@ def _of_libraries(node: Node, run: Run, lines: list[Log]) -> Iterator[Finding]:
 
 def _place(node: Node, log: Log, *near: Kind) -> Where:
     """Return the last line of the package's own in a traceback, or a place of these kinds."""
-    own = [(node.places.own(one["path"]), int(one["line"])) for one in _FILE.finditer(log.text)]
+    own = [(node.places.own(hit["path"]), int(hit["line"])) for hit in _FILE.finditer(log.text)]
     places = [(file, line) for file, line in own if file]
     return places[-1] if places else node.places.of(node.name, *near, Kind.INIT, Kind.HANDLE)
 
@@ -184,7 +184,7 @@ def _of_frames(node: Node, run: Run, failed: list[Log]) -> Iterator[Finding]:
 
 def _of_rotations(node: Node, run: Run) -> Iterator[Finding]:
     """Yield a finding if a node sends a transform that tf2 ignores."""
-    sent = (one.fields or {} for one in run.seen.messages if one.node == run.path)
+    sent = (message.fields or {} for message in run.seen.messages if message.node == run.path)
     frame = next((fields["bad_rotation"] for fields in sent if fields.get("bad_rotation")), None)
     if frame:
         yield node.finding(

@@ -48,7 +48,7 @@ _TABLE = {
 def _begin(case: Case) -> Future[Result] | None:
     """Start catkin_lint, if it is there and if this is a package of catkin's."""
     parsed, _ = case.manifest
-    tools = {one.name for one in parsed.buildtool_depends} if parsed else set()
+    tools = {tool.name for tool in parsed.buildtool_depends} if parsed else set()
     is_catkins = "catkin" in tools and "CMakeLists.txt" in case.package.files
     if not is_catkins or not shutil.which("catkin_lint", path=search_path()):
         return None
@@ -68,16 +68,16 @@ def _findings(case: Case) -> Iterator[Finding]:
         said = json.loads(done.output)
     except ValueError:
         raise CannotCheck(f"catkin_lint failed: {done.errors.strip()[-300:]}") from None
-    for one in (one for kind in ("errors", "warnings", "notices") for one in said[kind]):
-        row, place = _TABLE.get(one["id"]), one["location"]
+    for entry in (entry for kind in ("errors", "warnings", "notices") for entry in said[kind]):
+        row, place = _TABLE.get(entry["id"]), entry["location"]
         file, line = place.get("file", "CMakeLists.txt"), place.get("line")
-        named = one["text"].split("'")[1::2]
+        named = entry["text"].split("'")[1::2]
         # Any file may have the permission to be run, such as what comes from Windows.
-        is_script = "SCRIPT" not in one["id"] or any(package.kind(n) == "python" for n in named)
+        is_script = "SCRIPT" not in entry["id"] or any(package.kind(n) == "python" for n in named)
         if row and is_script and file in package.files:
-            name = f"catkin_lint calls {one['id'].lower()}"
+            name = f"catkin_lint calls {entry['id'].lower()}"
             row = row._replace(certainty=HINT)
-            yield row.finding("catkin-lint", package, file, line, name, one["text"])
+            yield row.finding("catkin-lint", package, file, line, name, entry["text"])
 
 
 RULE = Rule(

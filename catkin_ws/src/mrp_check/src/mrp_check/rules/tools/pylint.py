@@ -134,12 +134,12 @@ def _findings(case: Case) -> Iterator[Finding]:
     except ValueError:
         raise CannotCheck(f"pylint failed: {done.errors.strip()[-300:]}") from None
     own = {node.name for source in read.values() for node in source.nodes(ast.ClassDef)}
-    for one in said:
-        row = _TABLE.get(one["symbol"])
-        file = next((f for f, path in zip(files, paths) if path.endswith(one["path"])), None)
-        if row and file and _is_sure(one, own) and one["line"] not in read[file].told:
-            name = f"pylint calls {one['symbol']}"
-            yield row.finding("pylint", package, file, one["line"], name, one["message"])
+    for entry in said:
+        row = _TABLE.get(entry["symbol"])
+        file = next((f for f, path in zip(files, paths) if path.endswith(entry["path"])), None)
+        if row and file and _is_sure(entry, own) and entry["line"] not in read[file].told:
+            name = f"pylint calls {entry['symbol']}"
+            yield row.finding("pylint", package, file, entry["line"], name, entry["message"])
 
 
 def _is_sure(said: dict[str, str], own: set[str]) -> bool:
