@@ -94,7 +94,7 @@ def spec_of(publishers, subscribers):
         lines = prints(name, r"\[{name}\] received {{value}}")
         nodes[name] = spec.NodeSpec(name, "python", subscribed=(role,), prints=lines)
     shutdown = spec.Shutdown("SIGINT", 0, 10)
-    return spec.Spec("test", topics, nodes, spec.Launch("all.launch", "lab"), shutdown)
+    return spec.Spec("test", topics, nodes, spec.LaunchSpec("all.launch", "lab"), shutdown)
 
 
 def make_package(folder, publishers, subscribers):

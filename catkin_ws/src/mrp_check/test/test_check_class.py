@@ -182,7 +182,7 @@ def test_points_come_from_the_spec(results):
 
 def test_what_is_not_asked_earns_no_points_and_has_no_column(results, tmp_path):
     contract = spec.read(SPEC_FILE)
-    less = dataclasses.replace(contract, launch=spec.Launch(), not_asked=("wrap",))
+    less = dataclasses.replace(contract, launch=spec.LaunchSpec(), not_asked=("wrap",))
     asked = [id_ for id_ in ASKED if id_ != "wrap" and not id_.startswith("launch-")]
     assert class_table.most(less) == len(asked) < class_table.most(contract) - 3
     (header, *_) = csv.reader(class_table.csv_text(results, less).splitlines())

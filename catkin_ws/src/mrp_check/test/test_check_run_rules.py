@@ -15,7 +15,7 @@ from mrp_check.rules.files import messages
 from mrp_check.rules.run import called_back, exceptions, exit, meeting, starts
 from mrp_check.run import blame
 from mrp_check.run.observing import Launched, Observed
-from mrp_check.run.places import Places
+from mrp_check.run.source_lines import Places
 
 pytestmark = pytest.mark.quick
 
@@ -173,7 +173,7 @@ def blamed(error, code, kinds=(), file=None, lines=(), **seen):
     seen.setdefault("subscriptions", [Registration("/a", "/talk", "std_msgs/String", 0)])
     result = LaunchResult("enough", 9, [(1, "err", line) for line in lines], Seen(**seen))
     launched = None if file is None else Launched(file, {"/a": "a"}, result)
-    return blame.certainty(case, "a", blame.End(kind, text, code, []), launched)
+    return blame.certainty(case, "a", blame.Outcome(kind, text, code, []), launched)
 
 
 @pytest.mark.parametrize(

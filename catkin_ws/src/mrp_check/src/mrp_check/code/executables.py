@@ -33,7 +33,7 @@ def spec(package: Package, model: Model) -> Spec:
     """Return a Spec with each node of a package, by its executable's name, and nothing more."""
     nodes = {node.name: node for node in [*_python(package, model), *_cpp(package, model)]}
     end = specs.Shutdown(seconds=_SECONDS)
-    return Spec("no contract", {}, nodes, specs.Launch(""), end, is_contract=False)
+    return Spec("no contract", {}, nodes, specs.LaunchSpec(""), end, is_contract=False)
 
 
 def is_script(package: Package, path: str) -> bool:

@@ -24,7 +24,7 @@ BUSY = 20.0  # seconds of processor time: a process is no longer starting up, or
 _LONGER = 6.0  # times, at most, that a busy machine may take longer
 _RECENT = 400  # messages, and lines, in which a node's last one is looked for
 
-Node = TypeVar("Node")
+T = TypeVar("T")
 
 
 class Activity:
@@ -146,9 +146,9 @@ def is_over(passed: float, seconds: float) -> bool:
 
 def wait(
     plan: Common,
-    nodes: Iterable[Node],
-    is_up: Callable[[Node], bool],
-    is_settled: Callable[[Node], bool],
+    nodes: Iterable[T],
+    is_up: Callable[[T], bool],
+    is_settled: Callable[[T], bool],
     step: Callable[[], Optional[str]],
 ) -> str:
     """Wait until all nodes are settled, for as long as the plan says; return why no more is waited

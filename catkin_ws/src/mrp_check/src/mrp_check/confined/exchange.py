@@ -9,7 +9,7 @@ import rospy
 
 from mrp_check.confined import fitting, messages
 from mrp_check.confined.observe import Observer
-from mrp_check.confined.plans import DirectNode, Fields, Given, Service
+from mrp_check.confined.plans import DirectNode, Fields, Given, ServicePlan
 from mrp_check.confined.seen import Alone, Answer
 
 _MOST = 50  # requests, and messages on a topic, that are kept
@@ -36,7 +36,7 @@ class Exchange:
 
     # --- Services
 
-    def _offer(self, service: Service) -> Any:
+    def _offer(self, service: ServicePlan) -> Any:
         """Offer a service that the node calls, with the contract's responses."""
         kind = messages.of_service(service.type, self.own)
         asked = self.requests[service.name] = []
@@ -52,7 +52,7 @@ class Exchange:
 
         return rospy.Service(service.name, kind, answer)
 
-    def _ask(self, service: Service, full: str) -> None:
+    def _ask(self, service: ServicePlan, full: str) -> None:
         """Ask the node all that the contract says, in a thread: it may never answer."""
         answers = self.answers[service.name]
         for call in service.calls:

@@ -64,7 +64,7 @@ _LEVELS = {
 
 
 Record = TypeVar("Record", Registration, Message, Log)
-Answer = Tuple[int, str, Any]  # of ROS's master: a code, a sentence, a value
+MasterReply = Tuple[int, str, Any]  # of ROS's master: a code, a sentence, a value
 
 
 def _bad_rotation(transforms: List[Any]) -> str:
@@ -308,7 +308,7 @@ def _answer(place: Tuple[Any, ...], header: Dict[str, str]) -> Dict[str, str]:
         return dict(said)
 
 
-def _refuse(self: object, caller_id: str, reason: str = "") -> Answer:
+def _refuse(self: object, caller_id: str, reason: str = "") -> MasterReply:
     """Answer to one who asks the observer, or its master, to shut down."""
     return -1, "the observation is not over", 0
 
@@ -352,11 +352,11 @@ class _Master(rosmaster.master_api.ROSMasterHandler):  # type: ignore[misc]  # i
 
     def registerPublisher(  # noqa: N802
         self, caller_id: str, topic: str, topic_type: str, caller_api: str
-    ) -> Answer:
+    ) -> MasterReply:
         is_other = caller_id != NAME
         if is_other:
             self._observer.subscribe(topic)
-        answer: Answer = super().registerPublisher(caller_id, topic, topic_type, caller_api)
+        answer: MasterReply = super().registerPublisher(caller_id, topic, topic_type, caller_api)
         if answer[0] == 1 and is_other:
             now = time.monotonic()
             registration = Registration(caller_id, topic, topic_type, now, heard=False)
@@ -367,24 +367,24 @@ class _Master(rosmaster.master_api.ROSMasterHandler):  # type: ignore[misc]  # i
 
     def registerSubscriber(  # noqa: N802
         self, caller_id: str, topic: str, topic_type: str, caller_api: str
-    ) -> Answer:
-        answer: Answer = super().registerSubscriber(caller_id, topic, topic_type, caller_api)
+    ) -> MasterReply:
+        answer: MasterReply = super().registerSubscriber(caller_id, topic, topic_type, caller_api)
         if answer[0] == 1:
             self._note(self._observer.seen.subscriptions, caller_id, topic, topic_type)
         return answer
 
     def registerService(  # noqa: N802
         self, caller_id: str, service: str, service_api: str, caller_api: str
-    ) -> Answer:
-        answer: Answer = super().registerService(caller_id, service, service_api, caller_api)
+    ) -> MasterReply:
+        answer: MasterReply = super().registerService(caller_id, service, service_api, caller_api)
         if answer[0] == 1:
             self._note(self._observer.seen.services, caller_id, service)
         return answer
 
-    def lookupService(self, caller_id: str, service: str) -> Answer:  # noqa: N802
+    def lookupService(self, caller_id: str, service: str) -> MasterReply:  # noqa: N802
         lookups = self._observer.seen.lookups
         known = any((lookup.node, lookup.topic) == (caller_id, service) for lookup in list(lookups))
         if not known and len(lookups) < _KEEP:
             self._note(lookups, caller_id, service)
-        answer: Answer = super().lookupService(caller_id, service)
+        answer: MasterReply = super().lookupService(caller_id, service)
         return answer

@@ -96,7 +96,7 @@ class Hook:
 
 
 @dataclasses.dataclass
-class Call:
+class CallPlan:
     """What a service is asked, and what it should answer."""
 
     request: Fields
@@ -104,12 +104,12 @@ class Call:
 
 
 @dataclasses.dataclass
-class Service:
+class ServicePlan:
     """A service of the contract; name: its full one."""
 
     name: str
     type: str
-    calls: List[Call]
+    calls: List[CallPlan]
 
 
 @dataclasses.dataclass
@@ -122,7 +122,7 @@ class Given:
 
 
 @dataclasses.dataclass
-class Example:
+class ExamplePlan:
     """What a node is sent, and what it should publish then: full name of a topic -> messages.
 
     is_among: whether they may come after others; tolerance: how much numbers may differ
@@ -166,9 +166,9 @@ class DirectNode:
     hook: Optional[Hook]
     topic: Optional[str] = None
     relays: bool = False
-    offers: List[Service] = dataclasses.field(default_factory=list)
-    calls: List[Service] = dataclasses.field(default_factory=list)
-    example: Optional[Example] = None
+    offers: List[ServicePlan] = dataclasses.field(default_factory=list)
+    calls: List[ServicePlan] = dataclasses.field(default_factory=list)
+    example: Optional[ExamplePlan] = None
 
     @property
     def is_wrap(self) -> bool:

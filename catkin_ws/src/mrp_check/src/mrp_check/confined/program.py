@@ -13,7 +13,7 @@ from typing import IO, Deque, List, Mapping, Optional, Sequence, Tuple
 import psutil
 
 from mrp_check.confined import apart, warden
-from mrp_check.confined.seen import Left, Line
+from mrp_check.confined.seen import Left, OutputLine
 
 _ESCAPES = re.compile(r"\x1b\[[0-9;]*m|\x1b\][^\x07]*\x07")
 _NOT_EXECUTED = re.compile(r"(bwrap: execvp|setpriv: failed to execute) ")
@@ -37,7 +37,7 @@ class Program:
         writable: Sequence[str],
         merge: bool = False,
     ) -> None:
-        self.lines: List[Line] = []
+        self.lines: List[OutputLine] = []
         self._last: Deque[Tuple[float, str, bytes]] = collections.deque(maxlen=_LAST_LINES)
         self.line_count = 0
         self.started = time.monotonic()
@@ -109,7 +109,7 @@ class Program:
         """Return whether the system could execute it: it may lack the right first line."""
         return not any(_NOT_EXECUTED.match(text) for _, _, text in self.lines[:1])
 
-    def all_lines(self) -> List[Line]:
+    def all_lines(self) -> List[OutputLine]:
         """Wait until all output is read, and return the lines that are kept; not for ever: a child
         may keep the pipe open."""
         for reader in self._readers:

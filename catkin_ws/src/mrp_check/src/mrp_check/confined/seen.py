@@ -10,7 +10,7 @@ from typing import Dict, List, Optional, Tuple
 
 Number = typing.Union[int, float]
 Plain = typing.Union[bool, int, float, str]
-Line = Tuple[float, str, str]  # its time, its stream ("out" or "err"), its text
+OutputLine = Tuple[float, str, str]  # its time, its stream ("out" or "err"), its text
 _AFTER = 0.5  # seconds in which roslaunch may still show what was printed before it was to end
 
 
@@ -112,7 +112,7 @@ class LaunchResult:
 
     ending: str
     asked: float
-    lines: List[Line]
+    lines: List[OutputLine]
     seen: Seen
     code: Optional[int] = None
     stopped_in: Optional[float] = None
@@ -166,7 +166,7 @@ class Alone:
     still_registered: bool = False
     busy: Optional[float] = None
     events: List[Event] = dataclasses.field(default_factory=list)
-    lines: List[Line] = dataclasses.field(default_factory=list)
+    lines: List[OutputLine] = dataclasses.field(default_factory=list)
     line_count: int = 0
     answers: Dict[str, List[Answer]] = dataclasses.field(default_factory=dict)
     requests: Dict[str, List[Dict[str, Plain]]] = dataclasses.field(default_factory=dict)

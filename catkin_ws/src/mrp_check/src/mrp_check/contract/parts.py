@@ -9,7 +9,7 @@ import re
 from typing import Any, Mapping, Union
 
 from mrp_check.contract import lines, resources
-from mrp_check.contract.kinds import PACKAGE
+from mrp_check.contract.message_types import PACKAGE
 
 SCHEMA = resources.folder("schema") / "spec.json"
 SCHEMA_DATA = json.loads(SCHEMA.read_text())
@@ -200,7 +200,7 @@ class NodeSpec:
 
 
 @dataclasses.dataclass(frozen=True)
-class Launch:
+class LaunchSpec:
     file: str = ""  # without one, the checker starts the nodes by one of its own
     group: str | None = None
 

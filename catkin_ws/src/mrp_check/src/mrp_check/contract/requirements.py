@@ -20,13 +20,13 @@ class Requirement(typing.NamedTuple):
 
     title: a sentence that is true of a package which meets it
     section: page of the tutorial, and the anchor on it
-    seen: called with a case.Case; says why nobody can know whether it is met, or returns None
+    why_unseen: called with a case.Case; says why nobody can know whether it is met, or returns None
     stage: in whose group it is shown: that of its rule
     """
 
     title: str
     section: str
-    seen: Callable[..., str | None]
+    why_unseen: Callable[..., str | None]
     stage: str = ""
 
     @property

@@ -10,15 +10,15 @@ from typing import Any, Collection, Dict, Iterable, Mapping, NoReturn, Sequence,
 import jsonschema
 import yaml
 
-from mrp_check.contract import kinds, lines, resources
+from mrp_check.contract import lines, message_types, resources
 from mrp_check.contract.errors import SpecError
-from mrp_check.contract.kinds import PACKAGE as PACKAGE
-from mrp_check.contract.kinds import REQUEST, RESPONSE
+from mrp_check.contract.message_types import PACKAGE as PACKAGE
+from mrp_check.contract.message_types import REQUEST, RESPONSE
 from mrp_check.contract.parts import SCHEMA as SCHEMA
 from mrp_check.contract.parts import SCHEMA_DATA, default
 from mrp_check.contract.parts import Call as Call
 from mrp_check.contract.parts import Example as Example
-from mrp_check.contract.parts import Launch as Launch
+from mrp_check.contract.parts import LaunchSpec as LaunchSpec
 from mrp_check.contract.parts import Message as Message
 from mrp_check.contract.parts import NodeSpec as NodeSpec
 from mrp_check.contract.parts import Publishes as Publishes
@@ -40,7 +40,7 @@ class Spec:
     title: str
     topics: dict[str, Topic]
     nodes: dict[str, NodeSpec]
-    launch: Launch = Launch()
+    launch: LaunchSpec = LaunchSpec()
     shutdown: Shutdown = Shutdown()
     messages: dict[str, dict[str, str]] = dataclasses.field(default_factory=dict)
     install: bool = default("install")
@@ -101,7 +101,7 @@ def read(path: str | pathlib.Path, requirements: Collection[str] | None = None) 
 
 Entry = Dict[str, Any]  # of the YAML file
 Messages = Dict[str, Dict[str, str]]  # name -> field -> type
-Place = Sequence[Union[str, int]]  # keys and indices
+KeyPath = Sequence[Union[str, int]]  # keys and indices
 T = TypeVar("T")
 
 
@@ -114,7 +114,7 @@ class _Reader:
         self.path, self.requirements = path, requirements
         self.tree = yaml.compose(text, Loader=yaml.SafeLoader)
 
-    def fail(self, place: Place, sentence: str) -> NoReturn:
+    def fail(self, place: KeyPath, sentence: str) -> NoReturn:
         """Raise SpecError about the entry at `place`, a list of keys and indices."""
         line, known = self.found(place)
         name = ".".join(known) or "the contract"
@@ -158,7 +158,7 @@ class _Reader:
                 for name, entry in data["nodes"].items()
             },
             services=services,
-            launch=Launch(**data.get("launch", {})),
+            launch=LaunchSpec(**data.get("launch", {})),
             shutdown=Shutdown(**data.get("shutdown", {})),
             messages=data.get("messages", {}),
             install=data.get("install", Spec.install),
@@ -188,23 +188,23 @@ class _Reader:
     def number(self, topic: Topic, place: list[str | int]) -> None:
         if not topic.kind:
             self.kind(topic.type, topic.field, ["topics", topic.name])
-        if not topic.text and not kinds.NUMBER.fullmatch(topic.kind):
+        if not topic.text and not message_types.NUMBER.fullmatch(topic.kind):
             self.fail(
                 place,
                 f"{topic.field} of {topic.type} is a {topic.kind}, not a number. A string has one"
                 " if the topic has a 'text'.",
             )
 
-    def requirement(self, place: Place, id_: str) -> None:
+    def requirement(self, place: KeyPath, id_: str) -> None:
         """See that it exists."""
         if self.requirements is not None and id_ not in self.requirements:
             self.fail(place, no_such("requirement", id_, self.requirements))
 
-    def kind(self, type_: str, path: str, place: Place) -> str:
+    def kind(self, type_: str, path: str, place: KeyPath) -> str:
         """Return the type of a type's field; place: of what has the keys type and field."""
         try:
-            return kinds.of_field(type_, path, self.own)
-        except kinds.KindError as error:
+            return message_types.of_field(type_, path, self.own)
+        except message_types.KindError as error:
             self.fail([*place, "type" if error.is_type else "field"], str(error))
 
     def own_messages(self, data: Entry) -> Messages:
@@ -219,11 +219,11 @@ class _Reader:
         for place, fields in said:
             for field, kind in fields.items():
                 plain = kind.split("[")[0]
-                if kinds.is_builtin(plain) or {plain, plain.partition("/")[2]} & {*own}:
+                if message_types.is_builtin(plain) or {plain, plain.partition("/")[2]} & {*own}:
                     continue
                 try:
-                    kinds.of_machine(plain)
-                except kinds.KindError as error:
+                    message_types.of_machine(plain)
+                except message_types.KindError as error:
                     self.fail([*place, field], str(error))
         return own
 
@@ -231,8 +231,8 @@ class _Reader:
         place = ["topics", name]
         asked = {"field", "text"} & {*entry}
         try:
-            kind = kinds.of_field(entry["type"], entry.get("field", Topic.field), self.own)
-        except kinds.KindError as error:
+            kind = message_types.of_field(entry["type"], entry.get("field", Topic.field), self.own)
+        except message_types.KindError as error:
             if asked or error.is_type:
                 self.fail([*place, "type" if error.is_type else "field"], str(error))
             kind = ""
@@ -250,8 +250,8 @@ class _Reader:
                 self.fail([*place, key], f"only a type of {PACKAGE} is defined here; {type_} is.")
         try:
             if not is_own:
-                kinds.service(type_)
-        except kinds.KindError as error:
+                message_types.require_service(type_)
+        except message_types.KindError as error:
             self.fail([*place, "type"], str(error))
         for index, call in enumerate(entry.get("examples", ())):
             for key, half in (("request", REQUEST), ("response", RESPONSE)):
@@ -259,17 +259,17 @@ class _Reader:
         calls = tuple(Call(**call) for call in entry.get("examples", ()))
         return Service(name, **{**entry, "examples": calls})
 
-    def message(self, type_: str, fields: Message, place: Place) -> None:
+    def message(self, type_: str, fields: Message, place: KeyPath) -> None:
         """See that a type has these fields, and that they can have these values."""
         for path, value in fields.items():
             try:
-                fault = kinds.fault(kinds.of_field(type_, path, self.own), value)
-            except kinds.KindError as error:
+                fault = message_types.fault(message_types.of_field(type_, path, self.own), value)
+            except message_types.KindError as error:
                 fault = str(error)
             if fault:
                 self.fail([*place, path], fault)
 
-    def one_of(self, things: Mapping[str, T], name: str, place: Place, kind: str) -> T:
+    def one_of(self, things: Mapping[str, T], name: str, place: KeyPath, kind: str) -> T:
         if name not in things:
             self.fail(place, no_such(kind, name, things))
         return things[name]
@@ -314,7 +314,7 @@ class _Reader:
         rest = {key: entry[key] for key in plain if key in entry}
         return NodeSpec(name, prints=self.prints(name, entry.get("prints", ())), **roles, **rest)
 
-    def example(self, entry: Entry, topics: dict[str, Topic], place: Place) -> Example:
+    def example(self, entry: Entry, topics: dict[str, Topic], place: KeyPath) -> Example:
         def topic(name: str, *above: str | int) -> Topic:
             return self.one_of(topics, name, [*place, *above, name], "topic")
 

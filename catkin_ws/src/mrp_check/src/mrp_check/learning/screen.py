@@ -75,7 +75,7 @@ class _Screen:
         shown = lines[self.top : self.top + height]
         return [(f"class:{style}" if style else "", f" {text}\n") for style, text in shown]
 
-    def _lines(self) -> list[views.Line]:
+    def _lines(self) -> list[views.StyledLine]:
         width = max(20, self.app.output.get_size().columns - 2)
         if self.view == "list":
             return [*views.list_of(self.watched, self.chosen)]

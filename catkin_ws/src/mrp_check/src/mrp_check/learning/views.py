@@ -12,7 +12,7 @@ from mrp_check.learning import tool_output
 from mrp_check.learning.watch import Check, Watched
 from mrp_check.report import terminal
 
-Line = Tuple[str, str]  # its style, its text
+StyledLine = Tuple[str, str]  # its style, its text
 
 STYLES = {
     "bar": "reverse",
@@ -41,7 +41,7 @@ def keys(watched: Watched) -> str:
     return " " + "   ".join([*first, "p page", "r run", "l list", "x reset", "q quit"])
 
 
-def state(watched: Watched) -> Line:
+def state(watched: Watched) -> StyledLine:
     """Return how the exercise stands."""
     check, course = watched.check, watched.course
     if check is None or not check.done:
@@ -57,7 +57,7 @@ def state(watched: Watched) -> Line:
     return "wrong", f"Not yet: {count} {'thing is' if count == 1 else 'things are'} wrong."
 
 
-def task(watched: Watched, hint: bool, explains: bool, width: int) -> Iterator[Line]:
+def task(watched: Watched, hint: bool, explains: bool, width: int) -> Iterator[StyledLine]:
     """Yield the task, which file to open, and how it stands.
 
     hint: whether the hint is asked for; explains: whether the explanation is
@@ -80,7 +80,7 @@ def task(watched: Watched, hint: bool, explains: bool, width: int) -> Iterator[L
     yield from _findings(check, explains, width)
 
 
-def _congratulation(course: exercises.Course, width: int) -> Iterator[Line]:
+def _congratulation(course: exercises.Course, width: int) -> Iterator[StyledLine]:
     """Yield what somebody reads who has finished the last exercise."""
     yield "", ""
     yield "passed", "* * *  That was the last one. Congratulations!  * * *"
@@ -89,7 +89,7 @@ def _congratulation(course: exercises.Course, width: int) -> Iterator[Line]:
         yield from _wrapped(line, width, "place" if line.startswith(" ") else "")
 
 
-def _findings(check: Check | None, explains: bool, width: int) -> Iterator[Line]:
+def _findings(check: Check | None, explains: bool, width: int) -> Iterator[StyledLine]:
     """Yield what the tools say; or, if it is asked for, what we say."""
     if check and check.done and check.error:
         yield "", ""
@@ -113,7 +113,7 @@ def _findings(check: Check | None, explains: bool, width: int) -> Iterator[Line]
     yield from _wrapped("Find it yourself, or press e and I'll explain.", width)
 
 
-def list_of(watched: Watched, chosen: int) -> Iterator[Line]:
+def list_of(watched: Watched, chosen: int) -> Iterator[StyledLine]:
     """Yield all exercises, each with its state; chosen: the index of the one that is marked."""
     for index, exercise in enumerate(watched.course.exercises):
         passed = watched.course.is_passed(exercise)
@@ -123,7 +123,7 @@ def list_of(watched: Watched, chosen: int) -> Iterator[Line]:
         yield "bar" if index == chosen else "added" if passed else "", text
 
 
-def nodes(watched: Watched, width: int) -> Iterator[Line]:
+def nodes(watched: Watched, width: int) -> Iterator[StyledLine]:
     """Yield what roslaunch and the nodes printed when the check ran them."""
     report = watched.check.report if watched.check else None
     if report and report.console:
@@ -135,12 +135,12 @@ def nodes(watched: Watched, width: int) -> Iterator[Line]:
         yield from _wrapped("Their output appears here once the check has run them.", width)
 
 
-def diff(lines: Sequence[str], width: int) -> Iterator[Line]:
+def diff(lines: Sequence[str], width: int) -> Iterator[StyledLine]:
     for line in lines:
         yield from _wrapped(line, width, _DIFF.get(line[:1], ""))
 
 
-def _text(text: str, width: int, title: str) -> Iterator[Line]:
+def _text(text: str, width: int, title: str) -> Iterator[StyledLine]:
     """Yield a title and a text, whose paragraphs are filled."""
     yield "title", title
     for paragraph in text.strip().split("\n\n"):
@@ -148,7 +148,7 @@ def _text(text: str, width: int, title: str) -> Iterator[Line]:
         yield from _wrapped(" ".join(paragraph.split()), width)
 
 
-def _wrapped(text: str, width: int, style: str = "") -> Iterator[Line]:
+def _wrapped(text: str, width: int, style: str = "") -> Iterator[StyledLine]:
     """Yield a line as lines that fit; those after the first are indented as it is, or more."""
     head = re.match(r"(  \w+: +)?\s*", text)
     indent = "  " if style == "place" else " " * head.end() if head else ""

@@ -21,7 +21,7 @@ from mrp_check.contract.names import line_of
 _CALLED = re.compile(r"^\s*\w+\s*\(")  # where a call begins
 
 
-class Call(typing.NamedTuple):
+class Command(typing.NamedTuple):
     command: str  # in lower case
     arguments: list[str]
     file: str  # relative to the package
@@ -63,9 +63,9 @@ class Script(typing.NamedTuple):
     by: str  # catkin_install_python or install
 
 
-def traced(trace: pathlib.Path, package_folder: pathlib.Path) -> list[Call]:
+def traced(trace: pathlib.Path, package_folder: pathlib.Path) -> list[Command]:
     """Return the Calls in a file that CMake's --trace-format=json-v1 made, of the package alone."""
-    calls: list[Call] = []
+    calls: list[Command] = []
     try:
         text = written.read(trace).decode("utf-8", "replace")
     except OSError:
@@ -78,7 +78,7 @@ def traced(trace: pathlib.Path, package_folder: pathlib.Path) -> list[Call]:
         file = relative(entry.get("file", ""), package_folder)
         if file is not None:
             arguments = [part for text in entry["args"] for part in text.split(";") if part]
-            calls.append(Call(entry["cmd"].lower(), arguments, file, entry["line"]))
+            calls.append(Command(entry["cmd"].lower(), arguments, file, entry["line"]))
     return calls
 
 
@@ -98,12 +98,12 @@ _TOKEN = re.compile(
 )
 
 
-def parsed(text: str, file: str) -> list[Call]:
+def parsed(text: str, file: str) -> list[Command]:
     """Return the Calls in a CMake file's text, as far as it can be read, with set() alone.
 
     catkin_lint's own reader says nothing at all of a file in which a parenthesis is missing.
     """
-    calls: list[Call] = []
+    calls: list[Command] = []
     variables: dict[str, str] = {}
     depth = 0
     for token in _TOKEN.finditer(text):
@@ -113,7 +113,7 @@ def parsed(text: str, file: str) -> list[Call]:
         word = token[kind]
         # A call whose parenthesis is missing ends where a line below it begins with a call.
         if kind == "call" and (not depth or line > calls[-1].line and word.lower() in _CALLS):
-            calls.append(Call(word.lower(), [], file, line))
+            calls.append(Command(word.lower(), [], file, line))
             depth = 1
         elif depth:
             depth += {"call": 1, "paren": 1 if word == "(" else -1}.get(kind, 0)
@@ -163,19 +163,19 @@ class Model:
     complete: whether CMake went through all of it; if not, the rest is read as text
     output: what CMake and `make help` print
     made: all targets, those of ROS and of the messages, too; nothing if CMake failed
-    project: (name, Call) or None
-    components: ROS package -> Call, of find_package
-    catkin: the Call of find_package(catkin ...), or None
-    catkin_package: its Call, or None; late: the first executable before it, or None
+    project: (name, Command) or None
+    components: ROS package -> Command, of find_package
+    catkin: the Command of find_package(catkin ...), or None
+    catkin_package: its Command, or None; late: the first executable before it, or None
     include_dirs: the folders in INCLUDE_DIRS of catkin_package()
-    targets: name -> Target; scripts: list of Script; message_files: name -> Call, of services and
-        actions, too
+    targets: name -> Target; scripts: list of Script
+    message_files: name -> Command, of services and actions, too
     """
 
     def __init__(
         self,
         folder: pathlib.Path,
-        calls: Iterable[Call],
+        calls: Iterable[Command],
         complete: bool,
         output: str = "",
     ) -> None:
@@ -185,23 +185,23 @@ class Model:
         self.calls = list(calls)
         if not complete:
             self.calls += self._rest()
-        self.project: tuple[str, Call] | None = None
-        self.catkin: Call | None = None
-        self.catkin_package: Call | None = None
+        self.project: tuple[str, Command] | None = None
+        self.catkin: Command | None = None
+        self.catkin_package: Command | None = None
         self.late: Target | None = None
-        self.add_message_files: Call | None = None
-        self.generate: Call | None = None
-        self.components: dict[str, Call] = {}
+        self.add_message_files: Command | None = None
+        self.generate: Command | None = None
+        self.components: dict[str, Command] = {}
         self.include_dirs: list[str] = []
         self.targets: dict[str, Target] = {}
         self.scripts: list[Script] = []
-        self.message_files: dict[str, Call] = {}
-        self.installs: list[Call] = []
+        self.message_files: dict[str, Command] = {}
+        self.installs: list[Command] = []
         for call in self.calls:
             if call.arguments or call.command in _MAY_BE_EMPTY:
                 _UNDERSTOOD.get(call.command, lambda model, call: None)(self, call)
 
-    def _rest(self) -> list[Call]:
+    def _rest(self) -> list[Command]:
         """Return the calls that CMake did not come to."""
         path = self.folder / "CMakeLists.txt"
         try:
@@ -211,7 +211,7 @@ class Model:
         reached = max((c.line for c in self.calls if c.file == "CMakeLists.txt"), default=0)
         return [call for call in parsed(text, "CMakeLists.txt") if call.line > reached]
 
-    def path(self, text: str, call: Call) -> str | None:
+    def path(self, text: str, call: Command) -> str | None:
         """Return a path in a call, relative to the package; None if it is not inside it."""
         base = self.folder / pathlib.PurePosixPath(call.file).parent
         for folder in (base, self.folder):
@@ -253,10 +253,10 @@ class Model:
         """Return the sources of a target, and of the package's libraries that it is linked with."""
         return list(dict.fromkeys(file for part in self.linked(target) for file in part.sources))
 
-    def _project(self, call: Call) -> None:
+    def _project(self, call: Command) -> None:
         self.project = self.project or (call.arguments[0], call)
 
-    def _find_package(self, call: Call) -> None:
+    def _find_package(self, call: Command) -> None:
         parts = sections(
             call.arguments, {"REQUIRED", "COMPONENTS", "QUIET", "OPTIONAL_COMPONENTS", "CONFIG"}
         )
@@ -272,7 +272,7 @@ class Model:
         else:
             self.components.setdefault(name, call)
 
-    def _catkin_package(self, call: Call) -> None:
+    def _catkin_package(self, call: Command) -> None:
         if not self.catkin_package:  # a later call moves no executable
             made = (target for target in self.targets.values() if not target.is_library)
             self.late = next(made, None)
@@ -284,7 +284,7 @@ class Model:
         parts = sections(call.arguments, names)
         self.include_dirs = parts.get("INCLUDE_DIRS", [])
 
-    def _add_executable(self, call: Call, is_library: bool = False) -> None:
+    def _add_executable(self, call: Command, is_library: bool = False) -> None:
         name, *sources = call.arguments
         if "ALIAS" in sources or "IMPORTED" in sources:
             return
@@ -292,7 +292,7 @@ class Model:
         self.targets[name] = target
         self._sources(target, sources, call)
 
-    def _sources(self, target: Target, sources: Iterable[str], call: Call) -> None:
+    def _sources(self, target: Target, sources: Iterable[str], call: Command) -> None:
         for source in sources:
             if "$" in source or source in _NO_SOURCES:
                 continue
@@ -304,47 +304,47 @@ class Model:
             else:
                 target.sources.append(path)
 
-    def _add_library(self, call: Call) -> None:
+    def _add_library(self, call: Command) -> None:
         self._add_executable(call, is_library=True)
 
-    def _target_sources(self, call: Call) -> None:
+    def _target_sources(self, call: Command) -> None:
         target = self.targets.get(call.arguments[0])
         if target:
             self._sources(target, call.arguments[1:], call)
 
-    def _target_link_libraries(self, call: Call) -> None:
+    def _target_link_libraries(self, call: Command) -> None:
         target = self.targets.get(call.arguments[0])
         if target:
             target.links += call.arguments[1:]
             target.link_line = call.line
 
-    def _add_dependencies(self, call: Call) -> None:
+    def _add_dependencies(self, call: Command) -> None:
         target = self.targets.get(call.arguments[0])
         if target:
             target.dependencies += call.arguments[1:]
 
-    def _set_target_properties(self, call: Call) -> None:
+    def _set_target_properties(self, call: Command) -> None:
         if "OUTPUT_NAME" in call.arguments[:-1] and "PROPERTIES" in call.arguments:
             output = call.arguments[call.arguments.index("OUTPUT_NAME") + 1]
             for name in call.arguments[: call.arguments.index("PROPERTIES")]:
                 if name in self.targets:
                     self.targets[name].output = output
 
-    def _catkin_install_python(self, call: Call) -> None:
+    def _catkin_install_python(self, call: Command) -> None:
         self._scripts(call, {"PROGRAMS", "DESTINATION", "OPTIONAL"})
 
-    def _install(self, call: Call) -> None:
+    def _install(self, call: Command) -> None:
         self.installs.append(call)
         if call.arguments[0] == "PROGRAMS":
             names = {"PROGRAMS", "DESTINATION", "OPTIONAL", "PERMISSIONS", "RENAME", "COMPONENT"}
             self._scripts(call, names)
 
-    def _scripts(self, call: Call, names: Collection[str]) -> None:
+    def _scripts(self, call: Command, names: Collection[str]) -> None:
         for path in sections(call.arguments, names).get("PROGRAMS", []):
             script = self.path(path, call) or path
             self.scripts.append(Script(script, call.file, call.line, call.command))
 
-    def _add_message_files(self, call: Call) -> None:
+    def _add_message_files(self, call: Command) -> None:
         self.add_message_files = self.add_message_files or call
         parts = sections(call.arguments, {"FILES", "DIRECTORY", "NOINSTALL", "PACKAGE"})
         ending = MESSAGES[call.command]
@@ -355,7 +355,7 @@ class Model:
         for file in files:
             self.message_files[f"{folder}/{file}"] = call
 
-    def _generate_messages(self, call: Call) -> None:
+    def _generate_messages(self, call: Command) -> None:
         self.generate = self.generate or call
 
 

@@ -45,7 +45,7 @@ _CRASHES = {
 _THROWN = re.compile(r"terminate called after throwing an instance of '(?:[\w:]+<)?(?:\w+::)*(\w+)")
 
 
-class End(NamedTuple):
+class Outcome(NamedTuple):
     """What a node ran into: the class of an error, and its text; or, without one, its exit code.
 
     words: what it printed
@@ -57,13 +57,13 @@ class End(NamedTuple):
     words: list[str]
 
 
-def of_lines(words: list[str], code: int | None) -> End:
+def of_lines(words: list[str], code: int | None) -> Outcome:
     """Return the end of a node whose sources no traceback names."""
     thrown = next(filter(None, map(_THROWN.search, words)), None)
-    return End(thrown[1] if thrown else "", "", code, words)
+    return Outcome(thrown[1] if thrown else "", "", code, words)
 
 
-def certainty(case: Case, node: str, end: End, launched: Launched | None = None) -> str:
+def certainty(case: Case, node: str, end: Outcome, launched: Launched | None = None) -> str:
     """Return how sure it is that the package is to blame.
 
     launched: what was seen under a launch file, if it ran under one
@@ -93,7 +93,7 @@ def _given(case: Case, node: str, launch_file: str) -> Iterator[str]:
             yield from map(str, launch.params.values())
 
 
-def _lacks(case: Case, node: str, end: End, launched: Launched) -> bool:
+def _lacks(case: Case, node: str, end: Outcome, launched: Launched) -> bool:
     """Return whether nobody offers what a node seeks, or another package's node isn't here."""
     absent = [text for text in launched.seen.until_asked() if _NOT_STARTED in text]
     if any(f"[{case.package.name}/" not in text for text in absent):

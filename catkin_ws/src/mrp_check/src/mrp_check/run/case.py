@@ -27,8 +27,8 @@ from mrp_check.package.package import Package
 from mrp_check.package.workspace import Workspace
 from mrp_check.run import observing
 from mrp_check.run.node import Node
-from mrp_check.run.places import Places
 from mrp_check.run.sessions import Sessions
+from mrp_check.run.source_lines import Places
 
 
 class Case(Workspace):

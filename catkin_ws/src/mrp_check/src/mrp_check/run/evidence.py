@@ -13,7 +13,7 @@ from mrp_check.contract.spec import Publishes
 from mrp_check.run.case import Case
 from mrp_check.run.node import Node
 
-Seen = Callable[[Case], Optional[str]]
+WhyUnseen = Callable[[Case], Optional[str]]
 
 
 def always(case: Case) -> str | None:
@@ -46,7 +46,7 @@ def built(case: Case) -> str | None:
     return None if case.built.ok else "not everything was compiled"
 
 
-def of_nodes(why: Callable[[Case, str], str | None]) -> Seen:
+def of_nodes(why: Callable[[Case, str], str | None]) -> WhyUnseen:
     """Return the same of all nodes, for a function of the case and a node's name."""
     return lambda case: next(filter(None, (why(case, name) for name in case.spec.nodes)), None)
 
@@ -55,7 +55,7 @@ def _no_source(case: Case, name: str) -> str | None:
     return None if case.facts.sources.get(name) else f"no source of {name} was found"
 
 
-def _sources(language: str) -> Seen:
+def _sources(language: str) -> WhyUnseen:
     """Return the test of whether there is a source of each node that may be in the language."""
     return of_nodes(
         lambda case, name: (
@@ -94,7 +94,7 @@ def when(
     is_seen: Callable[[Node], object],
     what: str,
     role: Callable[[specs.NodeSpec], object] = lambda node: True,
-) -> Seen:
+) -> WhyUnseen:
     """Return the test of nodes that came up, and of which something more must have been seen.
 
     role: whether the contract asks that of a node of the spec
@@ -113,7 +113,7 @@ def when(
 
 def of_publisher(
     asked: Callable[[Publishes], object], is_seen: Callable[[Node], object], what: str
-) -> Seen:
+) -> WhyUnseen:
     """The same of a node that publishes, if its contract says more of it."""
     return when(is_seen, what, lambda wanted: wanted.publishes and asked(wanted.publishes))
 

@@ -8,7 +8,7 @@ import pathlib
 import re
 from typing import Iterator, NamedTuple
 
-from mrp_check.confined.seen import DirectResult, Line, Log, Seen
+from mrp_check.confined.seen import DirectResult, Log, OutputLine, Seen
 from mrp_check.contract.names import last_part
 from mrp_check.package.package import Package
 from mrp_check.run.observing import Observed, ends
@@ -44,7 +44,7 @@ class Run(NamedTuple):
     is_launched: bool
     path: str
     logs: list[Log]
-    lines: list[Line]
+    lines: list[OutputLine]
     seen: Seen
     asked: float
     ended: int | None

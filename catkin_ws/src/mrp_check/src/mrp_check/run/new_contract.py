@@ -14,7 +14,7 @@ import yaml
 from mrp_check.confined.launch_dump import Started
 from mrp_check.confined.seen import DirectResult, LaunchResult, Message, Number, Registration, Seen
 from mrp_check.contract.errors import CannotCheck
-from mrp_check.contract.kinds import PACKAGE
+from mrp_check.contract.message_types import PACKAGE
 from mrp_check.contract.names import last_part
 from mrp_check.contract.spec import Topic
 from mrp_check.run.any_case import AnyCase

@@ -230,10 +230,10 @@ class Planner:
             calls=[self._service(service, namespace) for service in node.calls],
         )
 
-    def _service(self, service: specs.Service, namespace: str) -> plans.Service:
-        calls = [plans.Call(dict(c.request), dict(c.response)) for c in service.examples]
+    def _service(self, service: specs.Service, namespace: str) -> plans.ServicePlan:
+        calls = [plans.CallPlan(dict(c.request), dict(c.response)) for c in service.examples]
         kind = service.type_in(self.workspace.package.name)
-        return plans.Service(resolved(service, f"{namespace}/~"), kind, calls)
+        return plans.ServicePlan(resolved(service, f"{namespace}/~"), kind, calls)
 
     def _example(
         self, plan: plans.DirectNode, node: specs.NodeSpec, example: specs.Example, namespace: str
@@ -259,7 +259,7 @@ class Planner:
             values=[],
             paced=[],
             offers=[],
-            example=plans.Example(gives, expects, is_among, example.tolerance),
+            example=plans.ExamplePlan(gives, expects, is_among, example.tolerance),
         )
 
 

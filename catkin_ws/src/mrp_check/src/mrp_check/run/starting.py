@@ -10,7 +10,7 @@ from mrp_check.code import uses
 from mrp_check.confined.places import Kind
 from mrp_check.confined.seen import Alone
 from mrp_check.contract.finding import HINT, SEEN, Finding, Where
-from mrp_check.run.places import Traceback
+from mrp_check.run.source_lines import Traceback
 from mrp_check.run.traces import Traces
 from mrp_check.run.words import code_text, last_words
 

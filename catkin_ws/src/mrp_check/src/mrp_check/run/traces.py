@@ -11,8 +11,8 @@ from mrp_check.confined.seen import Message, Number, Seen
 from mrp_check.contract import spec as specs
 from mrp_check.contract.finding import SEEN, Finding, Where
 from mrp_check.run.observing import ends
-from mrp_check.run.places import Places
 from mrp_check.run.planning import WRAP
+from mrp_check.run.source_lines import Places
 
 # Topics that belong to ROS itself.
 ROS_TOPICS = {"/rosout", "/rosout_agg", "/clock", "/tf", "/tf_static", "/diagnostics"}

@@ -244,7 +244,7 @@ def unseen(case, ids):
     """Return id -> why nobody can say that the requirement is met, of those for which it is so."""
     ran = [id_ for id_ in ids if not case.static or REQUIREMENTS[id_].stage in STATIC]
     found = {id_: "only the files were read" for id_ in ids}
-    found.update({id_: REQUIREMENTS[id_].seen(case) for id_ in ran})
+    found.update({id_: REQUIREMENTS[id_].why_unseen(case) for id_ in ran})
     return {id_: why for id_, why in found.items() if why}
 
 

@@ -14,7 +14,7 @@ from mrp_check.code.python_modules import is_ros
 from mrp_check.code.uses import Use
 from mrp_check.contract.finding import HABIT, HINT, READ, Finding
 from mrp_check.contract.requirements import Requirement, Rule
-from mrp_check.package.cmake import Call, Model
+from mrp_check.package.cmake import Command, Model
 from mrp_check.package.manifest import FILE, declared, first_dependency, named
 from mrp_check.package.package import Package
 from mrp_check.run import evidence
@@ -111,7 +111,7 @@ def _used_in(found: Mapping[str, Use]) -> str:
     return f"{', '.join(rest)} and {last}"
 
 
-def _not_in_cmake(found: Mapping[str, Use], model: Model, call: Call, firm: bool) -> Finding:
+def _not_in_cmake(found: Mapping[str, Use], model: Model, call: Command, firm: bool) -> Finding:
     names = " ".join(found)
     return Finding(
         "dependencies",

@@ -10,7 +10,7 @@ from mrp_check.code import uses
 from mrp_check.contract.finding import HABIT, Finding
 from mrp_check.contract.names import last_part, nearest, perhaps
 from mrp_check.contract.requirements import Requirement, Rule
-from mrp_check.package.cmake import Call, Model, parsed
+from mrp_check.package.cmake import Command, Model, parsed
 from mrp_check.package.package import Package
 from mrp_check.run import evidence
 from mrp_check.run.case import Case
@@ -42,7 +42,7 @@ def _no_sources(case: Case) -> Iterator[Finding]:
 
 
 def _missing(
-    package: Package, call: Call, name: str, message: str, expected: str, fix: str
+    package: Package, call: Command, name: str, message: str, expected: str, fix: str
 ) -> Finding:
     line = call.line_of(package.lines(call.file), name)
     return Finding("targets", message, call.file, line, HABIT, expected, name, fix)

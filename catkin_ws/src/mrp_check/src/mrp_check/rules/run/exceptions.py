@@ -12,7 +12,7 @@ from mrp_check.run import blame
 from mrp_check.run.case import Case
 from mrp_check.run.node import Node
 from mrp_check.run.observing import Launched
-from mrp_check.run.places import Traceback
+from mrp_check.run.source_lines import Traceback
 from mrp_check.run.starting import id_of_error, is_unanswered
 from mrp_check.run.words import code_text
 
@@ -63,7 +63,7 @@ def _error(case: Case, name: str, found: Traceback, launched: Launched | None = 
     where = launched.where if launched else "as it works"
     certainty = HINT if is_unanswered(kind, text) else SEEN
     if not case.spec.is_contract:
-        certainty = blame.certainty(case, name, blame.End(kind, text, None, []), launched)
+        certainty = blame.certainty(case, name, blame.Outcome(kind, text, None, []), launched)
     return Finding(
         id_of_error(kind, text, "callbacks"),
         f"{name} runs into an error {where}: {kind}: {text}",

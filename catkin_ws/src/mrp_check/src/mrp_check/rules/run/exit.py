@@ -17,7 +17,7 @@ from mrp_check.contract.spec import Shutdown
 from mrp_check.run import evidence
 from mrp_check.run.case import Case
 from mrp_check.run.node import Node
-from mrp_check.run.places import Traceback
+from mrp_check.run.source_lines import Traceback
 from mrp_check.run.words import code_text, last_words
 
 _BEFORE = 0.1  # seconds: what is printed so shortly before it is asked belongs to its end, too

@@ -21,7 +21,7 @@ _TOGETHER = "When all nodes run together"
 _BY_ITSELF = "Started by itself"
 
 
-class End(typing.NamedTuple):
+class Endpoint(typing.NamedTuple):
     """A node of the package, or None for another's, that publishes or subscribes; and where its
     source says so, if it was read there."""
 
@@ -36,8 +36,8 @@ class Graph(typing.NamedTuple):
     """What was seen in a run."""
 
     where: str
-    publishers: list[End]
-    subscribers: list[End]
+    publishers: list[Endpoint]
+    subscribers: list[Endpoint]
 
 
 def _findings(case: Case) -> Iterator[Finding]:
@@ -104,14 +104,18 @@ def _graph(
     nodes: dict[str, str],
     plain: typing.Callable[[str], str],
 ) -> Graph:
-    def ends(records: Iterable[typing.Any]) -> list[End]:
-        found = (End(nodes.get(entry.node), plain(entry.topic), entry.type) for entry in records)
+    def ends(records: Iterable[typing.Any]) -> list[Endpoint]:
+        found = (
+            Endpoint(nodes.get(entry.node), plain(entry.topic), entry.type) for entry in records
+        )
         return [end for end in dict.fromkeys(found) if end.topic not in ROS_TOPICS]
 
     return Graph(where, ends(seen.publications), ends(seen.subscriptions))
 
 
-def _of_types(case: Case, graph: Graph, end: End, publishers: list[End]) -> Iterator[Finding]:
+def _of_types(
+    case: Case, graph: Graph, end: Endpoint, publishers: list[Endpoint]
+) -> Iterator[Finding]:
     by_chance = graph.where == _TOGETHER
     types = {other.type for other in publishers}
     for other in publishers:
@@ -133,7 +137,7 @@ def _of_types(case: Case, graph: Graph, end: End, publishers: list[End]) -> Iter
         )
 
 
-def _alone(case: Case, graph: Graph, end: End, published: set[str]) -> Iterator[Finding]:
+def _alone(case: Case, graph: Graph, end: Endpoint, published: set[str]) -> Iterator[Finding]:
     """Yield the Finding about a topic that nobody publishes on."""
     heard = {subscriber.topic for subscriber in graph.subscribers}
     near = _meant(case, end, graph.publishers, graph.subscribers)
@@ -192,7 +196,9 @@ def _did_not_run_and_names(case: Case, topic: str) -> bool:
     return any(last_part(topic) in case.package.text(file) for file in files)
 
 
-def _meant(case: Case, end: End, publishers: list[End], subscribers: list[End]) -> list[End]:
+def _meant(
+    case: Case, end: Endpoint, publishers: list[Endpoint], subscribers: list[Endpoint]
+) -> list[Endpoint]:
     """Return the publishers that a subscriber waits for in vain, as it has another name for their
     topic: it is alike, or their type is the package's own or plain, and they alone are without a
     partner."""
@@ -212,7 +218,7 @@ def _meant(case: Case, end: End, publishers: list[End], subscribers: list[End]) 
     return near or [publisher for publisher in alone if is_plain and is_one and publisher in others]
 
 
-def is_like(end: End, other: End) -> bool:
+def is_like(end: Endpoint, other: Endpoint) -> bool:
     """Return whether two names are so alike that one of them is misspelt, or in another group."""
     if end.type != other.type:
         return False
@@ -220,7 +226,7 @@ def is_like(end: End, other: End) -> bool:
     return _is_moved(end, other) or near is not None
 
 
-def _is_moved(end: End, other: End) -> bool:
+def _is_moved(end: Endpoint, other: Endpoint) -> bool:
     """Return whether two names differ in their namespaces alone."""
     return last_part(end.topic) == last_part(other.topic)
 

@@ -62,7 +62,7 @@ def is_builtin(kind: str) -> bool:
     return kind == "Header" or bool(genmsg.msgs.is_builtin(kind))
 
 
-def service(kind: str) -> None:
+def require_service(kind: str) -> None:
     """See that there is a service of this type on this machine. Raises KindError."""
     if not any((pathlib.Path(share) / _srv(*kind.split("/"))).is_file() for share in SHARES):
         raise KindError(_absent("service", kind, "srv"), is_type=True)
