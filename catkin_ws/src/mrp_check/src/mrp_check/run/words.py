@@ -30,8 +30,13 @@ def fields_text(message: Mapping[str, object], without: str = "nothing") -> str:
 
 
 def last_words(lines: Iterable[str]) -> str:
-    """Return the last line that says something, without its time; or an empty text."""
+    """Return the last line that says something, without its time; or an empty text.
+
+    What ROS_BREAK() adds is the place in ROS's own source: what it broke off for stands before.
+    """
     lines = [line for line in lines if PREFIX.sub("", line).strip()]
+    broken = next((n for n, line in enumerate(lines) if "BREAKPOINT HIT" in line), None)
+    lines = lines[:broken] or lines
     return PREFIX.sub(r"\g<level>: ", lines[-1]).strip()[:300] if lines else ""
 
 
