@@ -80,8 +80,9 @@ def test_ways_are_measured_in_turns(core, tmp_path):
 
 @pytest.mark.slow
 def test_program_that_fails_is_an_error(monkeypatch, tmp_path):
-    monkeypatch.setitem(WAYS, "fails", Way("fails", "bench_raw", "bench_raw"))
-    with pytest.raises(running.ProgramError, match="expected exit code 0, found 2 of bench_raw"):
+    # It knows none of the parameters.
+    monkeypatch.setitem(WAYS, "fails", Way("fails", "bench.py", "bench.py"))
+    with pytest.raises(running.ProgramError, match="expected exit code 0, found 2 of bench.py"):
         running.measure("fails", Stream(8, 0, 1), tmp_path / "log")
 
 
