@@ -14,14 +14,14 @@ mrp_check/defects/. Its fields:
     General: yes                   right for any name, where other entries need a certain one
     Ros: yes                       other programs print this, too: only right if the text shows ROS
     Try: rostopic list             the commands that make ROS print it
-    Launch: <launch><nod/></launch>
-                                   or a launch file that roslaunch is given; Python: a script, Cpp:
-                                   for g++, CMake: the last lines of a CMakeLists.txt
+    Launch: <launch><nod/></launch>   or a file with which roslaunch prints it; Python has a script,
+                                   Cpp what g++ reads, CMake what follows project() in a
+                                   CMakeLists.txt (and find_package(catkin), if it needs a package)
     Needs: master                  what they need, of: a master; roscpp's headers; the manifest of a
                                    package; a robot, a package with a node; docker, an engine
 
 There may be several fields Shows and Also, and several files. A line of Shows that begins with
-"12| " or "13| " is from one Debian release. tests/test_why.py runs Try, or gives each file to its
+"12| " or "13| " is from one Debian release. tests/test_why.py runs Try, gives each file to its
 program, and compares Shows with what is printed.
 """
 
@@ -44,7 +44,7 @@ FILES = {
     "Launch": ("a.launch", "roslaunch -p $PORT a.launch"),
 }
 _PROJECT = "cmake_minimum_required(VERSION 3.10)\nproject(a C)\n"
-_OF_CATKIN = "find_package(catkin REQUIRED)\n"
+_FIND_CATKIN = "find_package(catkin REQUIRED)\n"
 REQUIRED, TEXTS = ("Shows", "Why", "Fix"), ("Shows", "Also")
 SEVERAL = (*TEXTS, *FILES)
 FIELDS = (*REQUIRED, "Also", "Page", "Above", "General", "Ros", "Needs", "Try", *FILES)
@@ -105,18 +105,18 @@ def _entry(name, theme, found, **more):
     once = {field: values[0] for field, values in found.items() if field not in SEVERAL}
     texts = {field.lower(): tuple(map(_dedent, found.get(field, ()))) for field in TEXTS}
     plain = {field.lower(): " ".join(once[field].split()) for field in once if field != "Try"}
-    commands = once.get("Try") or _commands(found, plain.get("needs", ""))
+    commands = once.get("Try", "") + _commands(found, plain.get("needs", ""))
     return Entry(name=name, theme=theme, try_=commands, **texts, **plain, **more)
 
 
 def _commands(found, needs):
     """Return the commands that write each file of an entry, and give it to its program."""
+    project = _PROJECT + (_FIND_CATKIN if "package" in needs.split() else "")
     commands = ""
     for field, (path, command) in FILES.items():
-        above = _PROJECT if field == "CMake" else ""
-        above += _OF_CATKIN if above and "package" in needs.split() else ""
+        above = project if field == "CMake" else ""
         for text in found.get(field, ()):
-            commands += f"cat > {path} << 'END'\n{above}{text}\nEND\n{command}\n"
+            commands += f"\ncat > {path} << 'END'\n{above}{text}\nEND\n{command}"
     return commands
 
 
