@@ -8,6 +8,7 @@ from mrp_check.code import python_read
 from mrp_check.package.cmake import parsed
 from mrp_check.rules.code import (
     callbacks,
+    goals,
     ignored,
     not_called,
     python_names,
@@ -19,6 +20,8 @@ from one_source import case, lines_of
 pytestmark = pytest.mark.quick
 
 START = "rospy.init_node('a')"
+SERVER = "s = actionlib.SimpleActionServer('a', A, work, auto_start=False)\ns.start()"
+WORK = "def work(goal):\n    for i in range(9):\n        "
 
 
 def test_a_first_line_without_its_slash(tmp_path):
@@ -62,6 +65,11 @@ rospy.Subscriber('b', String, a.see)
         (not_called, f"def f():\n    {START}\nif __name__ == '__main__':\n    f()", []),
         (not_called, f"def ask():\n    rospy.spin()\n{START}\nrospy.spin()", []),
         (typed, "if sys.argv[1] > 3:\n    pass", [4]),
+        (goals, f"{WORK}rospy.sleep(1)\n{SERVER}", [5]),
+        (goals, f"{WORK}rospy.sleep(s.is_preempt_requested())\n{SERVER}", []),
+        (goals, f"{WORK}print(i)\n{SERVER}", []),
+        (goals, f"def work(goal):\n    rospy.sleep(0.1)\n{SERVER}", []),
+        (goals, f"{SERVER.replace(', work', '')}", []),
         (ignored, WAITS, [4]),
         (ignored, "c.wait_for_server()", []),
         (ignored, f"if not {WAITS}:\n    sys.exit(1)", []),
@@ -74,7 +82,7 @@ rospy.Subscriber('b', String, a.see)
         (python_names, "import numpy as np\na = np.int64(3), np.linalg.norm", []),
         (python_names, "import time\na = time.clock()", [5]),
     ],
-    ids=range(16),
+    ids=range(21),
 )
 def test_what_beginners_write(rule, lines, found, tmp_path):
     assert lines_of(rule, case(tmp_path, "py", lines)) == found

@@ -8,7 +8,7 @@ import pytest
 from mrp_check.code.facts import Facts
 from mrp_check.confined import cpp_headers
 from mrp_check.confined.places import Kind
-from mrp_check.rules.code import homes, ignored
+from mrp_check.rules.code import goals, homes, ignored
 
 pytestmark = [pytest.mark.quick, pytest.mark.xdist_group("check_places")]
 
@@ -41,7 +41,7 @@ struct Doer
   void act(const actionlib::TestGoalConstPtr& goal)
   {
     ros::Rate rate(2);
-    for (int i = 0; i < 12; ++i)  // loop
+    for (int i = 0; i < 12; ++i)  // goal loop, loop
     {
       rate.sleep();
     }
@@ -123,7 +123,7 @@ LOOKED_AT = set(Kind) - {
     *(Kind.INIT, Kind.FUNCTION, Kind.HANDLE, Kind.SUBSCRIBER, Kind.SLEEP, Kind.SPIN, Kind.TIMER),
     *(Kind.STEP, Kind.COUNTER, Kind.EXIT, Kind.WAITS),
 }
-RULES = homes, ignored
+RULES = goals, homes, ignored
 
 
 def findings(package, facts):

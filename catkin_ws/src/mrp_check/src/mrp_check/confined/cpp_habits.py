@@ -12,6 +12,7 @@ from mrp_check.confined.places import ELSEWHERE, HOME, Kind
 
 SLEEPS = {"sleep", "usleep", "nanosleep", "sleep_for", "sleep_until"}
 _ASKS_TO_END = {"ok", "isShuttingDown", "isStarted", "exit", "_exit", "abort"}
+_ASKS_TO_CANCEL = {"isPreemptRequested", "setPreempted", "registerPreemptCallback"}
 # The last part of a name -> what a program does that names it.
 _NAMES = {
     "program_options": Kind.ARGUMENTS,
@@ -88,6 +89,11 @@ class Habits(Unit):
         is_deaf = not leaves and not asks
         endless = "endless" if is_deaf and self.is_endless(loop) else None
         self.add(loop, Kind.LOOP, endless, end=loop.extent.end.line)
+        function = self.function(loop)
+        if function is not None and {"publishFeedback", "sleep"} & called:
+            ends = "setSucceeded" in self.calls(function.walk_preorder())
+            if ends and not _ASKS_TO_CANCEL & self.all_calls:
+                self.add(loop, Kind.GOAL_LOOP)
 
     def asks(self, call: Cursor) -> bool:
         """Return whether a function of the package's own is called, which may ask for it."""

@@ -46,6 +46,7 @@ class Kind(enum.Enum):
     STARTS = "starts"  # a process
     KILLS = "kills"  # a process
     # What may go wrong:
+    GOAL_LOOP = "goal loop"  # of an action's server, which does not ask whether it is cancelled
     IGNORED = "ignored"  # what a call returns that can fail
     KEYBOARD = "keyboard"  # somebody has to type
     ARGUMENTS = "arguments"  # of the command line are read

@@ -11,6 +11,7 @@ from __future__ import annotations
 from mrp_check.contract.requirements import ANY
 from mrp_check.rules.code import (
     callbacks,
+    goals,
     homes,
     ignored,
     lifetime,
@@ -92,6 +93,7 @@ _FILES = (
     counter,
     homes,
     same_name,
+    goals,
     ignored,
     # build
     pylint,
