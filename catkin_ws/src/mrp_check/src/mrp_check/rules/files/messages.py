@@ -153,7 +153,7 @@ def _definition(
     """Yield a finding for each field that a message lacks, or that half of a service."""
     kind = "service" if path.endswith(".srv") else "message"
     name = last_part(path)[:-4]
-    expected = "; ".join(f"{kind} {field}" for field, kind in fields.items())
+    expected = "; ".join(f"{type_} {field}" for field, type_ in fields.items())
     if path not in package.files:
         near = nearest(path, package.of_kind(kind))
         yield Finding(
@@ -173,18 +173,18 @@ def _definition(
         words = text.split("#")[0].split()
         if part == half and len(words) == 2 and "=" not in text:
             seen[words[1]] = (words[0], number)
-    for field, kind in fields.items():
-        if field not in seen or seen[field][0] != kind:
+    for field, type_ in fields.items():
+        if field not in seen or seen[field][0] != type_:
             near = nearest(field, seen, 0.5)
             number = seen[field][1] if field in seen else seen[near][1] if near else 1
             yield Finding(
                 "messages",
-                f"The {kind} {name} has no field '{kind} {field}'.",
+                f"The {kind} {name} has no field '{type_} {field}'.",
                 path,
                 number,
-                expected=f"{kind} {field}",
+                expected=f"{type_} {field}",
                 seen=package.line(path, number) or "nothing",
-                fix=f"Write the line: {kind} {field}",
+                fix=f"Write the line: {type_} {field}",
             )
 
 
