@@ -39,8 +39,9 @@ def findings(case: Case) -> Iterator[Finding]:
 
 def _has_ended(direct: Alone) -> bool:
     """Return whether a node ended by itself on Ctrl-C, though perhaps not cleanly."""
-    is_killed = direct.stopped_in is None or (direct.code or 0) < 0
-    return not is_killed or _is_interrupted(direct)
+    if direct.stopped_in is None:
+        return False
+    return (direct.code or 0) >= 0 or _is_interrupted(direct)
 
 
 def _is_interrupted(direct: Alone) -> bool:
