@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Callbacks that rospy cannot call, or that return nothing where rospy needs a response.
+"""What rospy and actionlib are given: callbacks that they cannot call, or that return nothing where
+a response is needed; a number for a timer's period; an action server that nothing starts.
 
 Of other wrong calls, Python says the same when it gets there.
 """
@@ -34,7 +35,8 @@ class Calls(PythonRule):
         extra = argument(node, 3, "callback_args")
         more = 0 if extra is None or self.source.value(extra) is None else 1
         callback = argument(node, 2, "callback")
-        yield from self._callback(callback, 1 + more, "rospy.Subscriber", "a message")
+        given = "a message and callback_args" if more else "a message"
+        yield from self._callback(callback, 1 + more, "rospy.Subscriber", given)
 
     def _timer(self, node: ast.Call) -> Iterator[Finding]:
         period = argument(node, 0, "period")
@@ -127,10 +129,11 @@ class Calls(PythonRule):
         is_too_many = gets > most and not takes.vararg
         if is_too_many or gets < least or None in takes.kw_defaults:
             name, s = getattr(function, "name", "the lambda"), "s" if count > 1 else ""
+            own = max(0, (most if is_too_many else least) - bound)
             yield self.finding(
                 "callbacks",
                 f"{taker}() calls {name}() with {given}, but {name}() takes"
-                f" {_count(max(0, least - bound), 'argument')}. Each call raises a TypeError.",
+                f" {_count(own, 'argument')}. Each call raises a TypeError.",
                 function,
                 certainty=CERTAIN,
                 expected=f"{count} parameter{s}" + (" besides self" if bound else ""),
