@@ -56,9 +56,11 @@ def test_unbalanced_brace_is_found_by_the_indentation():
             " std_msgs::UInt32_<std::allocator<void> >’ discards qualifiers",
             "a std_msgs::UInt32& that isn't const",
         ),
+        ("expected ‘;’ before ‘int’", "a semicolon is missing in it, before int."),
+        ("expected ‘;’ after class definition", "the class that ends here needs a semicolon"),
         ("something that nobody has seen before", "something that nobody has seen before"),
     ],
-    ids=range(8),
+    ids=range(10),
 )
 def test_compilers_errors_in_plain_words(error, says, tmp_path):
     package = check_rules.make(tmp_path / "src" / "some_pkg", src__a_DOT_cpp=CPP)

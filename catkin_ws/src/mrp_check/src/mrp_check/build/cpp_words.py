@@ -75,11 +75,18 @@ def _as_said(text: str) -> Words:
 
 def _semicolon(error: Error) -> Words:
     before = error.match.group(1)
+    line, change = _end_of_statement(error.lines, error.problem.line, before)
+    where = "in it" if before and line is None else "at its end"
     return Words(
-        "a semicolon is missing at its end" + (f", before {before}." if before else "."),
+        f"a semicolon is missing {where}" + (f", before {before}." if before else "."),
         "Add ; at the end of the statement.",
-        *_end_of_statement(error.lines, error.problem.line, before),
+        line,
+        change,
     )
+
+
+def _end_of_class(error: Error) -> Words:
+    return Words("the class that ends here needs a semicolon.", "Write }; for }.")
 
 
 def _end_of_statement(
@@ -289,6 +296,7 @@ _WORDS: Sequence[tuple[str, Callable[[Error], Words], str]] = (
     ),
     (r"expected ';'(?: before '?([^']+?)'?(?: token)?)?$", _semicolon, "expected-semicolon"),
     (r"expected ',' or ';'(?: before '?([^']+?)'?(?: token)?)?", _semicolon, "expected-semicolon"),
+    (r"expected ';' after (?:class|struct|union) definition", _end_of_class, "expected-semicolon"),
     (
         r"a function-definition is not allowed here|qualified-id in declaration",
         _function_definition,
