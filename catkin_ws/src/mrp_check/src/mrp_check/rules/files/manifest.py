@@ -26,12 +26,14 @@ def _findings(case: Case) -> Iterator[Finding]:
             FILE,
             # Where it belongs: at the first of the dependencies.
             package.find_line(FILE, "depend>", package.find_line(FILE, "<package", 1)),
-            expected="<buildtool_depend>catkin</buildtool_depend>",
+            expected="a package for ROS 1"
+            if ros_2
+            else "<buildtool_depend>catkin</buildtool_depend>",
             seen=", ".join(d.name for d in manifest.buildtool_depends) or "no buildtool_depend",
             fix="Take its version for ROS 1, if there is one."
             if ros_2
             else "Add the line <buildtool_depend>catkin</buildtool_depend>.",
-            why="" if ros_2 else "buildtool-missing",
+            why="package-of-ros2" if ros_2 else "buildtool-missing",
         )
     if manifest and "TODO" in manifest.licenses:
         yield _no_licence(case)
