@@ -222,6 +222,14 @@ def test_the_class_of_an_error_ends_a_traceback(line, kind, tmp_path):
     assert found == (kind and (("src/a.py", 3), kind, line.partition(": ")[2]))
 
 
+def test_a_callback_with_too_few_parameters_is_the_nodes_own(tmp_path):
+    package = check_rules.make(tmp_path, src__a_DOT_py="def hear():", src__b_DOT_py="\ndef hear():")
+    workspace = types.SimpleNamespace(package=package, package_folder=tmp_path)
+    places = Places(workspace, Facts(sources={"b": ["src/b.py"]}), Observed())
+    text = "TypeError: hear() takes 0 positional arguments but 1 was given"
+    assert places.wrong_arguments("b", [text])[0] == ("src/b.py", 2)
+
+
 def test_what_a_node_throws_is_read_from_its_words():
     said = "terminate called after throwing an instance of 'boost::wrapexcept<boost::lock_error>'"
     assert blame.of_lines([said], -6).kind == "lock_error"
@@ -295,7 +303,7 @@ def test_what_dies_only_under_a_launch_file(alone, logs, says):
     places.traceback = lambda lines: next(
         ((("src/a.cpp", 1), line, "no") for line in lines if line in raised), None
     )
-    places.wrong_arguments = lambda lines: None
+    places.wrong_arguments = lambda node, lines: None
     node = types.SimpleNamespace(name="a", direct=alone, places=places, console=[], errors=list)
     node.not_up = [said] if alone.ended_after else []
     node.seen_alone = types.SimpleNamespace(subscriptions=[])
@@ -313,11 +321,19 @@ def test_what_dies_only_under_a_launch_file(alone, logs, says):
     assert all(starts.weigh_start(case, node, finding) == (not found) for finding in node.not_up)
 
 
-@pytest.mark.parametrize(("code", "found"), [(0, WARNING), (1, WARNING), (-11, ERROR)])
-def test_what_ends_with_an_error_has_ended(code, found):
+@pytest.mark.parametrize(
+    ("stopped_in", "code", "found"),
+    [(0.1, 0, WARNING), (0.1, 1, WARNING), (0.1, -11, ERROR), (None, None, ERROR)],
+)
+def test_what_ends_with_an_error_has_ended(stopped_in, code, found):
+    """What another thread says of Ctrl-C ends no node."""
     raised = ("a.py", 1), "AttributeError", "port"
     of = {"of": lambda *_: ("a.py", 1), "traceback": lambda lines: raised, "facts": Facts()}
-    direct = Alone(asked=1.0, stopped_in=0.1, code=code, name="/a", lines=[])
+    of.update(
+        observed=Observed(), stack=lambda lines: None, waits_in_rospys_end=lambda lines: False
+    )
+    lines = [] if stopped_in else [(1.5, "err", "KeyboardInterrupt")]
+    direct = Alone(asked=1.0, stopped_in=stopped_in, code=code, name="/a", lines=lines)
     node = types.SimpleNamespace(name="a", direct=direct, places=types.SimpleNamespace(**of))
     node.finding = lambda id_, message, place, **more: Finding(id_, message, *place, **more)
     spec = types.SimpleNamespace(is_contract=False, shutdown=Shutdown(seconds=5))

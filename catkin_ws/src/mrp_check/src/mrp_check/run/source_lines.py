@@ -186,13 +186,16 @@ class Places:
                     inside = False
         return found
 
-    def wrong_arguments(self, lines: Iterable[str]) -> tuple[Line, str] | None:
+    def wrong_arguments(self, node: str, lines: Iterable[str]) -> tuple[Line, str] | None:
         """Return (place of the function, text) of a call of one of the package's own functions with
-        too many or too few arguments, though no line of the package made it; or None."""
+        too many or too few arguments, though no line of the package made it; or None.
+
+        The node's own files come first: others may have a function of that name, too.
+        """
         for text in lines:
             found = _ARGUMENTS.match(text.strip())
             if found:
-                for file in self.package.of_kind("python"):
+                for file in (*self.sources(node), *self.package.of_kind("python")):
                     line = self.package.find_line(file, f"def {found['name']}(")
                     if line:
                         return (file, line), found["text"]

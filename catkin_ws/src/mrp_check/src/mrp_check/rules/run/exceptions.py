@@ -40,7 +40,7 @@ def _raised(case: Case, launched: Launched) -> dict[str, Traceback]:
     for path, name in launched.nodes.items():
         lines = [line for log in launched.logs(path) for line in log.text.split("\n")]
         found = case.places.traceback(lines)
-        called = case.places.wrong_arguments(lines)
+        called = case.places.wrong_arguments(name, lines)
         if found:
             raised[name] = found
         elif called:
@@ -98,7 +98,9 @@ def _died(case: Case, launched: Launched, name: str, code: int) -> Finding:
 def _findings(case: Case) -> Iterator[Finding]:
     for node in case.nodes.values():
         found = None if node.not_up else case.places.traceback(node.errors())
-        called = None if node.not_up or found else case.places.wrong_arguments(node.errors())
+        called = None
+        if not node.not_up and not found:
+            called = case.places.wrong_arguments(node.name, node.errors())
         if found:
             yield _error(case, node.name, found)
         elif called:
