@@ -40,7 +40,7 @@ check "ruff format" $tools/ruff format --check --no-cache --config catkin_ws/pyp
 # What another program looks at by its name: expat, roslaunch, prompt_toolkit, and the confinement's watcher. What a
 # defect's head says is read by the tests and by the pages.
 check "vulture" $tools/vulture catkin_ws/src/mrp_check/{src,scripts} catkin_ws/tools/{doctor,why}.py \
-  --ignore-names '*Handler,ignore_unset_args,cpu,open_files,file_size,erratum,breaks,fails,says,finds,tells,missed,why,ttimeoutlen,supported'
+  --ignore-names '*Handler,ignore_unset_args,cpu,open_files,file_size,erratum,breaks,fails,says,finds,tells,why,ttimeoutlen,supported'
 check "mypy" $tools/mypy --no-error-summary --cache-dir $lint/mypy --config-file catkin_ws/pyproject.toml \
   --package mrp_check
 # The nodes as an editor sees them: without an error, and with one if a message's field is misspelt.

@@ -12,7 +12,6 @@ The head of a patch says what it breaks, and who must find that:
     In: src/a.py: def .*        the file and its line of the finding (a regular expression),
     Tells: colon                and what the finding says (a regular expression)
     Severity: warning           of the finding, if it is only a warning
-    Missed: WHY                 the checker is known not to find it
     Order: 7                    its number, if it is an exercise,
     Kind: fix                   what the student does: see KINDS,
     Task: # A title             what the student reads first,
@@ -62,7 +61,6 @@ class Defect:
     places: tuple[tuple[str, str], ...] = ()  # each a file, and a pattern of a line in it
     tells: str = ""
     severity: str = "error"
-    missed: str = ""
     order: int = 0
     kind: str = ""
     task: str = ""
