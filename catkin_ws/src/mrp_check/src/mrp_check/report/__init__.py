@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A verdict.Report as text: for the console, as JSON, as JUnit XML and as a page."""
+"""A verdict.Report as text: for the console, a page, GitHub, and as JSON, JUnit XML and SARIF."""

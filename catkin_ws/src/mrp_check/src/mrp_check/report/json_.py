@@ -56,7 +56,7 @@ def keep(file, value):
 
 def keep_text(file, text):
     """Write a text into a file, whole or not at all."""
-    new = file.with_suffix(".new")
+    new = file.with_name(f"{file.name}.new")
     new.write_text(text, encoding="utf-8")
     new.rename(file)
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What a call returns that can fail is looked at: a client goes on as if a server had answered.
+"""A client looks at what a call that can fail returns, and doesn't go on as if it had succeeded.
 
 https://docs.ros.org/en/noetic/api/roscpp/html/classros_1_1ServiceClient.html
 https://docs.ros.org/en/noetic/api/actionlib/html/classactionlib_1_1SimpleActionClient.html
