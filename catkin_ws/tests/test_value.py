@@ -23,7 +23,6 @@ pytestmark = pytest.mark.slow
         ("one.talker.latch", "true"),
         ("word(len(one.nodes))", "two"),
         ("rosmaster.DEFAULT_MASTER_PORT", "11311"),
-        ("times.rows[0].size", "8"),
     ],
 )
 def test_value_is_taken_from_where_it_is_defined(tmp_path, expression, expected):
@@ -43,20 +42,17 @@ def test_what_has_no_value_is_an_error(tmp_path, expression):
 
 
 def sources(folder):
-    """Return value.Sources of a folder with a launch file and a recording."""
+    """Return value.Sources of a folder with a launch file."""
     import value
 
     launch = folder / "mrp_labs" / "launch" / "one.launch"
-    recording = folder / "mrp" / "doc" / "recorded" / "times.json"
-    for path in (launch, recording):
-        path.parent.mkdir(parents=True)
+    launch.parent.mkdir(parents=True)
     launch.write_text(
         '<launch><arg name="queue_size" default="4"/><group ns="a">'
         '<param name="~queue_size" value="$(arg queue_size)"/>'
         '<node name="talker"><param name="period" value="0.5"/>'
         '<param name="latch" value="true"/></node></group><node name="listener"/></launch>'
     )
-    recording.write_text('{"rows": [{"size": 8}]}')
     return value.Sources(folder)
 
 
