@@ -89,7 +89,6 @@ BROKEN = {
         *(NODES[1], NODES[1].replace("/>", '><arg name="a" value="1"/></node>')),
         *([("launch-file", 5)], "unrecognized 'arg' child tag"),
     ),
-    "text_between": (NODES[1], f"/{NODES[1]}", [("launch-file", 5)], "between the tags"),
     "unknown_element": ("  <arg name", "  <prameter/>\n  <arg name", [("launch-file", 2)], "param"),
 }
 

@@ -110,8 +110,8 @@ def test_first_exercise_at_a_terminal(tmp_path, env):
         "SyntaxError: '(' was never",
         "Not yet: 1",
     )
-    assert "A bracket is opened there" not in terminal.text
-    terminal.press("e", "A bracket is opened there", "  page:     file:///")
+    assert "Python can't read src" not in terminal.text
+    terminal.press("e", "Python can't read src", "  page:     file:///")
     terminal.press("e", "press e and I'll explain.")
     terminal.press("h", "Hint", "Count the parentheses")
     terminal.press("s", "You'll see the solution when you've passed.")
