@@ -76,8 +76,8 @@ def class_(folder):
 @pytest.fixture(scope="module")
 def rows(class_):
     """student -> the row of the table."""
-    said = class_.check("--csv", "marks.csv")
-    assert (class_.folder / "marks.csv").is_file(), said
+    output = class_.check("--csv", "marks.csv")
+    assert (class_.folder / "marks.csv").is_file(), output
     with open(class_.folder / "marks.csv") as file:
         return {row["submission"]: row for row in csv.DictReader(file)}
 

@@ -36,11 +36,11 @@ def checkout(tmp_path_factory):
 def dev(checkout):
     """The words that run a command in the started container."""
     # Its log is on stderr, and one line of JSON on stdout.
-    said = subprocess.run(
+    output = subprocess.run(
         [CLI, "up", "--workspace-folder", checkout], stdout=subprocess.PIPE, text=True
     ).stdout
-    started = json.loads(said.splitlines()[-1])
-    assert started["outcome"] == "success", said
+    started = json.loads(output.splitlines()[-1])
+    assert started["outcome"] == "success", output
     assert started["remoteUser"] == "ros"
     image = inspect(started["containerId"])["Config"]["Image"]
     with removed(started["containerId"]):

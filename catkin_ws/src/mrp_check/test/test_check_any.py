@@ -122,9 +122,9 @@ def test_no_contract_is_written_from_a_package_that_does_not_work(
     monkeypatch.chdir(tmp_path)
     with pytest.raises(SystemExit) as ended:
         command.main(["--write-contract", "some_pkg"])
-    said = capsys.readouterr().err.splitlines()[-1]
+    line = capsys.readouterr().err.splitlines()[-1]
     assert ended.value.code == 2
-    assert said.startswith(f"check: no contract was written, because {says}"), said
+    assert line.startswith(f"check: no contract was written, because {says}"), line
     assert [path.name for path in tmp_path.iterdir()] == ["some_pkg"]
     if has_cmake:
         assert checked(folder).isolation == sandbox.isolation_text("CMake and the compiler")

@@ -74,7 +74,7 @@ def test_compilers_errors_in_plain_words(error, says, tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("said", "found"),
+    ("texts", "found"),
     [
         (["no member named 'range'"], [1]),
         (["has no member named 'range'", "expected ')'", "'a' was not declared"], [1, 2]),
@@ -86,9 +86,9 @@ def test_compilers_errors_in_plain_words(error, says, tmp_path):
     ],
     ids=range(7),
 )
-def test_an_error_that_no_other_follows_from_hides_none(said, found, tmp_path):
+def test_an_error_that_no_other_follows_from_hides_none(texts, found, tmp_path):
     package = check_rules.make(tmp_path / "some_pkg", src__a_DOT_cpp="C b;\na;\na;\n")
-    lines = [f"{package.root}/src/a.cpp:{n}:1: error: {text}" for n, text in enumerate(said, 1)]
+    lines = [f"{package.root}/src/a.cpp:{n}:1: error: {text}" for n, text in enumerate(texts, 1)]
     assert [problem.line for problem in compiler.problems("\n".join(lines), package.root)] == found
 
 
@@ -116,7 +116,7 @@ def test_error_in_a_header_of_ros_is_where_the_package_uses_it(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("said", "words"),
+    ("template", "words"),
     [
         (
             "CMake Error at /usr/share/catkin/cmake/catkin_package.cmake:302 (message):\n"
@@ -137,9 +137,9 @@ def test_error_in_a_header_of_ros_is_where_the_package_uses_it(tmp_path):
     ],
     ids=range(3),
 )
-def test_what_cmake_says_in_plain_words(said, words, tmp_path):
+def test_what_cmake_says_in_plain_words(template, words, tmp_path):
     package = check_rules.make(tmp_path / "some_pkg")
-    output, model = said.format(root=package.root), check_rules.model_of(package)
+    output, model = template.format(root=package.root), check_rules.model_of(package)
     found = configuring.finding(package, output, package.root, model)
     assert (found.file, found.line) == ("CMakeLists.txt", 4)
     assert words in found.message + found.fix + found.seen and "the page" not in found.fix
@@ -150,19 +150,19 @@ def test_package_that_this_machine_has_not_is_not_the_students_fault(tmp_path):
         tmp_path,
         package_DOT_xml=MANIFEST.replace("</package>", "<depend>cv_bridge</depend></package>"),
     )
-    said = 'Could not find a package configuration file provided by "{}" with any of'
-    assert stubs.absent(package, said.format("cv_bridge")) == "cv_bridge"
+    template = 'Could not find a package configuration file provided by "{}" with any of'
+    assert stubs.absent(package, template.format("cv_bridge")) == "cv_bridge"
     # Nobody asks for this one, and that one is misspelt.
-    assert stubs.absent(package, said.format("tf2")) is None
-    assert stubs.absent(package, said.format("rospyy")) is None
+    assert stubs.absent(package, template.format("tf2")) is None
+    assert stubs.absent(package, template.format("rospyy")) is None
     # Without a contract, CMakeLists.txt may ask for more.
-    assert stubs.absent(package, said.format("tf2"), is_contract=False) == "tf2"
-    assert stubs.absent(package, said.format("nav_msgs"), is_contract=False) == "nav_msgs"
-    assert stubs.absent(package, said.format("rospyy"), is_contract=False) is None
+    assert stubs.absent(package, template.format("tf2"), is_contract=False) == "tf2"
+    assert stubs.absent(package, template.format("nav_msgs"), is_contract=False) == "nav_msgs"
+    assert stubs.absent(package, template.format("rospyy"), is_contract=False) is None
 
 
 def test_definitions_that_this_machine_has_not_are_not_the_students_fault(tmp_path, monkeypatch):
-    said = "Cannot locate message [{}] in package [{}] with paths [['/usr/share/x/msg']]"
+    template = "Cannot locate message [{}] in package [{}] with paths [['/usr/share/x/msg']]"
     for name, files in (("some_msgs", ()), ("own_msgs", ("Num.msg",))):
         (tmp_path / name).mkdir()
         (tmp_path / name / "package.xml").touch()
@@ -173,9 +173,9 @@ def test_definitions_that_this_machine_has_not_are_not_the_students_fault(tmp_pa
     monkeypatch.setattr(configuring.uses, "SHARES", (tmp_path,))
     configuring.uses.is_installed.cache_clear()
     without = configuring.without_definitions
-    assert without(said.format("Goal", "some_msgs")) == "some_msgs"
-    assert without(said.format("Nun", "own_msgs")) is None
-    assert without(said.format("Goal", "sone_msgs")) is None
+    assert without(template.format("Goal", "some_msgs")) == "some_msgs"
+    assert without(template.format("Nun", "own_msgs")) is None
+    assert without(template.format("Goal", "sone_msgs")) is None
     configuring.uses.is_installed.cache_clear()
 
 
@@ -188,7 +188,7 @@ def test_a_header_that_this_machine_has_not_is_no_misspelt_one(tmp_path, monkeyp
 
 
 @pytest.mark.parametrize(
-    ("line", "text", "said"),
+    ("line", "text", "expected"),
     [
         ("ROS_INF0(x);", "‘ROS_INF0’ was not declared in this scope", "Did you mean ROS_INFO?"),
         ("bind(f, _1);", "‘_1’ was not declared in this scope", "only in boost::placeholders"),
@@ -198,11 +198,11 @@ def test_a_header_that_this_machine_has_not_is_no_misspelt_one(tmp_path, monkeyp
     ],
     ids=range(5),
 )
-def test_the_compilers_error_has_another_cause(line, text, said, tmp_path):
+def test_the_compilers_error_has_another_cause(line, text, expected, tmp_path):
     source = f"#include <ros/ros.h>\n{line}\n"
     files = {"srv__Go_DOT_srv": "---\n", "cfg__Speed_DOT_cfg": ""}
     package = check_rules.make(tmp_path, src__a_DOT_cpp=source, **files)
-    assert said in cpp_words.of(package, cpp_words.Problem("src/a.cpp", 2, text, "")).said
+    assert expected in cpp_words.of(package, cpp_words.Problem("src/a.cpp", 2, text, "")).said
 
 
 def test_a_copy_keeps_a_header_from_being_made(tmp_path):

@@ -139,10 +139,10 @@ def test_the_same_is_told_once():
 
 def test_last_words_have_no_time():
     """They are the same in each run."""
-    said = ["[ INFO] [1795624487.418407537]: yes", "[ERROR] [1795624487.5, 3.2]: no", ""]
-    assert words.last_words(said) == "ERROR: no"
+    lines = ["[ INFO] [1795624487.418407537]: yes", "[ERROR] [1795624487.5, 3.2]: no", ""]
+    assert words.last_words(lines) == "ERROR: no"
     broken = ["[FATAL] [1.5]: BREAKPOINT HIT", "\tfile = node_handle.cpp", "\tline=157"]
-    assert words.last_words([*said, *broken]) == "ERROR: no"
+    assert words.last_words([*lines, *broken]) == "ERROR: no"
 
 
 def test_a_node_may_end_before_it_gets_to_an_undefined_name():

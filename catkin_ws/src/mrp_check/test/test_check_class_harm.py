@@ -198,10 +198,10 @@ def test_a_hostile_class_harms_nobody(tmp_path, monkeypatch, quiet, port):
     monkeypatch.setenv("HOME", str(home))
     monkeypatch.setenv("TMPDIR", str(scratch))
     before = state(home), state(uploads)
-    _, said, rows = checked(uploads, "--timeout", "60")
+    _, stderr, rows = checked(uploads, "--timeout", "60")
     wait_until(lambda: not processes_with(str(tmp_path)), "nothing of it runs")
-    assert {row["submission"] for row in rows if row not in quiet} == names, said
-    assert [row for row in rows if row["submission"] not in names] == quiet, said
+    assert {row["submission"] for row in rows if row not in quiet} == names, stderr
+    assert [row for row in rows if row["submission"] not in names] == quiet, stderr
     assert not [row for row in rows if row["submission"] in names and row["verdict"] == "met"]
     assert (state(home), state(uploads)) == before
     assert [*scratch.iterdir()] == []

@@ -48,13 +48,13 @@ def second():
 
 
 def checked(folder, *options):
-    """Check a class; return the exit code, what was said, and the rows of the table."""
+    """Check a class; return the exit code, its stderr, and the rows of the table."""
     table = folder.with_name("table.csv")
     with command("--class", folder, "--csv", table, *SPEC, *options) as checker:
-        _, said = checker.communicate()
-    assert "Traceback" not in said
+        _, stderr = checker.communicate()
+    assert "Traceback" not in stderr
     rows = list(csv.DictReader(table.read_text().splitlines())) if table.is_file() else []
-    return checker.returncode, said, rows
+    return checker.returncode, stderr, rows
 
 
 def worker_of(text, workers):
@@ -130,10 +130,10 @@ def test_a_worker_that_hangs_takes_no_marks(tmp_path, monkeypatch, second):
         with command("--class", tmp_path / "class", *options) as checker:
             stopped = wait_until(lambda: worker_of(second, workers), "one checks it")
             os.kill(stopped.pid, signal.SIGSTOP)
-            _, said = checker.communicate()
+            _, stderr = checker.communicate()
         stopped.stop(signal.SIGKILL)
         rows = list(csv.DictReader((tmp_path / "table.csv").read_text().splitlines()))
-    assert [row["verdict"] for row in rows] == ["met"], said
+    assert [row["verdict"] for row in rows] == ["met"], stderr
 
 
 def test_when_all_workers_are_gone_it_says_so_and_waits(tmp_path, second):
@@ -153,16 +153,16 @@ def test_when_all_workers_are_gone_it_says_so_and_waits(tmp_path, second):
             "check: There's a worker again: the checks continue.",
         ]
 
-        def said():
+        def lines():
             return [line for line in checker.errors if "worker" in line]
 
         with Process(*map(str, asked), "--scheduler", address) as checker:
             checker.wait_for(lambda: worker_of(second, workers), "one checks")
             for process in workers:
                 process.stop(signal.SIGKILL)
-            checker.wait_for(lambda: said() == expected[:1], "it says that there is none")
+            checker.wait_for(lambda: lines() == expected[:1], "it says that there is none")
             with worker(address, tmp_path):
-                assert (checker.wait(), said()) == (1, expected), str(checker)
+                assert (checker.wait(), lines()) == (1, expected), str(checker)
     wait_until(lambda: not processes_with(second), "what the killed workers ran has ended")
 
 
@@ -176,10 +176,10 @@ def test_a_submission_that_kills_its_workers_is_named(tmp_path, monkeypatch):
     for name in ("anna", "killer", "zoe"):
         hand_in(tmp_path / "class", name)
     with cluster(tmp_path, workers=3, **without_checks(tmp_path)) as (_, address, workers):
-        _, said, rows = checked(tmp_path / "class", "--scheduler", address)
+        _, stderr, rows = checked(tmp_path / "class", "--scheduler", address)
         assert sum(worker.code is not None for worker in workers) == 2
     found = {row["submission"]: row["verdict"] for row in rows}
-    assert found == {"anna": "met", "killer": "unchecked", "zoe": "met"}, said
+    assert found == {"anna": "met", "killer": "unchecked", "zoe": "met"}, stderr
     assert rows[1]["why"].startswith("Each worker to which it was given died or was lost.")
 
 
@@ -190,17 +190,17 @@ def test_a_scheduler_that_dies_loses_nothing(tmp_path, second):
         with command("--class", tmp_path / "class", *SPEC, "--scheduler", address) as checker:
             wait_until(lambda: worker_of(second, workers), "the worker checks the second one")
             scheduler.stop(signal.SIGKILL)
-            _, said = checker.communicate()
+            _, stderr = checker.communicate()
         wait_until(lambda: not processes_with(second), "what the worker ran has ended")
-    assert checker.returncode == 2, said
-    assert "Traceback" not in said
-    assert said.splitlines()[-1] == (
+    assert checker.returncode == 2, stderr
+    assert "Traceback" not in stderr
+    assert stderr.splitlines()[-1] == (
         f"check: The scheduler at {address} has ended, or can't be reached anymore. What has been"
         " checked is kept: start it and its workers, and call the same command again."
     )
     with cluster(tmp_path, workers=1) as (_, address, _):
-        code, said, rows = checked(tmp_path / "class", "--scheduler", address)
-    assert "anna: findings, as before" in said
+        code, stderr, rows = checked(tmp_path / "class", "--scheduler", address)
+    assert "anna: findings, as before" in stderr
     assert [row["verdict"] for row in rows] == ["findings", "findings"]
 
 
@@ -210,12 +210,12 @@ def test_a_signal_ends_what_runs_on_the_workers(tmp_path, second):
         with command("--class", tmp_path / "class", *SPEC, "--scheduler", address) as checker:
             wait_until(lambda: worker_of(second, workers), "the worker checks it")
             checker.send_signal(signal.SIGINT)
-            _, said = checker.communicate()
+            _, stderr = checker.communicate()
         wait_until(lambda: not processes_with(second), "nothing of it runs")
         assert workers[0].code is None
     assert checker.returncode == 1
-    assert "Traceback" not in said
-    assert said.splitlines()[-1] == "check: stopped early; everything it started has ended, too."
+    assert "Traceback" not in stderr
+    assert stderr.splitlines()[-1] == "check: stopped early; everything it started has ended, too."
 
 
 def test_a_worker_with_another_checker_refuses(tmp_path):
@@ -227,34 +227,34 @@ def test_a_worker_with_another_checker_refuses(tmp_path):
         file.write("# another\n")
     env = {"PYTHONPATH": str(own / "src")}
     with cluster(tmp_path, workers=1, **env) as (_, address, _):
-        code, said, rows = checked(tmp_path / "class", "--scheduler", address)
+        code, stderr, rows = checked(tmp_path / "class", "--scheduler", address)
     assert (code, rows) == (2, [])
     expected = (
         "The worker at tcp://.* has another version of the checker. Install the one of this"
         " machine there, and start the worker again."
     )
-    assert re.fullmatch(f"check: {expected}", said.splitlines()[-1])
+    assert re.fullmatch(f"check: {expected}", stderr.splitlines()[-1])
 
 
 def test_an_address_without_a_scheduler_or_a_worker(tmp_path, monkeypatch):
     monkeypatch.setenv("DASK_DISTRIBUTED__COMM__TIMEOUTS__CONNECT", "1s")
     hand_in(tmp_path / "class", "anna")
-    code, said, _ = checked(tmp_path / "class", "--scheduler", "tcp://127.0.0.1:1")
+    code, stderr, _ = checked(tmp_path / "class", "--scheduler", "tcp://127.0.0.1:1")
     expected = "check: There's no Dask scheduler at tcp://127.0.0.1:1: expected one that"
-    assert (code, said.count("\n")) == (2, 1)
-    assert said.startswith(f"{expected} dask-scheduler has started. It says: OSError: Timed out")
+    assert (code, stderr.count("\n")) == (2, 1)
+    assert stderr.startswith(f"{expected} dask-scheduler has started. It says: OSError: Timed out")
     with cluster(tmp_path, workers=0) as (_, address, _):
-        code, said, _ = checked(tmp_path / "class", "--scheduler", address)
-    assert (code, said) == (2, f"{NO_WORKER.format(address)}\n")
+        code, stderr, _ = checked(tmp_path / "class", "--scheduler", address)
+    assert (code, stderr) == (2, f"{NO_WORKER.format(address)}\n")
 
 
 def test_without_dask_the_package_is_named(tmp_path, monkeypatch):
     (tmp_path / "dask.py").write_text("raise ImportError\n")
     monkeypatch.syspath_prepend(tmp_path)
     hand_in(tmp_path / "class", "anna")
-    code, said, _ = checked(tmp_path / "class", "--scheduler", "tcp://127.0.0.1:1")
+    code, stderr, _ = checked(tmp_path / "class", "--scheduler", "tcp://127.0.0.1:1")
     assert code == 2
-    assert said == (
+    assert stderr == (
         "check: --scheduler needs Dask, which this machine doesn't have. Install it: sudo apt"
         " install python3-distributed.\n"
     )
@@ -285,5 +285,5 @@ def test_with_tls_only_who_has_the_certificate_sends_work(tmp_path, monkeypatch)
             assert checked(tmp_path / "class", "--scheduler", to)[0] == 2
         assert not (tmp_path / "class.checked").exists()
         monkeypatch.setenv("DASK_CONFIG", own)
-        _, said, rows = checked(tmp_path / "class", "--scheduler", address)
-    assert [row["verdict"] for row in rows] == ["met"], said
+        _, stderr, rows = checked(tmp_path / "class", "--scheduler", address)
+    assert [row["verdict"] for row in rows] == ["met"], stderr

@@ -99,7 +99,7 @@ def test_a_contract_replaces_no_file(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("arguments", "said"),
+    ("arguments", "expected"),
     [
         (("--class", "/no/such/folder"), "There's no folder /no/such/folder"),
         (("--class", "/", "--json", "x"), "--json goes without --class"),
@@ -110,22 +110,22 @@ def test_a_contract_replaces_no_file(tmp_path):
     ],
     ids=range(6),
 )
-def test_a_wrong_option_is_exit_code_2(arguments, said):
+def test_a_wrong_option_is_exit_code_2(arguments, expected):
     done = run(*arguments)
     assert done.returncode == 2
-    assert said in done.stderr
+    assert expected in done.stderr
     assert "Traceback" not in done.stderr
 
 
 @pytest.mark.parametrize(
-    ("arguments", "said"),
+    ("arguments", "expected"),
     [
         ("", "check '' --any --junit '/results/a/mrp_check.xml'"),
         ("SPEC relay", "check '' --spec 'relay' --junit '/results/a/mrp_check.xml'"),
         ("relay", "takes SPEC alone; found: relay"),
     ],
 )
-def test_the_macro_s_contract_is_the_command_s(arguments, said, tmp_path):
+def test_the_macro_s_contract_is_the_command_s(arguments, expected, tmp_path):
     """In a catkin that does no more than print."""
     (tmp_path / "a.cmake").write_text(
         "set(CATKIN_TEST_RESULTS_DIR /results)\nset(PROJECT_NAME a)\n"
@@ -134,4 +134,4 @@ def test_the_macro_s_contract_is_the_command_s(arguments, said, tmp_path):
         f"mrp_check_add_test({arguments})\n"
     )
     done = subprocess.run(["cmake", "-P", tmp_path / "a.cmake"], capture_output=True, text=True)
-    assert said in done.stderr.replace("\n", " ")
+    assert expected in done.stderr.replace("\n", " ")

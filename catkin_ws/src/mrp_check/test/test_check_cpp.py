@@ -30,10 +30,10 @@ def headers(tmp_path_factory):
 def findings(folder, headers, node, source):
     """Return what the rules say of a node of the tutorial that is made of a source."""
     package = check_rules.make(folder, src__a_DOT_cpp=source)
-    said = said_by_clang(folder, headers)
-    assert said.errors == []
+    result = said_by_clang(folder, headers)
+    assert result.errors == []
     facts = facts_.Facts()
-    reading.mark_unused(facts, reading.take(facts, "src/a.cpp", said))
+    reading.mark_unused(facts, reading.take(facts, "src/a.cpp", result))
     facts.sources[node] = ["src/a.cpp"]
     model = check_rules.model_of(package)
     return check_rules.node_findings(package, model, facts)
@@ -151,10 +151,10 @@ def test_a_source_may_be_in_any_encoding(tmp_path, headers):
 
 def test_headers_that_do_not_fit_are_read_again(tmp_path, headers):
     check_rules.make(tmp_path, src__a_DOT_cpp=SOURCES[PUBLISHER])
-    said = said_by_clang(tmp_path, headers)
-    assert {place.kind for place in said.places} >= {Kind.PUBLISHER, Kind.LOG, Kind.STEP}
-    assert said_by_clang(tmp_path, headers, ("-std=gnu++20",)) == said
-    assert said_by_clang(tmp_path, tmp_path / "no_such_file") == said
+    result = said_by_clang(tmp_path, headers)
+    assert {place.kind for place in result.places} >= {Kind.PUBLISHER, Kind.LOG, Kind.STEP}
+    assert said_by_clang(tmp_path, headers, ("-std=gnu++20",)) == result
+    assert said_by_clang(tmp_path, tmp_path / "no_such_file") == result
 
 
 def test_headers_are_kept_until_others_are_installed(tmp_path, headers, monkeypatch):

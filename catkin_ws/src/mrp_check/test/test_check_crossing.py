@@ -24,7 +24,7 @@ def test_what_is_written_is_read(value):
 
 
 @pytest.mark.parametrize(
-    ("old", "new", "said"),
+    ("old", "new", "expected"),
     [
         ('{"folder"', "{folder", "Expected Hook as JSON; found none: "),
         ('"/folder"', "5", "Hook.folder: expected str; found '5'."),
@@ -34,12 +34,12 @@ def test_what_is_written_is_read(value):
         ('"events": "/events", ', "", "Hook: expected a whole Hook; "),
     ],
 )
-def test_what_is_not_as_expected_is_an_error_that_names_the_place(old, new, said):
+def test_what_is_not_as_expected_is_an_error_that_names_the_place(old, new, expected):
     text = crossing.to_json(HOOK)
     assert old in text
     with pytest.raises(crossing.CrossingError) as error:
         crossing.from_json(plans.Hook, text.replace(old, new))
-    assert said in str(error.value)
+    assert expected in str(error.value)
 
 
 def test_kinds_are_those_that_there_are():

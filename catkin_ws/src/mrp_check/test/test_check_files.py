@@ -124,8 +124,8 @@ def test_a_dependency_of_a_launch_file_or_of_python_2_is_named(files, name, tmp_
     package = check_rules.make(tmp_path, **files)
     without = dataclasses.replace(check_rules.PUB_SUB, is_contract=False)
     found = file_findings(dependencies, package, spec=without)
-    said = [f.message for f in found if f.severity == "warning"]
-    assert len(said) == bool(name) and all(f"doesn't name {name}" in text for text in said)
+    texts = [f.message for f in found if f.severity == "warning"]
+    assert len(texts) == bool(name) and all(f"doesn't name {name}" in text for text in texts)
 
 
 def test_what_a_launch_file_and_a_source_use_is_one_finding(tmp_path):
@@ -133,8 +133,8 @@ def test_what_a_launch_file_and_a_source_use_is_one_finding(tmp_path):
     files = {"launch__a_DOT_launch": launch, "src__b_DOT_py": "import tf\n"}
     package = check_rules.make(tmp_path, **files)
     without = dataclasses.replace(check_rules.PUB_SUB, is_contract=False)
-    (said,) = [finding.message for finding in file_findings(dependencies, package, spec=without)]
-    assert "tf (used in" in said and "turtlesim (used in" in said
+    (message,) = [finding.message for finding in file_findings(dependencies, package, spec=without)]
+    assert "tf (used in" in message and "turtlesim (used in" in message
 
 
 def test_comment_uses_nothing(tmp_path):
@@ -323,15 +323,15 @@ def test_what_others_made_is_named_in_the_manifest(line, named, found, tmp_path,
         src__own_DOT_py="",
         package_DOT_xml=check_rules.MANIFEST.replace("std_msgs", named),
     )
-    said = [f.expected for f in file_findings(dependencies, package, dependencies.undeclared)]
-    assert said == [f"<depend>{found}</depend> in package.xml"] * bool(found)
+    entries = [f.expected for f in file_findings(dependencies, package, dependencies.undeclared)]
+    assert entries == [f"<depend>{found}</depend> in package.xml"] * bool(found)
 
 
 @pytest.mark.parametrize(("header", "found"), [("yaml-cpp/yaml.h", [1]), ("vector", [])])
 def test_a_library_is_named_in_the_manifest(header, found, tmp_path):
     package = check_rules.make(tmp_path / "some_pkg", src__a_DOT_cpp=f"#include <{header}>\n")
-    said = file_findings(dependencies, package, dependencies.undeclared)
-    assert [finding.line for finding in said] == found
+    findings = file_findings(dependencies, package, dependencies.undeclared)
+    assert [finding.line for finding in findings] == found
 
 
 # CMake 3.25 warns of what is older than 2.8.12, CMake 3.31 of what is older than 3.10.
@@ -348,8 +348,8 @@ def test_cmakelists_is_not_of_an_old_cmake(version, release, found, tmp_path, mo
     monkeypatch.setattr(releases, "here", lambda: release)
     text_ = MADE_BY_CMAKE.replace("3.10", version)
     package = check_rules.make(tmp_path, CMakeLists_DOT_txt=text_)
-    said = file_findings(cmake_rule, package, spec=SPEC)
-    assert [finding.severity for finding in said] == found
+    findings = file_findings(cmake_rule, package, spec=SPEC)
+    assert [finding.severity for finding in findings] == found
 
 
 @pytest.mark.parametrize(
@@ -364,8 +364,8 @@ def test_cmakelists_is_not_of_an_old_cmake(version, release, found, tmp_path, mo
 def test_a_script_hides_the_module_that_it_imports(line, found, tmp_path):
     text = f"#!/usr/bin/env python3\n{line}\nimport rospy\nrospy.init_node('a')\n"
     package = check_rules.make(tmp_path / "some_pkg", scripts__some_pkg_DOT_py=text)
-    said = check_rules.file_findings(scripts, package, spec=SPEC)
-    assert [finding.line for finding in said if "own folder" in finding.message] == [2] * len(found)
+    findings = check_rules.file_findings(scripts, package, spec=SPEC)
+    assert [f.line for f in findings if "own folder" in f.message] == [2] * len(found)
 
 
 @pytest.mark.parametrize(
@@ -382,10 +382,10 @@ def test_a_standard_of_cpp_that_newer_headers_do_not_take(line, found, tmp_path)
     known.package_folder = known.package.root
     known.built = types.SimpleNamespace(ok=True, output="")
     assert lines_of(compile, known) == found
-    said = (
+    output = (
         "a.h:1:2: error: #error This file requires compiler support for the ISO C++ 2011 standard"
     )
-    known.built.output = said
+    known.built.output = output
     assert lines_of(compile, known) == []  # it is said as an error where the compiler says so
 
 
@@ -420,8 +420,8 @@ def test_a_definition_of_which_no_code_is_made(source, severity, tmp_path):
     ids=range(4),
 )
 def test_a_module_of_python_2(lines, found, tmp_path):
-    said = check_rules.python_findings(tmp_path, f"{lines}\n")
-    assert [finding.expected for finding in said if "Python 2" in finding.message] == found
+    findings = check_rules.python_findings(tmp_path, f"{lines}\n")
+    assert [finding.expected for finding in findings if "Python 2" in finding.message] == found
 
 
 SCRIPT = "#!/usr/bin/env {}\nimport rospy\nrospy.init_node('a')\n"

@@ -141,8 +141,8 @@ def test_nodes_may_be_in_an_included_file(program, found, tmp_path):
     nodes = "".join(NODES)
     inner = f"<launch>\n{nodes.replace('subscriber_py_node.py', program)}</launch>\n"
     text = LAUNCH.replace(nodes, '<include file="$(find some_pkg)/launch/nodes.launch"/>\n')
-    said = findings(tmp_path, text, launch__nodes_DOT_launch=inner)
-    assert [(finding.id, finding.file, finding.line) for finding in said] == found
+    actual = findings(tmp_path, text, launch__nodes_DOT_launch=inner)
+    assert [(finding.id, finding.file, finding.line) for finding in actual] == found
 
 
 @pytest.mark.quick
@@ -181,5 +181,5 @@ def test_a_node_of_this_package_that_another_one_is_asked_for(package, type_, fo
 def test_what_went_with_noetic(line, found, tmp_path):
     text = f"<launch>\n{line}\n</launch>\n"
     made = check_rules.make(tmp_path, launch__a_DOT_launch=text)
-    said = check_rules.file_findings(launch_nodes, made, launch_nodes.gone)
-    assert [(finding.severity, finding.line) for finding in said] == found
+    actual = check_rules.file_findings(launch_nodes, made, launch_nodes.gone)
+    assert [(finding.severity, finding.line) for finding in actual] == found

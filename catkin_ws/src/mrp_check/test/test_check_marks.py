@@ -42,8 +42,8 @@ def test_a_person_s_marks_stand_apart_from_what_was_measured(tmp_path):
         "zoe": most - 2,
     }
     assert {float(row["points"]) for row in rows} == {most - 2}
-    said = ["33.5 (2 days late)", "30 (She showed it, in the lab.)", ""]
-    assert [row["by_hand"] for row in rows] == said
+    expected = ["33.5 (2 days late)", "30 (She showed it, in the lab.)", ""]
+    assert [row["by_hand"] for row in rows] == expected
     page = Tags(class_table.html_text(results, CONTRACT, tmp_path))
     assert page.tags.count("td") == len(results) * (5 + len(ASKED))
     assert {*rows[1].values()} & {*page.texts} >= {rows[1]["by_hand"], "30"}

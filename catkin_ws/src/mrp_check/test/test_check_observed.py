@@ -91,8 +91,8 @@ def test_each_received_value_is_logged_once(tmp_path):
 def test_a_fault_of_the_observer_is_no_finding(tmp_path, monkeypatch):
     folder = make_package(tmp_path / "lab_pkg", {"right": ("", "")}, {})
     monkeypatch.setattr(planning, "ENOUGH_LAUNCHED", 0.5)
-    said = r"The observer itself failed: .*\.enough: expected int; found '0.5'"
-    with pytest.raises(CannotCheck, match=said):
+    message = r"The observer itself failed: .*\.enough: expected int; found '0.5'"
+    with pytest.raises(CannotCheck, match=message):
         findings_of(folder, spec_of(["right"], []), tmp_path / "scratch")
 
 
@@ -255,8 +255,8 @@ def test_a_publisher_that_waited_for_a_processor_is_not_slow(tmp_path, period, w
     is_slow = period * (1 - waited) > 0.55
     assert ("rate" in found) == is_slow
     is_open = period > 0.5 and not is_slow
-    said = "publisher_right was slow on a machine that's too busy to tell"
-    assert unseen == ({"rate": said} if is_open else {})
+    reason = "publisher_right was slow on a machine that's too busy to tell"
+    assert unseen == ({"rate": reason} if is_open else {})
 
 
 EVERY_SECOND = range(8)
@@ -348,7 +348,7 @@ with Observer():
 
 
 @pytest.mark.parametrize(
-    ("code", "said"),
+    ("code", "output"),
     [
         (_WHILE_OTHERS_REGISTER, "registered"),
         # One that waits for the master's answer cannot end: that was called its own fault.
@@ -359,10 +359,10 @@ with Observer():
     ],
     ids=["registered", "held", "parameters", "connected_twice"],
 )
-def test_the_observer_in_a_process_of_its_own(code, said):
+def test_the_observer_in_a_process_of_its_own(code, output):
     command = [sys.executable, "-c", code]
     done = subprocess.run(command, capture_output=True, text=True, timeout=60)
-    assert (done.stdout, done.returncode) == (f"{said}\n", 0), done.stderr
+    assert (done.stdout, done.returncode) == (f"{output}\n", 0), done.stderr
 
 
 _KNOCK = """\

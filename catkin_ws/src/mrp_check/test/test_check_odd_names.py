@@ -63,8 +63,8 @@ def test_a_file_of_such_a_name_is_left_out_and_said_once(tmp_path):
         os.makedirs(os.path.dirname(path), exist_ok=True)
         pathlib.Path(os.fsdecode(path)).touch()
     package = Package(tmp_path)
-    (said,) = (f for f in check_rules.file_findings(text, package) if f.severity == "warning")
-    assert "src/gr%FC%DFe.py, src/%FC/a.py" in said.message and said.id == "text"
+    (finding,) = (f for f in check_rules.file_findings(text, package) if f.severity == "warning")
+    assert "src/gr%FC%DFe.py, src/%FC/a.py" in finding.message and finding.id == "text"
     assert [file for file in package.files if file.startswith("src/")] == ["src/odd.py"]
 
 

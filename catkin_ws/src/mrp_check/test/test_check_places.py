@@ -108,9 +108,9 @@ int main(int argc, char** argv)
 
 def facts_of(folder, source):
     package = check_rules.make(folder / "some_pkg", src__a_DOT_cpp=source)
-    said = check_rules.said_by_clang(package.root, flags=(cpp_headers.STANDARD, "-w"))
-    assert said.errors == []
-    return package, Facts(said.places, {"a": ["src/a.cpp"]})
+    result = check_rules.said_by_clang(package.root, flags=(cpp_headers.STANDARD, "-w"))
+    assert result.errors == []
+    return package, Facts(result.places, {"a": ["src/a.cpp"]})
 
 
 def of_line(place):
@@ -138,14 +138,14 @@ def test_what_may_go_wrong_is_found_at_its_line(tmp_path):
     for place in facts.places:
         if place.kind in LOOKED_AT:
             found.setdefault(place.line, []).append(of_line(place))
-    said = {
+    notes = {
         number: line.partition("  // ")[2]
         for number, line in enumerate(source.splitlines(), 1)
         if "  // " in line
     }
-    assert {line: ", ".join(sorted(listed)) for line, listed in found.items()} == said
+    assert {line: ", ".join(sorted(listed)) for line, listed in found.items()} == notes
     right = "offers serves asks reads commands ends starts kills keyboard arguments loop".split()
-    lines = {number for number, text in said.items() if text.split()[0].strip(",") not in right}
+    lines = {number for number, text in notes.items() if text.split()[0].strip(",") not in right}
     assert {line for line, _ in findings(package, facts)} == lines
 
 

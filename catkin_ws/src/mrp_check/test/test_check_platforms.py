@@ -227,8 +227,8 @@ def test_worksheet_has_the_mark_with_what_was_set_by_hand():
     bea = dataclasses.replace(CLASS[1], by_hand=ByHand(7.5, "<b>"))
     (row,) = csv.DictReader(io.StringIO(moodle.text([bea], CONTRACT), newline=""))
     assert row["Grade"] == "7.5"
-    said = f"mark 7.5 of {class_table.most(CONTRACT):g}, by hand: 7.5 (&lt;b&gt;)"
-    assert said in row["Feedback comments"]
+    feedback = f"mark 7.5 of {class_table.most(CONTRACT):g}, by hand: 7.5 (&lt;b&gt;)"
+    assert feedback in row["Feedback comments"]
 
 
 def test_a_name_without_a_number_is_not_guessed():

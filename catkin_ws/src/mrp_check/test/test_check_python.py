@@ -115,8 +115,8 @@ def test_what_looks_like_it_is_not_flagged(old, new, tmp_path):
 def test_a_package_that_is_not_here(module, declared, found, tmp_path):
     text = replaced("import rospy\n", f"import rospy\nfrom {module}.srv import Go\n")
     manifest = check_rules.MANIFEST.replace("roscpp", declared)
-    said = check_rules.python_findings(tmp_path, text, package_DOT_xml=manifest)
-    assert [(finding.id, finding.certainty) for finding in said] == found
+    findings = check_rules.python_findings(tmp_path, text, package_DOT_xml=manifest)
+    assert [(finding.id, finding.certainty) for finding in findings] == found
 
 
 EXCEPT = "try:\n    pass\nexcept OSError{} e:\n    pass\n"
@@ -170,13 +170,13 @@ def test_facts_say_what_the_source_says(tmp_path):
     text = HEAD.replace('"publisher_py_node")', '"publisher_py_node", sys.argv, True)')
     _, facts = check_rules.python_facts_of(tmp_path, text)
     file = "src/odd.py"
-    said = {place.kind: place for place in facts.places}
-    assert said[Kind.INIT] == Place(file, 20, Kind.INIT, "publisher_py_node", anonymous=True)
+    places = {place.kind: place for place in facts.places}
+    assert places[Kind.INIT] == Place(file, 20, Kind.INIT, "publisher_py_node", anonymous=True)
     publisher = Place(file, 9, Kind.PUBLISHER, "great_topic", queue=10, queue_line=9)
-    assert said[Kind.PUBLISHER] == publisher
-    assert said[Kind.TIMER] == Place(file, 10, Kind.TIMER, period=0.5)
-    assert said[Kind.COUNTER] == Place(file, 8, Kind.COUNTER)
-    assert said[Kind.STEP].line == 16
+    assert places[Kind.PUBLISHER] == publisher
+    assert places[Kind.TIMER] == Place(file, 10, Kind.TIMER, period=0.5)
+    assert places[Kind.COUNTER] == Place(file, 8, Kind.COUNTER)
+    assert places[Kind.STEP].line == 16
 
 
 @pytest.mark.parametrize(
@@ -278,8 +278,8 @@ def test_a_name_of_python_2_is_found_where_nothing_asks_for_it(code, line, tmp_p
 )
 def test_a_name_that_python_lacks_is_certain_where_it_is_used(code, certainty, tmp_path):
     text = f"import rospy\nfrom std_msgs.msg import String\n{code}\n"
-    said = check_rules.python_findings(tmp_path, text)
-    found = [f.certainty for f in said if f.message.startswith("Nothing is called lost")]
+    findings = check_rules.python_findings(tmp_path, text)
+    found = [f.certainty for f in findings if f.message.startswith("Nothing is called lost")]
     assert found == [certainty]
 
 
@@ -296,8 +296,8 @@ def test_what_import_star_brings_is_known_of_messages_and_of_python(imports, nam
     package = {"msg__Tell_DOT_msg": "string text\n", "srv__Ask_DOT_srv": "---\n"}
     code = f"{imports}\nprint(AskRequest, Tell, String, sin)\n"
     found = check_rules.python_findings(tmp_path, code, **package)
-    said = [finding.message for finding in found if finding.message.startswith("Nothing is called")]
-    assert sorted(text.split()[3].rstrip(":") for text in said) == names
+    messages = [f.message for f in found if f.message.startswith("Nothing is called")]
+    assert sorted(text.split()[3].rstrip(":") for text in messages) == names
 
 
 @pytest.mark.parametrize(
@@ -362,9 +362,9 @@ def test_only_a_client_of_a_service_needs_no_init_node(call, found, tmp_path):
         for node in source_node.nodes(package, spec, model, None, known)
     ]
     rule = check_rules.node_start.RULE
-    said = [[*rule.findings(case)] for case in cases]
-    assert [[finding.id for finding in of_node] for of_node in said] == found
-    assert all('init_node("odd")' in f.fix for f in sum(said, []))  # a node's name has no dot
+    findings = [[*rule.findings(case)] for case in cases]
+    assert [[finding.id for finding in of_node] for of_node in findings] == found
+    assert all('init_node("odd")' in f.fix for f in sum(findings, []))  # a node's name has no dot
 
 
 @pytest.mark.parametrize(

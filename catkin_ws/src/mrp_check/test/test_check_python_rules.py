@@ -141,8 +141,8 @@ def test_what_answers_a_service_returns_a_response(body, severities, tmp_path):
     ids=range(9),
 )
 def test_what_is_typed_is_a_text(code, found, tmp_path):
-    said = check_rules.python_findings(tmp_path, f"import rospy\n{code}\n")
-    assert [(f.severity, f.line - 1) for f in said if f.severity != "note"] == found
+    findings = check_rules.python_findings(tmp_path, f"import rospy\n{code}\n")
+    assert [(f.severity, f.line - 1) for f in findings if f.severity != "note"] == found
 
 
 @pytest.mark.parametrize(

@@ -201,8 +201,8 @@ def test_sarif_says_why_it_could_not_be_checked():
     (run,) = sarif.data(REPORTS[2])["runs"]
     (invocation,) = run["invocations"]
     assert invocation["executionSuccessful"] is False
-    (said,) = invocation["toolExecutionNotifications"]
-    assert said["message"]["text"] == REPORTS[2].reason
+    (notification,) = invocation["toolExecutionNotifications"]
+    assert notification["message"]["text"] == REPORTS[2].reason
 
 
 def test_github_s_annotations_are_escaped_as_its_own_toolkit_does(repository):
@@ -263,19 +263,19 @@ DIGITS = "0123456789abcdefghij"
 
 def test_progress_is_one_line_of_a_terminal_and_whole_in_a_log(monkeypatch):
     monkeypatch.setenv("COLUMNS", "20")
-    for is_terminal, said in ((True, "\r\x1b[Kcheck: 0123456789ab"), (False, f"check: {DIGITS}\n")):
+    for is_terminal, line in ((True, "\r\x1b[Kcheck: 0123456789ab"), (False, f"check: {DIGITS}\n")):
         stream = io.StringIO()
         monkeypatch.setattr(stream, "isatty", lambda answer=is_terminal: answer)
         terminal.Progress(stream).show(DIGITS)
-        assert stream.getvalue() == said
+        assert stream.getvalue() == line
 
 
 @pytest.mark.parametrize("encoding, half", [("utf-8", "██████████"), ("ascii", "##########")])
 def test_progress_of_a_class_is_a_bar_on_a_terminal_and_a_number_in_a_log(encoding, half):
-    for is_terminal, said in ((True, f"|{half}          | 3/6, 00:00 left"), (False, "3 of 6:")):
+    for is_terminal, text in ((True, f"|{half}          | 3/6, 00:00 left"), (False, "3 of 6:")):
         file = io.BytesIO()
         stream = io.TextIOWrapper(file, encoding=encoding)
         stream.isatty = lambda answer=is_terminal: answer
         terminal.Progress(stream).show("anna: met", 3, 6)
         written = re.sub(r"\d\d:\d\d left", "00:00 left", file.getvalue().decode(encoding))
-        assert f"check: {said} anna: met" in written
+        assert f"check: {text} anna: met" in written

@@ -62,9 +62,9 @@ def test_two_programs_of_one_name(files, anonymous, found, tmp_path):
 
 def launched(file, topic, *names):
     """Return what was seen under a launch file, where hear subscribes to a topic."""
-    said = [Registration("/say", "/say/raw", "std_msgs/String", 1)]
+    published = [Registration("/say", "/say/raw", "std_msgs/String", 1)]
     heard = [Registration("/hear", topic, "std_msgs/String", 1)]
-    seen = types.SimpleNamespace(seen=Seen(publications=said, subscriptions=heard))
+    seen = types.SimpleNamespace(seen=Seen(publications=published, subscriptions=heard))
     return Launched(file, {f"/{name}": name for name in names}, seen)
 
 
@@ -99,9 +99,9 @@ def test_a_topic_of_another_name(topic, names, down, found):
         seen.nodes["/say"], down = "hear", []
     seen.seen.seen.publications[:] = [Registration("/say", "/say", "std_msgs/String", 1)]
     nodes = {"b": types.SimpleNamespace(is_up=not down)}
-    said = findings(meeting, [seen], nodes=nodes, facts=Facts(sources={"b": down}))
-    assert [f.severity for f in said] == found
-    assert [f for f in said if "first slash" in f.fix] == said * (topic == "/robot/say")
+    actual = findings(meeting, [seen], nodes=nodes, facts=Facts(sources={"b": down}))
+    assert [f.severity for f in actual] == found
+    assert [f for f in actual if "first slash" in f.fix] == actual * (topic == "/robot/say")
 
 
 @pytest.mark.parametrize(
@@ -115,10 +115,10 @@ def test_a_topic_of_another_name(topic, names, down, found):
 )
 def test_a_topic_of_several_types(file, others, found):
     types_ = ["std_msgs/Int8", *others]
-    said = [Registration(f"/say{n}", "/a", type_, 1) for n, type_ in enumerate(types_)]
+    published = [Registration(f"/say{n}", "/a", type_, 1) for n, type_ in enumerate(types_)]
     heard = [Registration("/hear", "/a", "std_msgs/String", 1)]
-    nodes = {"/hear": "hear", **{registration.node: "say" for registration in said}}
-    seen = types.SimpleNamespace(seen=Seen(publications=said, subscriptions=heard))
+    nodes = {"/hear": "hear", **{registration.node: "say" for registration in published}}
+    seen = types.SimpleNamespace(seen=Seen(publications=published, subscriptions=heard))
     assert severities(meeting, [Launched(file, nodes, seen)]) == found
 
 
@@ -132,10 +132,10 @@ def test_a_topic_of_several_types(file, others, found):
     ],
 )
 def test_a_node_that_gets_messages_and_calls_no_callback(asked, kinds, found):
-    said = [Registration("/say", "/talk", "std_msgs/String", 0)]
+    published = [Registration("/say", "/talk", "std_msgs/String", 0)]
     heard = [Registration("/hear", "/talk", "std_msgs/String", 0)]
     messages_ = [Message("/say", "/talk", {}, time / 10) for time in range(10 * asked)]
-    seen = Seen(publications=said, subscriptions=heard, messages=messages_)
+    seen = Seen(publications=published, subscriptions=heard, messages=messages_)
     result = LaunchResult("enough", asked, [], seen, uncalled=["/hear"])
     facts = Facts([Place("src/a.cpp", 2, kind) for kind in kinds], {"hear": ["src/a.cpp"]})
     launches = [Launched("", {"/hear": "hear"}, result)]
@@ -231,10 +231,10 @@ def test_a_callback_with_too_few_parameters_is_the_nodes_own(tmp_path):
 
 
 def test_what_a_node_throws_is_read_from_its_words():
-    said = "terminate called after throwing an instance of 'boost::wrapexcept<boost::lock_error>'"
-    assert blame.of_lines([said], -6).kind == "lock_error"
-    said = "terminate called after throwing an instance of 'ros::InvalidNameException'"
-    assert blame.of_lines(["[ERROR] no", said], -6).kind == "InvalidNameException"
+    line = "terminate called after throwing an instance of 'boost::wrapexcept<boost::lock_error>'"
+    assert blame.of_lines([line], -6).kind == "lock_error"
+    line = "terminate called after throwing an instance of 'ros::InvalidNameException'"
+    assert blame.of_lines(["[ERROR] no", line], -6).kind == "InvalidNameException"
     assert blame.of_lines(["terminate called without an active exception"], -6).kind == ""
 
 
@@ -273,9 +273,9 @@ def test_what_waits_for_messages_does_not_end(topic, calls, certainty):
     node = types.SimpleNamespace(name="a", direct=direct, places=places, seen_alone=heard)
     node.errors, node.console = list, []
     case = types.SimpleNamespace(package=PACKAGE, launches=[], built=True, observed=Observed())
-    said = Finding("spin", "a ends.", "src/a.cpp", 1, node="a")
-    starts.weigh_start(case, node, said)
-    assert said.certainty == certainty
+    finding = Finding("spin", "a ends.", "src/a.cpp", 1, node="a")
+    starts.weigh_start(case, node, finding)
+    assert finding.certainty == certainty
 
 
 @pytest.mark.parametrize(
@@ -296,7 +296,7 @@ def test_what_dies_only_under_a_launch_file(alone, logs, says):
     logged = [Log("/a", "ERROR", text, "", 0, 3) for text in logs]
     seen = LaunchResult("enough", 5, [(4, "out", died)], Seen(logs=logged))
     launches = [Launched("a.launch", {"/a": "a"}, seen)]
-    said = Finding("spin", "a ends.", "src/a.cpp", 1, node="a", fix="Call ros::spin().")
+    spin = Finding("spin", "a ends.", "src/a.cpp", 1, node="a", fix="Call ros::spin().")
     facts = Facts(sources={"a": []})
     places = types.SimpleNamespace(facts=facts, of=lambda *_: (None, 1), sources=list)
     raised = ("KeyboardInterrupt", "ValueError")
@@ -305,7 +305,7 @@ def test_what_dies_only_under_a_launch_file(alone, logs, says):
     )
     places.wrong_arguments = lambda node, lines: None
     node = types.SimpleNamespace(name="a", direct=alone, places=places, console=[], errors=list)
-    node.not_up = [said] if alone.ended_after else []
+    node.not_up = [spin] if alone.ended_after else []
     node.seen_alone = types.SimpleNamespace(subscriptions=[])
     known = {"facts": facts, "places": places, "built": True, "nodes": {"a": node}}
     known["observed"] = Observed(launches=launches)
@@ -338,8 +338,8 @@ def test_what_ends_with_an_error_has_ended(stopped_in, code, found):
     node.finding = lambda id_, message, place, **more: Finding(id_, message, *place, **more)
     spec = types.SimpleNamespace(is_contract=False, shutdown=Shutdown(seconds=5))
     case = types.SimpleNamespace(spec=spec, nodes={"a": node})
-    said = [*check_rules.of(exit.RULE, case, exit.findings)]
-    assert [f.severity for f in said] == [found]
+    actual = [*check_rules.of(exit.RULE, case, exit.findings)]
+    assert [f.severity for f in actual] == [found]
 
 
 NOT_THERE = "open: No such file or directory"
@@ -357,7 +357,7 @@ def test_a_parameter_that_is_set_under_another_name(asked_for, given, is_it):
 
 
 @pytest.mark.parametrize(
-    ("name", "text", "said"),
+    ("name", "text", "expected"),
     [
         ("msg/A.msg", "Header header\nint32[] x  # here\nint8 B=3\nC[2] c\nDGoal g\n", None),
         ("msg/A.msg", "std_msgs/String a\nnowhere_msgs/Thing b\n", None),
@@ -371,12 +371,12 @@ def test_a_parameter_that_is_set_under_another_name(asked_for, given, is_it):
     ],
     ids=range(9),
 )
-def test_ros_reads_each_line_of_a_definition(name, text, said, tmp_path):
+def test_ros_reads_each_line_of_a_definition(name, text, expected, tmp_path):
     files = {name: text, "msg/C.msg": "", "action/D.action": "---\n---\n"}
     made = {path.replace(".", "_DOT_"): content for path, content in files.items()}
     package = check_rules.make(tmp_path / "some_pkg", **made)
     model = types.SimpleNamespace(message_files={name})
     known = types.SimpleNamespace(package=package, model=model)
     found = [*check_rules.of(messages.RULE, known, messages.definitions)]
-    assert [(f.file, f.line) for f in found] == ([(name, 2)] if said else [])
-    assert all(said in f.message for f in found)
+    assert [(f.file, f.line) for f in found] == ([(name, 2)] if expected else [])
+    assert all(expected in f.message for f in found)

@@ -45,11 +45,11 @@ def test_the_same_nodes_without_a_fault(tmp_path):
 
 @pytest.mark.quick
 def test_a_line_is_linked_to_the_entry_that_answers_it(monkeypatch, tmp_path):
-    said = "Could not process inbound connection: topic types do not match: [a/B] vs. [c/D]{'x': 1}"
+    line = "Could not process inbound connection: topic types do not match: [a/B] vs. [c/D]{'x': 1}"
     logged.entries.cache_clear()
-    assert logged.answer(f"[WARN] [1795831174.7]: {said}") == "types-differ"
+    assert logged.answer(f"[WARN] [1795831174.7]: {line}") == "types-differ"
     assert logged.answer("Something that nobody has ever read.") == ""
     logged.entries.cache_clear()
     monkeypatch.setattr(logged, "ENTRIES", tmp_path)
-    assert logged.answer(said) == ""
+    assert logged.answer(line) == ""
     logged.entries.cache_clear()

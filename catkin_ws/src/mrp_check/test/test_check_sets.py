@@ -110,11 +110,11 @@ def assert_fixes_fit(findings, folder):
 def assert_one_defect(findings, defect, folder, severities=("error",)):
     """Raise AssertionError unless the defect is found, and nothing that does not follow from it."""
     causes = [f for f in findings if f["severity"] in severities and not f["consequence_of"]]
-    told = [cause for cause in causes if check_sets.is_found(cause, defect, folder)]
-    assert told, f"expected: {defect}\nfound:\n{shown(findings)}"
+    matches = [cause for cause in causes if check_sets.is_found(cause, defect, folder)]
+    assert matches, f"expected: {defect}\nfound:\n{shown(findings)}"
     if defect.why:
-        assert {cause["why"] for cause in told} == {defect.name.replace("_", "-")}
-    others = [cause for cause in causes if cause not in told]
+        assert {cause["why"] for cause in matches} == {defect.name.replace("_", "-")}
+    others = [cause for cause in causes if cause not in matches]
     assert not others, f"besides the defect:\n{shown(others)}"
 
 

@@ -102,9 +102,9 @@ def test_what_fails_in_another_package_is_not_this_ones_fault(folder, workspace)
     """One that this package is built with may need what isn't on this machine."""
     package = Package(workspace / "src" / "a_nodes")
     package.siblings = siblings.needed(package)
-    said = f"make[2]: *** [{folder}/CMakeFiles/a.dir/build.make:76: {folder}/a.o] Error 1\n"
-    said += f"make[1]: *** [CMakeFiles/Makefile2:1409: {folder}/CMakeFiles/a.dir/all] Error 2\n"
-    built = types.SimpleNamespace(ok=False, output=said, why_ended="")
+    output = f"make[2]: *** [{folder}/CMakeFiles/a.dir/build.make:76: {folder}/a.o] Error 1\n"
+    output += f"make[1]: *** [CMakeFiles/Makefile2:1409: {folder}/CMakeFiles/a.dir/all] Error 2\n"
+    built = types.SimpleNamespace(ok=False, output=output, why_ended="")
     case = check_rules.case_of(package, workspace / "scratch", built=built)
     try:
         found = [*compile.findings(case)]

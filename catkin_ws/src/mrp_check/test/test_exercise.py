@@ -88,7 +88,7 @@ def test_findings_about_the_same_line_are_shown_as_one(tmp_path, capsys, checked
 
 
 @pytest.mark.parametrize(
-    ("lines", "said"),
+    ("lines", "has_error"),
     [
         (
             ["Scanning", "/tmp/a/workspace/src/copy/src/a.cpp:3:1: error: expected ;", "  3 | int"],
@@ -97,9 +97,9 @@ def test_findings_about_the_same_line_are_shown_as_one(tmp_path, capsys, checked
         (["[100%] Built target a"], False),
     ],
 )
-def test_tools_own_words_name_the_students_file(tmp_path, lines, said):
+def test_tools_own_words_name_the_students_file(tmp_path, lines, has_error):
     report = check.Report("mrp", "", check.FINDINGS, [], {}, tools=lines)
-    expected = [f"{tmp_path}/src/a.cpp:3:1: error: expected ;", "  3 | int"] if said else []
+    expected = [f"{tmp_path}/src/a.cpp:3:1: error: expected ;", "  3 | int"] if has_error else []
     assert tool_output.lines_of(report, tmp_path) == expected
 
 
@@ -248,17 +248,17 @@ def test_the_solution_is_a_diff_that_solves_it(tmp_path, monkeypatch):
 
 
 @pytest.mark.parametrize(
-    ("arguments", "said"),
+    ("arguments", "expected"),
     [
         (["passed.txt"], "passed.txt: File exists."),
         (["mine"], "this needs a terminal. Without one, go step by step: make exercise"),
         ([], "the following arguments are required"),
     ],
 )
-def test_what_cannot_be_used_is_an_error_in_a_sentence(tmp_path, capsys, arguments, said):
+def test_what_cannot_be_used_is_an_error_in_a_sentence(tmp_path, capsys, arguments, expected):
     (tmp_path / "passed.txt").write_text("")
     with pytest.raises(SystemExit) as ended:
         learn.main([str(tmp_path / name) for name in arguments])
     assert ended.value.code == 2
     printed = capsys.readouterr().err
-    assert said in printed and "Traceback" not in printed
+    assert expected in printed and "Traceback" not in printed

@@ -180,8 +180,8 @@ def test_what_has_not_changed_is_not_built_again(tmp_path, monkeypatch, programs
     ids, ran, again = checked()
     assert (ids, builds(ran), {*again}) == ([], ["make"], {*first})
     append(cmake, "add_custom_target(own ALL COMMAND true)\n")
-    said = '<launch><param name="said" command="echo"/>'
-    launch.write_text(launch.read_text().replace("<launch>", said))
+    tags = '<launch><param name="said" command="echo"/>'
+    launch.write_text(launch.read_text().replace("<launch>", tags))
     ids, ran, _ = checked()
     assert (ids, builds(ran), "cpp_facts.py" in ran) == ([], ["catkin_make", "make"], True)
     append(script, "# Another line.\n")

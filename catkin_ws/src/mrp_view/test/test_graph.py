@@ -143,10 +143,10 @@ def test_log_and_viewer_are_hidden_unless_they_are_asked_for():
 
 
 @pytest.mark.parametrize(
-    "said", [{"hidden": 3}, {"hidden": [[], {}]}, {"rosout": "yes"}, {"rankdir": "}; quit"}]
+    "message", [{"hidden": 3}, {"hidden": [[], {}]}, {"rosout": "yes"}, {"rankdir": "}; quit"}]
 )
-def test_options_of_anything(said):
-    assert feed.options_of(said, "/mrp_view") == OPTIONS
+def test_options_of_anything(message):
+    assert feed.options_of(message, "/mrp_view") == OPTIONS
 
 
 def test_log_lines_after_a_number():

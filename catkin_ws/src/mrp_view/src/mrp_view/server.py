@@ -87,14 +87,14 @@ class Socket(_Guarded, tornado.websocket.WebSocketHandler):
 
     def on_message(self, message):
         try:
-            said = json.loads(message)
+            data = json.loads(message)
         except ValueError:
-            said = None
-        if not isinstance(said, dict):
+            data = None
+        if not isinstance(data, dict):
             self.close(4001, "expected a JSON object")
             return
         view = self.application.settings["view"]
-        self.options = feed.options_of(said, view.viewer)
+        self.options = feed.options_of(data, view.viewer)
         self.graph_sent = None
 
     def on_close(self):

@@ -94,8 +94,8 @@ def _is_other(problem: Problem, before: list[Problem], copy: pathlib.Path) -> bo
         return False
     lines = (copy / problem.file).read_text(errors="replace").splitlines()
     # What a line before was to declare, or names as well, is missing because of it.
-    told = " ".join(lines[earlier.line - 1] for earlier in before if 0 < earlier.line <= len(lines))
-    return not re.search(rf"\b{named['name'] or named['member']}\b", told)
+    text = " ".join(lines[earlier.line - 1] for earlier in before if 0 < earlier.line <= len(lines))
+    return not re.search(rf"\b{named['name'] or named['member']}\b", text)
 
 
 def is_no_header(problem: Problem) -> re.Match[str] | None:

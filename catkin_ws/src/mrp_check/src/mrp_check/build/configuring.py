@@ -39,7 +39,7 @@ def finding(package: Package, output: str, copy: pathlib.Path, model: Model) -> 
     undeclared = re.search(r"package '(\w+)' which must therefore be listed as a run dep", text)
     if undeclared:
         return _undeclared(package, undeclared.group(1), text)
-    (said, fix), why = _in_words(package, text, command, model)
+    (meaning, fix), why = _in_words(package, text, command, model)
     # An unknown command stands where it is called: what defines it is missing further up.
     if (
         "Unknown CMake command" in text
@@ -50,7 +50,7 @@ def finding(package: Package, output: str, copy: pathlib.Path, model: Model) -> 
     line = max(1, min(line, len(package.lines(file))))
     return Finding(
         "configure",
-        f"CMake stops at line {line} of {file}: {said}",
+        f"CMake stops at line {line} of {file}: {meaning}",
         file,
         line,
         expected="a CMakeLists.txt that CMake can follow",
@@ -141,8 +141,8 @@ def _unknown_command(package: Package, model: Model, match: re.Match[str], text:
             "Add find_package(catkin REQUIRED COMPONENTS ...).",
         )
     near = nearest(name.lower(), _COMMANDS)
-    said = f"there's no command {name}().{perhaps(near)}"
-    return said, f"Write {near}." if near else "Correct it."
+    meaning = f"there's no command {name}().{perhaps(near)}"
+    return meaning, f"Write {near}." if near else "Correct it."
 
 
 def _no_package(package: Package, model: Model, match: re.Match[str], text: str) -> _Said:
@@ -254,8 +254,8 @@ def _in_words(package: Package, text: str, command: str, model: Model) -> tuple[
     for of_command, shape, words, why in _WORDS:
         match = re.search(shape, text) if of_command in (None, command) else None
         if match:
-            said = words if isinstance(words, tuple) else words(package, model, match, text)
-            return said, why
+            advice = words if isinstance(words, tuple) else words(package, model, match, text)
+            return advice, why
     return (text[:300], "Compare the line with the one on the page."), ""
 
 

@@ -115,8 +115,8 @@ def _expected(error: Error) -> Words:
 
 def _brace(line: int, missing: str) -> Words:
     if missing == "}":
-        said = f"the brace {{ that is opened on line {line} is never closed."
-        return Words(said, "Add the missing }.", line)
+        sentence = f"the brace {{ that is opened on line {line} is never closed."
+        return Words(sentence, "Add the missing }.", line)
     return Words(f"the brace }} on line {line} closes nothing.", "Remove one }.", line)
 
 
@@ -124,8 +124,8 @@ def _function_definition(error: Error) -> Words:
     unbalanced = unbalanced_brace(error.lines)
     if unbalanced:
         return _brace(*unbalanced)
-    said = "a function begins inside another one: a closing brace } is missing above it."
-    return Words(said, "Add the missing }.")
+    sentence = "a function begins inside another one: a closing brace } is missing above it."
+    return Words(sentence, "Add the missing }.")
 
 
 # https://www.boost.org/doc/libs/1_73_0/libs/bind/doc/html/bind.html
@@ -145,8 +145,8 @@ def _undeclared(error: Error) -> Words:
     if re.fullmatch(r"_[1-9]", name):
         return Words(f"nothing is called {name} here: {_PLACEHOLDERS}", _BIND)
     if name in _MESSAGES:
-        said = f"nothing is called {name} here; the type is std_msgs::{name}."
-        return Words(said, f"Write std_msgs::{name}.", None, (name, f"std_msgs::{name}"))
+        sentence = f"nothing is called {name} here; the type is std_msgs::{name}."
+        return Words(sentence, f"Write std_msgs::{name}.", None, (name, f"std_msgs::{name}"))
     if re.fullmatch(r"u?int(8|16|32|64)_t", name):
         return _header(name, "cstdint")
     own = set(re.findall(r"\b[A-Za-z_]\w*\b", text)) - {name}
@@ -159,8 +159,8 @@ def _undeclared(error: Error) -> Words:
 
 
 def _header(name: str, header: str) -> Words:
-    said = f"{name} isn't known: the line #include <{header}> is missing."
-    return Words(said, f"Add #include <{header}>.")
+    sentence = f"{name} isn't known: the line #include <{header}> is missing."
+    return Words(sentence, f"Add #include <{header}>.")
 
 
 def _no_member(error: Error, owner_group: int = 1, member_group: int = 2) -> Words:
@@ -203,9 +203,9 @@ _CALLS = {
 
 def _no_match(error: Error) -> Words:
     called = error.match.group(1)
-    said = _CALLS.get(called.split("(")[0].split("::")[-1].split("<")[0])
+    sentence = _CALLS.get(called.split("(")[0].split("::")[-1].split("<")[0])
     return Words(
-        said or f"{called} is called with arguments that don't fit.",
+        sentence or f"{called} is called with arguments that don't fit.",
         "Compare the call with the one on the page.",
     )
 
@@ -221,8 +221,8 @@ def _missing_header(error: Error) -> Words:
         )
     newer = f"{header}pp"
     if uses.is_header(newer):
-        said = f"there's no header {header}: here it's called {newer}."
-        return Words(said, f"Write {newer}.", None, (header, newer))
+        sentence = f"there's no header {header}: here it's called {newer}."
+        return Words(sentence, f"Write {newer}.", None, (header, newer))
     if header.split("/")[0] != package.name:
         near = nearest(header, [f"std_msgs/{name}.h" for name in _MESSAGES] + ["ros/ros.h"], 0.7)
         fix = f"Write {near}." if near else "Correct the name, or install and declare its package."
@@ -270,9 +270,9 @@ def _not_const(error: Error) -> Words:
     )
 
 
-def _in_words(said: str, fix: str) -> Callable[[Error], Words]:
+def _in_words(template: str, fix: str) -> Callable[[Error], Words]:
     """Return the function of an Error that says this, with the groups of its shape."""
-    return lambda error: Words(said.format(*error.match.groups()), fix)
+    return lambda error: Words(template.format(*error.match.groups()), fix)
 
 
 _no_message = _in_words(

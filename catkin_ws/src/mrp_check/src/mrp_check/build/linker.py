@@ -16,7 +16,7 @@ _FAILED = re.compile(r"^make\S* \*\*\* \[.*?" + _TARGET.pattern, re.MULTILINE)
 
 def findings(package: Package, output: str, model: Model) -> Iterator[Finding]:
     """Yield a finding for each target that cannot be linked."""
-    said, target = set(), None
+    reported, target = set(), None
     lines = output.splitlines()
     for number, line in enumerate(lines):
         named = _TARGET.search(line)
@@ -24,12 +24,12 @@ def findings(package: Package, output: str, model: Model) -> Iterator[Finding]:
             # Only what make says next names the target: another one may be built beside it.
             named = _FAILED.search("\n".join(lines[number:]))
         target = named.group("target") if named else target
-        if target in said or target not in model.targets:
+        if target in reported or target not in model.targets:
             continue
         for shape, words in _WORDS:
             match = shape.search(line)
             if match:
-                said.add(target)
+                reported.add(target)
                 yield words(package, model, model.targets[target], match)
                 break
 

@@ -22,12 +22,12 @@ class Row(NamedTuple):
     why: str = ""
 
     def finding(
-        self, id_: str, package: Package, file: str, line: int | None, name: str, said: str
+        self, id_: str, package: Package, file: str, line: int | None, name: str, message: str
     ) -> Finding:
         """Return the Finding about a line; the tool's own words are what was seen.
 
         name: of the tool, and what it calls this
         """
-        seen = f"{package.line(file, line)}  ({said})" if line else said
+        seen = f"{package.line(file, line)}  ({message})" if line else message
         expected, place = f"nothing that {name}", (file, line, self.certainty)
         return Finding(id_, self.says, *place, expected, seen, self.fix, self.why)

@@ -50,9 +50,9 @@ def unpack(path: pathlib.Path, scratch: pathlib.Path) -> pathlib.Path:
     except confine.ConfineError as error:
         raise PackageError(f"{path.name} can't be unpacked: {error}.") from None
     if done.code != 0:
-        said = done.limit_text(limits) or (done.errors.strip().splitlines() or ["nothing"])[-1]
+        reason = done.limit_text(limits) or (done.errors.strip().splitlines() or ["nothing"])[-1]
         raise PackageError(
-            f"{path.name} can't be unpacked: {said}. Expected a zip, a tar, a tar.gz or a git"
+            f"{path.name} can't be unpacked: {reason}. Expected a zip, a tar, a tar.gz or a git"
             " bundle of the package, with little else in it."
         )
     return folder

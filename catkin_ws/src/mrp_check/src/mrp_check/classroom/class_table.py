@@ -173,5 +173,5 @@ def isolations(submissions):
 
 def said_of_mark(submission, spec):
     """Return a submission's mark, and what a person has set."""
-    said = f"mark {submission.mark(spec):g} of {most(spec):g}"
-    return f"{said}, by hand: {submission.by_hand}" if submission.by_hand else said
+    mark = f"mark {submission.mark(spec):g} of {most(spec):g}"
+    return f"{mark}, by hand: {submission.by_hand}" if submission.by_hand else mark

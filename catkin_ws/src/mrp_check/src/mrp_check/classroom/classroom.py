@@ -81,8 +81,8 @@ class Classroom:
             try:
                 for number, future in enumerate(concurrent.futures.as_completed(futures), 1):
                     result = future.result()
-                    said = f"{result.name}: {result.report['verdict']}{', as before' * result.kept}"
-                    self.progress(said, number, len(self.entries))
+                    text = f"{result.name}: {result.report['verdict']}{', as before' * result.kept}"
+                    self.progress(text, number, len(self.entries))
             except BaseException:  # such as Ctrl-C, or a cluster that is gone
                 for future in futures:
                     future.cancel()

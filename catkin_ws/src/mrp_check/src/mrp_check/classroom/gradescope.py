@@ -24,9 +24,9 @@ def text(report, spec):
 
 def _result(report, spec):
     shown = public(report, spec.hidden)
-    said = [terminal.summary(shown), report.reason, report.isolation]
+    texts = [terminal.summary(shown), report.reason, report.isolation]
     return {
-        "output": terminal.plain("\n".join(filter(None, said))),
+        "output": terminal.plain("\n".join(filter(None, texts))),
         "output_format": "text",
         "test_output_format": "text",
         "tests": [
@@ -37,14 +37,14 @@ def _result(report, spec):
 
 def _test(id_, report, spec):
     verdict = report.requirements[id_]
-    said = ["\n".join(terminal.finding_lines(f, report)) for f in report.findings if f.id == id_]
+    texts = ["\n".join(terminal.finding_lines(f, report)) for f in report.findings if f.id == id_]
     if verdict == UNCHECKED:
-        said.insert(0, f"It couldn't be checked{terminal.why_not(report, id_)}")
+        texts.insert(0, f"It couldn't be checked{terminal.why_not(report, id_)}")
     return {
         "name": f"{REQUIREMENTS[id_].title} ({id_})",
         "score": spec.points_of(id_) if verdict == MET else 0,
         "max_score": spec.points_of(id_),
         "status": "passed" if verdict == MET else "failed",
-        "output": terminal.plain("\n\n".join(said)),
+        "output": terminal.plain("\n\n".join(texts)),
         "visibility": "hidden" if id_ in spec.hidden else "visible",
     }

@@ -11,9 +11,9 @@ def text(submission, spec):
     """Return the text for the student of one submission."""
     report = submission.shown(spec)
     summary = terminal.summary(report)
-    said = terminal.text(report, is_sent=True) if report.requirements else summary
+    body = terminal.text(report, is_sent=True) if report.requirements else summary
     mark = f"{submission.name}: {class_table.said_of_mark(submission, spec)}"
-    return terminal.plain("\n".join([spec.title, mark, report.reason, said])) + "\n"
+    return terminal.plain("\n".join([spec.title, mark, report.reason, body])) + "\n"
 
 
 def write(folder, submissions, spec):

@@ -103,10 +103,10 @@ def mark(job: Job) -> tuple[dict, str]:
         home = os.path.expanduser("~")
         if os.path.isabs(home):
             env.setdefault("XDG_CACHE_HOME", os.path.join(home, ".cache"))
-        code, said = _run(job, command, env)
+        code, lines = _run(job, command, env)
         found = json_.kept(report)
         if not found:
-            raise CannotCheck(said[-1] if said else f"The check ended with {code}.")
+            raise CannotCheck(lines[-1] if lines else f"The check ended with {code}.")
         return found, page.read_text(encoding="utf-8")
 
 
@@ -137,7 +137,7 @@ def _run(job, command, env):
         _RUNNING[popen] = job.class_
     limit = job.timeout + _GRACE
     try:
-        said = popen.communicate(timeout=limit)[1]
+        stderr = popen.communicate(timeout=limit)[1]
     except subprocess.TimeoutExpired:
         _kill(popen)
         popen.communicate()
@@ -145,7 +145,7 @@ def _run(job, command, env):
     finally:
         with _LOCK:
             del _RUNNING[popen]
-    return popen.returncode, said.strip().splitlines()
+    return popen.returncode, stderr.strip().splitlines()
 
 
 def _kill(popen):

@@ -161,8 +161,8 @@ def say_how_apart(machines=None):
 
     machines: the Cluster, if it is not this machine
     """
-    said = machines.isolations if machines else {sandbox.isolation_text()}
-    for isolation in sorted(said - {sandbox.Isolation.NAMESPACES.value}):
+    isolations = machines.isolations if machines else {sandbox.isolation_text()}
+    for isolation in sorted(isolations - {sandbox.Isolation.NAMESPACES.value}):
         print(f"check: {isolation}", file=sys.stderr)
 
 

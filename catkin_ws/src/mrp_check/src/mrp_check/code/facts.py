@@ -76,5 +76,5 @@ class Facts:
         names = [node] if node else self.sources
         sources = [self.python.get(file) for name in names for file in self.sources.get(name, ())]
         return {
-            module: said for source in sources if source for module, said in source.absent.items()
+            module: text for source in sources if source for module, text in source.absent.items()
         }

@@ -91,7 +91,7 @@ def _syntax(package: Package, file: str, error: SyntaxError) -> Finding:
     lines = package.lines(file)
     line = min(line, len(lines))
     shown = lines[line - 1].strip()
-    hint = next((said for shape, said in _SYNTAX if re.search(shape, text)), "")
+    hint = next((sentence for shape, sentence in _SYNTAX if re.search(shape, text)), "")
     if re.search(r"inconsistent use|unindent|unexpected indent", text):
         hint = _tabs(lines) or hint
     if text == "invalid syntax":

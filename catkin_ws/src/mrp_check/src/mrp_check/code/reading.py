@@ -22,7 +22,7 @@ def read(reader: CppReader, spec: Spec, model: Model, launch: Launch | None) -> 
     workspace = reader.workspace
     package, facts = workspace.package, Facts()
     cpp = [file for file in package.of_kind("cpp") if not uses.is_test(file)]
-    said_of = {file: workspace.submit(reader.read, file) for file in cpp}
+    futures = {file: workspace.submit(reader.read, file) for file in cpp}
     for file in python_files(package):
         source, problem = python_read.read(package, file)
         if source is None:
@@ -36,8 +36,8 @@ def read(reader: CppReader, spec: Spec, model: Model, launch: Launch | None) -> 
         workspace.progress("reading the C++ sources")
     _used_elsewhere(facts)
     named: set[str] = set()
-    for file, said in said_of.items():
-        named |= take(facts, file, said.result())
+    for file, future in futures.items():
+        named |= take(facts, file, future.result())
     mark_unused(facts, named)
     nodes = launch.nodes if launch else []
     facts.launch = {node.name: (node.file, node.line or 1) for node in nodes if node.file}
@@ -99,13 +99,13 @@ def mark_unused(facts: Facts, named: set[str]) -> None:
             place.unused = place.usr not in named
 
 
-def take(facts: Facts, file: str, said: Said | None) -> set[str]:
+def take(facts: Facts, file: str, result: Said | None) -> set[str]:
     """Put what is said of one C++ source into the facts; return the functions that it names."""
-    if said is None or said.errors:
+    if result is None or result.errors:
         facts.unread.add(file)
-    if said is None:
+    if result is None:
         return set()
     seen = {(p.file, p.line, p.kind, p.text) for p in facts.places}
     # A header is read with each source that includes it.
-    facts.places += [p for p in said.places if (p.file, p.line, p.kind, p.text) not in seen]
-    return set(said.named)
+    facts.places += [p for p in result.places if (p.file, p.line, p.kind, p.text) not in seen]
+    return set(result.named)

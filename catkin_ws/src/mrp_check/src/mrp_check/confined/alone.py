@@ -162,8 +162,8 @@ class RunningNode:
         try:
             message = self.message_class()
             text = self.plan.text
-            said = text.replace("{value}", str(value)) if text else value
-            messages.set_field(message, self.plan.field or "", said)
+            content = text.replace("{value}", str(value)) if text else value
+            messages.set_field(message, self.plan.field or "", content)
             publisher.publish(message)
         except Exception:  # another type than the contract's
             pass

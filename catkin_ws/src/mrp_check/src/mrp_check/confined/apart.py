@@ -66,9 +66,9 @@ class Starter:
         popen = subprocess.Popen([*sandbox, "--", *command], pass_fds=(write,), **options)
         os.close(write)
         with os.fdopen(read) as file:
-            said = json.loads(file.read() or "{}")
+            info = json.loads(file.read() or "{}")
         try:
-            return popen, psutil.Process(said["child-pid"])
+            return popen, psutil.Process(info["child-pid"])
         except (KeyError, psutil.NoSuchProcess):
             return popen, None  # it has ended already
 

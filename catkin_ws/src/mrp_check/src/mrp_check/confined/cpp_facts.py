@@ -46,10 +46,10 @@ def main() -> None:
     cindex.c_interop_string.value = property(_text)
     folder, headers, file, *arguments = sys.argv[1:]
     try:
-        said = _Source(cindex, folder, parsed(cindex, file, arguments, headers)).said()
+        result = _Source(cindex, folder, parsed(cindex, file, arguments, headers)).said()
     except cindex.TranslationUnitLoadError as error:
-        said = Said(errors=[str(error)])
-    sys.stdout.write(crossing.to_json(said))
+        result = Said(errors=[str(error)])
+    sys.stdout.write(crossing.to_json(result))
 
 
 def _text(name: ctypes.c_char_p) -> str | None:

@@ -129,8 +129,8 @@ class Exchange:
         if self.given is None:
             return False
         replies, rest = self._replies(name), (example.tolerance, example.is_among)
-        said = [fitting.follow(e, replies[t], *rest) for t, e in example.expects.items()]
-        return None not in said
+        matches = [fitting.follow(e, replies[t], *rest) for t, e in example.expects.items()]
+        return None not in matches
 
     def result(self, result: Alone) -> None:
         """Put what came of it into the node's result."""

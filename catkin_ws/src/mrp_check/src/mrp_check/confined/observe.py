@@ -304,8 +304,8 @@ def _answer(place: Tuple[Any, ...], header: Dict[str, str]) -> Dict[str, str]:
     """Return what a publisher, or a service, answers to a header."""
     with socket.create_connection(place, _ANSWER) as connection:
         rosgraph.network.write_ros_handshake_header(connection, header)
-        said = rosgraph.network.read_ros_handshake_header(connection, io.BytesIO(), _HEADER)
-        return dict(said)
+        answer = rosgraph.network.read_ros_handshake_header(connection, io.BytesIO(), _HEADER)
+        return dict(answer)
 
 
 def _refuse(self: object, caller_id: str, reason: str = "") -> MasterReply:

@@ -47,10 +47,10 @@ def _run(*command: str) -> str:
     done = subprocess.run(command, capture_output=True)
     if done.returncode == -signal.SIGXFSZ:
         sys.exit("it unpacks to a file that is far too large")
-    said = done.stderr.decode("utf-8", "replace").strip()
+    stderr = done.stderr.decode("utf-8", "replace").strip()
     # If CMake can't read one entry, it prints an error and still exits with 0.
-    if done.returncode or "error:" in said:
-        first = (said or f"exit code {done.returncode}").splitlines()[0]
+    if done.returncode or "error:" in stderr:
+        first = (stderr or f"exit code {done.returncode}").splitlines()[0]
         sys.exit(re.sub(r"^cmake -E tar: |^CMake Error: Problem with \w+\(\): ", "", first))
     return done.stdout.decode("utf-8", "replace")
 

@@ -39,8 +39,8 @@ def of_field(kind: str, path: str, own: Mapping[str, Fields]) -> str:
         found = fields(kind, own)
         if part not in found:
             there = f"{kind} has: {', '.join(found)}" if found else f"{kind} has no fields"
-            said = f"expected a field of {kind}; found '{path}'; {there}."
-            raise KindError(said + near(part, found))
+            sentence = f"expected a field of {kind}; found '{path}'; {there}."
+            raise KindError(sentence + near(part, found))
         kind = found[part]
     return kind
 

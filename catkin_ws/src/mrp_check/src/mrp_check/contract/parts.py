@@ -51,15 +51,15 @@ class Topic(_Typed):
     def has_decimals(self) -> bool:
         return bool(self.text) or self.kind.startswith("float")
 
-    def value_in(self, said: object) -> int | float | None:
+    def value_in(self, content: object) -> int | float | None:
         """Return the number that the field's content says, or None: it may be of any type."""
-        if self.text and isinstance(said, str):
+        if self.text and isinstance(content, str):
             shape = re.escape(self.text).replace(r"\{value\}", f"({lines.WHOLE}({lines.DECIMALS}))")
-            found = re.fullmatch(shape, said)
+            found = re.fullmatch(shape, content)
             if not found:
                 return None
             return float(found.group(1)) if found.group(2) else int(found.group(1))
-        return said if isinstance(said, (int, float)) else None
+        return content if isinstance(content, (int, float)) else None
 
 
 @dataclasses.dataclass(frozen=True)

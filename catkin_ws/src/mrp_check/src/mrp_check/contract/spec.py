@@ -58,9 +58,9 @@ class Spec:
         """Return whether a requirement counts."""
         nodes = self.nodes.values()
         parameters = self.launch.file and any(node.parameters for node in nodes)
-        said = dict(zip(MORE, (self.services, parameters, any(node.examples for node in nodes))))
+        parts = dict(zip(MORE, (self.services, parameters, any(node.examples for node in nodes))))
         of_launch = id_.startswith("launch-") and not self.launch.file
-        return not of_launch and id_ not in self.not_asked and bool(said.get(id_, True))
+        return not of_launch and id_ not in self.not_asked and bool(parts.get(id_, True))
 
     def points_of(self, id_: str) -> float:
         """Return the points of a requirement: 1 where the spec does not say."""
@@ -210,13 +210,13 @@ class _Reader:
     def own_messages(self, data: Entry) -> Messages:
         """See that each field's type is one that there is; return the contract's own types."""
         messages, own = data.get("messages", {}), dict(data.get("messages", {}))
-        said = [(["messages", name], fields) for name, fields in messages.items()]
+        definitions = [(["messages", name], fields) for name, fields in messages.items()]
         for name, entry in data.get("services", {}).items():
             for half, key in ((REQUEST, "request"), (RESPONSE, "response")):
                 if entry["type"].startswith(f"{PACKAGE}/"):
                     own[entry["type"].split("/")[1] + half] = entry.get(key, {})
-                    said.append((["services", name, key], entry.get(key, {})))
-        for place, fields in said:
+                    definitions.append((["services", name, key], entry.get(key, {})))
+        for place, fields in definitions:
             for field, kind in fields.items():
                 plain = kind.split("[")[0]
                 if message_types.is_builtin(plain) or {plain, plain.partition("/")[2]} & {*own}:
@@ -237,8 +237,8 @@ class _Reader:
                 self.fail([*place, "type" if error.is_type else "field"], str(error))
             kind = ""
         if "text" in entry and kind != "string":
-            said = f"only a string has a text; {entry.get('field', Topic.field)} of"
-            self.fail([*place, "text"], f"{said} {entry['type']} is a {kind}.")
+            problem = f"only a string has a text; {entry.get('field', Topic.field)} of"
+            self.fail([*place, "text"], f"{problem} {entry['type']} is a {kind}.")
         return Topic(name, kind=kind, **entry)
 
     def service(self, name: str, entry: Entry) -> Service:

@@ -125,8 +125,8 @@ def _load(workspace: Workspace, paths: Sequence[pathlib.Path], file: str) -> Lau
         first, *others = crossing.from_json(List[Dump], done.output)
     except ValueError as error:  # it may have been ended
         if done.ended_by is None:
-            said = done.errors.strip()[-_SAID:] or error
-            raise CannotCheck(f"roslaunch's reader failed: {said}") from None
+            reason = done.errors.strip()[-_SAID:] or error
+            raise CannotCheck(f"roslaunch's reader failed: {reason}") from None
         why = done.limit_text(confine.Limits(time=SECONDS))
         return Launch(f"reading it was ended: {why}", file=file)
     launch = _of_package(workspace, first, file)

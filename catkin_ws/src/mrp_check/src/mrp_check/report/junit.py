@@ -22,9 +22,9 @@ def text(report):
     for id_, verdict in report.requirements.items():
         case = _case(suite, f"mrp_check.{REQUIREMENTS[id_].stage}", id_)
         findings = [finding for finding in report.findings if finding.id == id_]
-        said = ["\n".join(terminal.finding_lines(f, report)) for f in findings]
-        said += [terminal.suppressed_line(f, report) for f in report.suppressed if f.id == id_]
-        lines = "\n\n".join(said)
+        texts = ["\n".join(terminal.finding_lines(f, report)) for f in findings]
+        texts += [terminal.suppressed_line(f, report) for f in report.suppressed if f.id == id_]
+        lines = "\n\n".join(texts)
         if verdict == BROKEN:
             errors = [f for f in findings if f.severity == ERROR and not f.consequence_of]
             _add(case, "failure", lines, message=errors[0].message)

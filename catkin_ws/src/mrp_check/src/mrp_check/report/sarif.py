@@ -50,9 +50,9 @@ def _rule(id_):
 
 def _invocation(report):
     """Return whether all could be checked, why not, and under which isolation."""
-    said = [("error", report.reason), (NOTE, report.isolation)]
+    texts = [("error", report.reason), (NOTE, report.isolation)]
     notifications = [
-        {"level": level, "message": {"text": terminal.plain(text)}} for level, text in said if text
+        {"level": level, "message": {"text": terminal.plain(text)}} for level, text in texts if text
     ]
     return {
         "executionSuccessful": report.verdict != UNCHECKED,

@@ -50,10 +50,10 @@ class Progress:
         elif of:
             sentence = f"{done} of {of}: {sentence}"
         start, end = ("\r\x1b[K", "") if self.terminal else ("", "\n")
-        said = f"check: {plain(sentence)}"
+        line = f"check: {plain(sentence)}"
         if self.terminal:  # the next one overwrites one line
-            said = said[: shutil.get_terminal_size().columns - 1]
-        print(f"{start}{said}", end=end, file=self.stream, flush=True)
+            line = line[: shutil.get_terminal_size().columns - 1]
+        print(f"{start}{line}", end=end, file=self.stream, flush=True)
 
     def clear(self):
         if self.terminal:

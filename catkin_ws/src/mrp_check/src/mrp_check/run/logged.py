@@ -86,8 +86,8 @@ def is_own(package: Package, log: Log) -> bool:
 def answer(text: str) -> str:
     """Return the name of the entry of the folder why that answers a line; empty if none does, or
     if there is no such folder."""
-    said = _shape(text)
-    found = [(len(shape), name) for shape, name in entries() if shape in said]
+    line_shape = _shape(text)
+    found = [(len(shape), name) for shape, name in entries() if shape in line_shape]
     return max(found)[1] if found else ""
 
 

@@ -105,28 +105,28 @@ class Node:
 
     def role(self, topic: Topic) -> Entry:
         """Return what a contract says of what it publishes by itself on a topic."""
-        said: Entry = {"topic": topic.name}
+        entry: Entry = {"topic": topic.name}
         if any(run.path in run.latched.get(resolved(topic, run.path), ()) for run in self.runs):
-            said["latched"] = True
+            entry["latched"] = True
         if self.alone and not self.alone.messages(topic):
-            return said  # what it publishes depends on what it's sent
+            return entry  # what it publishes depends on what it's sent
         times = max(([m.time for m in run.messages(topic)] for run in self.runs), key=len)
         gaps = [b - a for a, b in zip(times, times[1:])]
         if len(times) >= FEW:
             middle = statistics.median(gaps)
             steady = [gap for gap in gaps if abs(gap - middle) < _STEADY * middle]
             if len(steady) >= 0.7 * len(gaps):
-                said["period"] = float(f"{middle:.2g}")
+                entry["period"] = float(f"{middle:.2g}")
                 if middle < 0.5:
-                    said["tolerance"] = 0.5  # other programs of the machine change it as much
+                    entry["tolerance"] = 0.5  # other programs of the machine change it as much
         rows = [row for row in (run.numbers(topic) for run in self.runs) if len(row) >= FEW]
         steps = {b - a for row in rows for a, b in zip(row, row[1:])}
         numbers = [*{row[0] for row in rows}, *steps]
         if len(numbers) == 2 and all(number == int(number) for number in numbers) and numbers[1]:
-            said["values"] = {"start": int(numbers[0]), "step": int(numbers[1])}
+            entry["values"] = {"start": int(numbers[0]), "step": int(numbers[1])}
         elif steps and min(steps) > 0:
-            said["rises"] = True
-        return said
+            entry["rises"] = True
+        return entry
 
     def lines(self, topic: Topic | None, of_all: bool) -> list[str]:
         """Return the lines that it is sure to log: once in each run; or with each number that came
@@ -137,13 +137,13 @@ class Node:
         sure = [line for line in dict.fromkeys(once) if not _NUMBER.search(line)]
         for run, lines in zip(self.launched, logged):
             known = {float(number) for number in run.numbers(topic, of_all)} if topic else set()
-            said: dict[str, list[float]] = {}
+            rows: dict[str, list[float]] = {}
             for line in lines:
                 numbers = _NUMBER.findall(line.replace("\\", ""))
                 if len(numbers) == 1:
                     shape = line.replace(numbers[0].replace(".", r"\."), "{value}")
-                    said.setdefault(shape, []).append(float(numbers[0]))
-            sure += [shape for shape, all_ in said.items() if len(all_) >= FEW and {*all_} <= known]
+                    rows.setdefault(shape, []).append(float(numbers[0]))
+            sure += [shape for shape, row in rows.items() if len(row) >= FEW and {*row} <= known]
         return [*dict.fromkeys(sure)][:_LINES]
 
 
@@ -220,11 +220,11 @@ class _Writer:
             group = next(iter(self.launch.values())).namespace.strip("/")
             of_group = {"group": group} if group else {}
             sections["launch"] = {"file": last_part(self.file), **of_group}
-        said = {key: section for key, section in sections.items() if section}
+        document = {key: section for key, section in sections.items() if section}
         head = [f"# What the package {self.package.name} was seen to do, to be edited.\n"]
         head += [f"# {comment}\n" for comment in self.comments]
         return "".join(head) + yaml.safe_dump(
-            said, default_flow_style=None, sort_keys=False, width=1000, allow_unicode=True
+            document, default_flow_style=None, sort_keys=False, width=1000, allow_unicode=True
         )
 
     def _node(self, name: str, node: Node) -> Entry:
@@ -245,18 +245,18 @@ class _Writer:
                 node.named(lambda seen: seen.lookups),
             )
         )
-        said: Entry = {"language": self.case.spec.nodes[node.executable].language}
+        entry: Entry = {"language": self.case.spec.nodes[node.executable].language}
         if not self.launch and node.executable not in (name, f"{name}.py"):
-            said["executable"] = node.executable
-        said["anonymous"] = bool(_ANONYMOUS.search(node.runs[-1].path))
-        said["publishes"] = [node.role(topic) for topic in publishes]
-        said["subscribes"] = [{"topic": topic.name} for topic in subscribes]
-        said["offers"], said["calls"] = offers, calls
-        said["ends"] = node.ends
+            entry["executable"] = node.executable
+        entry["anonymous"] = bool(_ANONYMOUS.search(node.runs[-1].path))
+        entry["publishes"] = [node.role(topic) for topic in publishes]
+        entry["subscribes"] = [{"topic": topic.name} for topic in subscribes]
+        entry["offers"], entry["calls"] = offers, calls
+        entry["ends"] = node.ends
         heard = next(iter(subscribes), None)
         topic_of_lines = heard or next(iter(publishes), None)
-        said["prints"] = node.lines(topic_of_lines, of_all=topic_of_lines is heard)
-        return {key: value for key, value in said.items() if value}
+        entry["prints"] = node.lines(topic_of_lines, of_all=topic_of_lines is heard)
+        return {key: value for key, value in entry.items() if value}
 
     def _known(self, name: str, topics: Iterable[Topic]) -> list[Topic]:
         """Return the topics that the contract can say; leave a comment on each other one."""

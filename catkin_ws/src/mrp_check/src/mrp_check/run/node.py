@@ -97,8 +97,8 @@ class Node(Traces):
         if topic is None or not topic.text:
             return []
         messages = itertools.chain(*self.runs())
-        said = [(message.fields or {}).get(topic.field) for message in messages]
-        return [text for text in said if isinstance(text, str) and topic.value_in(text) is None]
+        contents = [(message.fields or {}).get(topic.field) for message in messages]
+        return [text for text in contents if isinstance(text, str) and topic.value_in(text) is None]
 
     def has_wrapped(self) -> bool:
         """Return whether it was seen what is published past the largest value: in Python when it

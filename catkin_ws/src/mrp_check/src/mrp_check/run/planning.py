@@ -269,8 +269,8 @@ def _arguments(parameters: Mapping[str, object]) -> list[str]:
 
 
 def _param(name: str, value: object) -> str:
-    said = xml.sax.saxutils.quoteattr(value if isinstance(value, str) else json.dumps(value))
-    return f'<param name="{name}" value={said}/>'
+    quoted = xml.sax.saxutils.quoteattr(value if isinstance(value, str) else json.dumps(value))
+    return f'<param name="{name}" value={quoted}/>'
 
 
 def _moved(name: str, old: str, new: str) -> str:

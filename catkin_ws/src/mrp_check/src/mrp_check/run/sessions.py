@@ -102,11 +102,11 @@ class Sessions:
                 return crossing.from_json(kind, done.output)
             except crossing.CrossingError as error:
                 raise CannotCheck(f"What the observer says can't be read: {error}") from None
-        said = (done.errors.strip().splitlines() or [f"it ended with {done.code}"])[-1]
+        last_line = (done.errors.strip().splitlines() or [f"it ended with {done.code}"])[-1]
         why = done.limit_text(self._limits)
         if not why and "Traceback" in done.errors:
-            raise CannotCheck(f"The observer itself failed: {said}. Please report it.")
-        problems.append(f"the nodes couldn't be observed: {why or said}")
+            raise CannotCheck(f"The observer itself failed: {last_line}. Please report it.")
+        problems.append(f"the nodes couldn't be observed: {why or last_line}")
         return None
 
 

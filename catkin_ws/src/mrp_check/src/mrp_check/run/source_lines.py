@@ -92,13 +92,13 @@ class Places:
     def asked(self, node: str, what: Kind, name: str) -> Where:
         """Return the place at which a node names a service or a parameter; without that name the
         first one of its kind, and without any where the node begins."""
-        said = self.facts.asked(self.sources(node), what)
-        said.sort(key=lambda place: place.base != name)
-        return (said[0].file, said[0].line) if said else self.of(node, Kind.INIT)
+        places = self.facts.asked(self.sources(node), what)
+        places.sort(key=lambda place: place.base != name)
+        return (places[0].file, places[0].line) if places else self.of(node, Kind.INIT)
 
-    def of_text(self, node: str, said: str) -> Line | None:
+    def of_text(self, node: str, text: str) -> Line | None:
         """Return the place at which a text that a node says begins as this one does, or None."""
-        begin = re.split(r"\d", said)[0].strip()
+        begin = re.split(r"\d", text)[0].strip()
         for file in self.sources(node) if begin else ():
             line = self.package.find_line(file, begin)
             if line:

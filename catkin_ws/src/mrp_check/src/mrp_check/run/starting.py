@@ -105,13 +105,13 @@ def _ended(node: Traces) -> Finding:
 
 
 def _failed(node: Traces, code: int | None, started_ros: bool) -> Finding:
-    said = last_words(node.errors())
-    is_too_early = "must call ros::init" in said
+    words = last_words(node.errors())
+    is_too_early = "must call ros::init" in words
     kinds = (Kind.GLOBAL, Kind.HANDLE) if is_too_early else (Kind.INIT, Kind.HANDLE)
     return node.finding(
-        "starts" if started_ros else _id_of_words(said),
+        "starts" if started_ros else _id_of_words(words),
         f"{node.name} ends soon after it is started, {code_text(code)}"
-        + (f", with the words: {said}" if said else "."),
+        + (f", with the words: {words}" if words else "."),
         node.places.of(node.name, *kinds),
         expected=_EXPECTED,
         seen=code_text(code),
@@ -152,9 +152,9 @@ def id_of_error(kind: str, text: str, otherwise: str) -> str:
     return otherwise
 
 
-def _id_of_words(said: str) -> str:
+def _id_of_words(text: str) -> str:
     words = ("ros::init", "must call", "Couldn't find an AF_INET", "init_node")
-    if any(word in said for word in words):
+    if any(word in text for word in words):
         return "node-start"
     scripts = ("No such file or directory", "not found", "Permission denied", "Exec format")
-    return "scripts" if any(word in said for word in scripts) else "starts"
+    return "scripts" if any(word in text for word in scripts) else "starts"

@@ -74,8 +74,8 @@ def bubblewraps_error() -> str | None:
         done = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True)
     except FileNotFoundError:
         return "bubblewrap is not installed."
-    said = done.stderr.decode("utf-8", "replace").strip().splitlines()
-    return (said or [f"bwrap: exit code {done.returncode}"])[0] if done.returncode else None
+    lines = done.stderr.decode("utf-8", "replace").strip().splitlines()
+    return (lines or [f"bwrap: exit code {done.returncode}"])[0] if done.returncode else None
 
 
 def bubblewrap(binds: Iterable[tuple[str, str, str]]) -> list[str]:

@@ -75,14 +75,14 @@ class Result:
 
     def limit_text(self, limits: Limits) -> str | None:
         """Return a sentence that says which limit was broken, or None."""
-        said = {
+        sentences = {
             "time": f"it didn't end within {limits.time:.0f} s",
             "memory": f"it used more than {limits.memory // MEGABYTE} MB of memory",
             "processes": f"it started more than {limits.processes} processes and threads",
             "disk": f"it wrote more than {limits.disk // MEGABYTE} MB, or too deep folders",
             "output": f"it printed more than {_FLOOD * limits.output // MEGABYTE} MB",
         }
-        return said.get(self.ended_by or "")
+        return sentences.get(self.ended_by or "")
 
 
 def run(
@@ -208,10 +208,10 @@ def _result(reader: _Reader, flood: bool) -> Result:
     try:
         report = crossing.from_json(warden.Outcome, reader.text("report"))
     except crossing.CrossingError:
-        said = reader.text("errors").strip().splitlines()
+        lines = reader.text("errors").strip().splitlines()
         raise ConfineError(
             "the process that watches over the package's programs was ended"
-            + (f": {said[-1]}" if said else "")
+            + (f": {lines[-1]}" if lines else "")
         ) from None
     if not report.all_dead:
         raise ConfineError("some processes of the package couldn't be killed")

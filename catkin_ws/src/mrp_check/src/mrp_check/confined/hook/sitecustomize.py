@@ -74,13 +74,13 @@ def _place(frames: List[types.FrameType]) -> Dict[str, object]:
 
 
 def _tell_calls(rospy: Any) -> None:
-    told = set()
+    reported = set()
 
     def tell_once(event: str, **what: object) -> None:
         key = (event, what.get("file"), what.get("line"))
         # What rospy does by itself is no news.
-        if key not in told and what["file"] and what.get("topic") != "/rosout":
-            told.add(key)
+        if key not in reported and what["file"] and what.get("topic") != "/rosout":
+            reported.add(key)
             _tell(event, **what)
 
     def before(

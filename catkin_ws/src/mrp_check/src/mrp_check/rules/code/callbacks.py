@@ -16,7 +16,7 @@ from mrp_check.run import evidence
 
 
 def _of(node: SourceNode) -> Iterator[Finding]:
-    said = set()
+    reported = set()
     for kind, id_, does in (
         (Kind.INIT, "node-start", "starts the node"),
         (Kind.PUBLISHER, "topic", "creates the publisher"),
@@ -26,9 +26,9 @@ def _of(node: SourceNode) -> Iterator[Finding]:
         places = node.places(kind)
         functions = [_unused_around(node, place) for place in places]
         function = functions[0] if functions else None
-        if function is None or None in functions or (function.file, function.line) in said:
+        if function is None or None in functions or (function.file, function.line) in reported:
             continue
-        said.add((function.file, function.line))
+        reported.add((function.file, function.line))
         timer = " Pass it to a timer as its callback." if kind is Kind.PUBLISH else ""
         yield node.finding(
             id_,
@@ -66,14 +66,14 @@ class EarlyCallback(PythonRule):
                 if isinstance(function, ast.FunctionDef) and name:
                     if any(value and self.source.function(value) is function for value in given):
                         continue  # perhaps it has given it a value before
-                    place, said = later[name], ast.unparse(used[name])
+                    place, expression = later[name], ast.unparse(used[name])
                     yield self.finding(
                         "callbacks",
-                        f"{function.name}() uses {said}, which is only created on line"
+                        f"{function.name}() uses {expression}, which is only created on line"
                         f" {place.lineno}: a {what} that comes earlier raises an error.",
                         call,
                         certainty=HABIT,
-                        expected=f"{said} before what calls {function.name}()",
+                        expected=f"{expression} before what calls {function.name}()",
                         fix=f"Move line {place.lineno} above this line.",
                     )
 

@@ -83,13 +83,13 @@ class Names(PythonRule):
             return  # it is built with the package: the run shows whether it has that
         renamed, gone = OF_PYTHON_2.get(missing), releases.GONE.get(missing)
         if renamed or gone:
-            said = f"{missing} is the Python 2 name of a module that Python 3 calls {renamed}"
+            reason = f"{missing} is the Python 2 name of a module that Python 3 calls {renamed}"
             if gone:
-                said = f"From Debian {gone.since} on, there's no {gone.what}"
+                reason = f"From Debian {gone.since} on, there's no {gone.what}"
             instead = gone.instead if gone else renamed
             yield self.finding(
                 "python-names",
-                f"{said}: Python raises a ModuleNotFoundError.",
+                f"{reason}: Python raises a ModuleNotFoundError.",
                 node,
                 expected=instead,
                 fix=f"Use {instead}.",
@@ -151,7 +151,7 @@ class Names(PythonRule):
             found = checker.Checker(self.source.tree, self.file).messages
         except RecursionError:
             return
-        said, name_of = set(), self.package.name
+        reported, name_of = set(), self.package.name
         if {*self.source.stars} - {f"{name_of}.msg", f"{name_of}.srv"}:
             return  # it may have any name
         kinds = messages.UndefinedName, messages.UndefinedLocal, messages.ImportStarUsage
@@ -161,10 +161,10 @@ class Names(PythonRule):
             if not isinstance(message, kinds):
                 continue
             name = message.message_args[0]
-            if name in said or isinstance(message, messages.ImportStarUsage) and name in known:
+            if name in reported or isinstance(message, messages.ImportStarUsage) and name in known:
                 continue
             if name not in _PYTHON2:
-                said.add(name)
+                reported.add(name)
                 finding = self._undefined(name, message)
                 if type(message) is messages.UndefinedName and self._is_used(name, message.lineno):
                     finding.certainty = CERTAIN
@@ -173,7 +173,7 @@ class Names(PythonRule):
                     finding.consequence_of = "python-names"
                 yield finding
             elif not self._is_asked_for(name, message.lineno):
-                said.add(name)
+                reported.add(name)
                 yield self._of_python2(name, message.lineno)
 
     def _is_used(self, name: str, line: int) -> bool:

@@ -23,12 +23,12 @@ _NUMBER = (int, float)
 
 class Typed(PythonRule):
     def findings(self) -> Iterator[Finding]:
-        said: set[ast.expr] = set()
+        reported: set[ast.expr] = set()
         for node, operand, does in self._uses():
             call = self.typed(operand)
-            if call is None or call in said or self.source.is_guarded(node, "TypeError"):
+            if call is None or call in reported or self.source.is_guarded(node, "TypeError"):
                 continue
-            said.add(call)
+            reported.add(call)
             is_equality = isinstance(node, ast.Compare) and isinstance(node.ops[0], _EQUALITIES)
             follows = (
                 "they're never equal"

@@ -17,16 +17,16 @@ def _of(node: SourceNode) -> Iterator[Finding]:
         return
     modulus = values.modulus
     used = {name for p in node.places(Kind.DATA) for name in p.names}
-    said = set()
+    reported = set()
     for place in node.places(Kind.STEP):
         kind, bits = place.type, place.bits
-        if place.text not in used or place.text in said or bits <= 0:
+        if place.text not in used or place.text in reported or bits <= 0:
             continue
         floating = kind in ("float", "double")
         enough = bits - (0 if "unsigned" in kind else 1)
         if not floating and 2**enough >= modulus:
             continue
-        said.add(place.text)
+        reported.add(place.text)
         if floating:
             largest = 24 if kind == "float" else 53
             why = f"past 2^{largest} it no longer counts in whole steps, and it never wraps around."

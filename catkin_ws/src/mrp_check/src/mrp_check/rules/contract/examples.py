@@ -85,12 +85,12 @@ def _of_example(node: Node, example: Example, ran: Alone) -> Finding | None:
 
 
 def _given(example: Example) -> str:
-    said = [f"{name} = {value}" for name, value in example.parameters.items()]
+    parameters = [f"{name} = {value}" for name, value in example.parameters.items()]
     sent = [
         f"{fields_text(message, 'a message')} on {topic.name}"
         for topic, message in example.receives
     ]
-    started = f", started with {', '.join(said)}," if said else ""
+    started = f", started with {', '.join(parameters)}," if parameters else ""
     return started + (f" is sent {', '.join(sent)}, and" if sent else "")
 
 
@@ -113,8 +113,8 @@ def _cause(node: Node, example: Example, ran: Alone, wrong: Message) -> tuple[Wh
         if not (same[0].text or "").startswith("~") and node.package.kind(same[0].file) == "python":
             return (same[0].file, same[0].line), " A private parameter's name begins with ~."
     texts = [node.places.of_text(node.name, v) for v in wrong.values() if isinstance(v, str)]
-    said = next(filter(None, texts), None) or node.places.of_setting(node.name, wrong)
-    return said or node.places.of(node.name, Kind.DATA, Kind.PUBLISH), ""
+    line = next(filter(None, texts), None) or node.places.of_setting(node.name, wrong)
+    return line or node.places.of(node.name, Kind.DATA, Kind.PUBLISH), ""
 
 
 def _shown(messages: Sequence[Mapping[str, object]]) -> str:

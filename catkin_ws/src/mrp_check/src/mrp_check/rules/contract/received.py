@@ -92,15 +92,15 @@ def _repeated_finding(
     extra = [value for value in values if value not in sent]
     repeated = [value for value in sent if values.count(value) > 1]
     if extra:
-        said = f"logs {few(values)}, when it was sent {few(sent)}."
+        mistake = f"logs {few(values)}, when it was sent {few(sent)}."
     elif repeated:
         count = values.count(repeated[0])
-        said = f"logs {repeated[0]} {count} times, though it was sent once."
+        mistake = f"logs {repeated[0]} {count} times, though it was sent once."
     else:
         return
     yield node.finding(
         "received",
-        f"{node.name} {said}",
+        f"{node.name} {mistake}",
         _logged_place(node, logs, pattern),
         expected="one line for each message, with its value",
         seen=few(values),

@@ -88,16 +88,16 @@ def _value_findings(
     if wrong:
         before, after = wrong[0]
         if all(b == a for a, b in wrong) and len(wrong) < len(values) - 1:
-            said = f"{node.name} publishes a value more than once: {shown}."
+            sentence = f"{node.name} publishes a value more than once: {shown}."
             place = publish
         elif all(b == a for a, b in zip(values, values[1:])):
-            said = f"{node.name} publishes the same value again and again: {shown}."
+            sentence = f"{node.name} publishes the same value again and again: {shown}."
             place = file_line
         else:
-            said = f"{node.name} publishes {shown}: after {before} came {after}."
+            sentence = f"{node.name} publishes {shown}: after {before} came {after}."
             skips = rule.step and (after - before) % rule.step == 0 and after > before
             place = skips and node.places.condition_of_publish(node.name) or file_line
-        yield node.finding("values", said, place, expected=expected, seen=shown)
+        yield node.finding("values", sentence, place, expected=expected, seen=shown)
     elif values[0] != rule.start:
         facts = node.places.facts
         places = facts.of(node.name, Kind.COUNTER) or facts.of(node.name, Kind.STEP)
@@ -129,11 +129,11 @@ def _relayed(node: Node) -> Iterator[Finding]:
     if not values:
         if target not in node.topics(Kind.PUBLISHER, alone=True) or node.is_unheard(target):
             return  # another topic: said elsewhere; or nobody knows
-        said = f"{node.name} was sent {len(sent)} messages, and published none."
+        sentence = f"{node.name} was sent {len(sent)} messages, and published none."
     else:
-        said = f"{node.name} was sent {few(sent)}, and published {few(values)}."
+        sentence = f"{node.name} was sent {few(sent)}, and published {few(values)}."
     yield node.finding(
-        "values", said, place, expected=few(expected), seen=few(values) or "no message"
+        "values", sentence, place, expected=few(expected), seen=few(values) or "no message"
     )
 
 

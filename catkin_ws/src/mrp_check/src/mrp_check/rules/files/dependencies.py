@@ -145,15 +145,15 @@ def undeclared(case: Case) -> Iterator[Finding]:
     if manifest is None:
         return
     names = {name.lower() for known in declared(manifest).values() for name in known}
-    said: set[str] = set()
+    reported: set[str] = set()
     for file, line, module in _used(case):
         top = module.partition(".")[0]
         is_package = module.endswith((".msg", ".srv"))
         parts, key = _LIBRARIES.get(top, ((top.lower().replace("_", "-"), top.lower()), ""))
         key = key or (top if is_package else f"python3-{top.lower().replace('_', '-')}")
-        if top in said or any(part in name for part in parts for name in names):
+        if top in reported or any(part in name for part in parts for name in names):
             continue
-        said.add(top)
+        reported.add(top)
         yield Finding(
             "dependencies",
             f"{file} uses {top}, but package.xml doesn't name it: where it isn't installed, this"

@@ -41,7 +41,7 @@ def _warned(launch: Launch, tags: Sequence[tuple[str, Element]]) -> Iterator[Fin
     for text in launch.warned:
         found = _DOUBTED.search(text)
         of, word, above = found.groups() if found else ("", "", "")
-        said = re.sub(r"^(\[[^]]*\]|WARN:) ", "", text.splitlines()[0]).partition(": <")[0]
+        warning = re.sub(r"^(\[[^]]*\]|WARN:) ", "", text.splitlines()[0]).partition(": <")[0]
         for file, element in tags:
             words = (*element.attributes, *element.attributes.values()) if of else (element.tag,)
             is_it = element.tag == of or not of
@@ -49,7 +49,7 @@ def _warned(launch: Launch, tags: Sequence[tuple[str, Element]]) -> Iterator[Fin
                 near = nearest(word, _KNOWN, 0.6)
                 yield Finding(
                     "launch-file",
-                    f"roslaunch warns of this element: {said}",
+                    f"roslaunch warns of this element: {warning}",
                     file,
                     element.line,
                     HABIT,
@@ -78,10 +78,10 @@ _WHY = (
 
 def _error(launch: Launch, tags: Sequence[tuple[str, Element]], is_contract: bool) -> Finding:
     """Return the Finding about what roslaunch said instead of loading the file."""
-    said = " ".join(launch.error.split())
-    shape, why = next(row for row in _WHY if re.search(row[0], said))
-    names = [*re.findall(shape, said)[:1]] if shape else []
-    message, fix = f"roslaunch can't load the launch file: {said}", ""
+    error = " ".join(launch.error.split())
+    shape, why = next(row for row in _WHY if re.search(row[0], error))
+    names = [*re.findall(shape, error)[:1]] if shape else []
+    message, fix = f"roslaunch can't load the launch file: {error}", ""
 
     def first(is_it: Callable[[Element], bool]) -> list[Line]:
         return [(file, element.line) for file, element in tags if is_it(element)][:1]
@@ -108,17 +108,17 @@ def _error(launch: Launch, tags: Sequence[tuple[str, Element]], is_contract: boo
     elif shape == _ARGUMENT:
         place = first(lambda e: any(f"arg {names[0]}" in v for v in e.attributes.values()))
     else:
-        word = re.search(r"unknown .*?'(\w+)'|\[(\w+)\] is not a valid", said)
-        words = word.groups() if word else re.findall(r"[\w./$()-]+", said)
+        word = re.search(r"unknown .*?'(\w+)'|\[(\w+)\] is not a valid", error)
+        words = word.groups() if word else re.findall(r"[\w./$()-]+", error)
         place = first(lambda e: bool({*words} & {*e.attributes.values()}))
     return Finding(
         "launch-file",
         message,
         *(place or [(launch.file, 1)])[0],
         # Another launch file, or who calls it, may give what it wants.
-        HINT if _WANTED.search(said) and not is_contract else CERTAIN,
+        HINT if _WANTED.search(error) and not is_contract else CERTAIN,
         expected="a file that roslaunch can load",
-        seen=said[:500],
+        seen=error[:500],
         fix=fix
         or "Correct this line, and try again: roslaunch --nodes says whether it can be read.",
         why=why,

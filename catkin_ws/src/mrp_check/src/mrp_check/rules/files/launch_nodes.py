@@ -195,11 +195,11 @@ _GONE = {
 def gone(case: Case) -> Iterator[Finding]:
     for file in case.package.of_kind("launch"):
         text = uses.code(case.package, file)
-        for shape, (said, certainty, instead, beside) in _GONE.items():
+        for shape, (sentence, certainty, instead, beside) in _GONE.items():
             for match in re.finditer(shape, text) if beside in text else ():
                 yield Finding(
                     "launch-nodes",
-                    f"{said} (it went with Noetic).",
+                    f"{sentence} (it went with Noetic).",
                     file,
                     line_of(match, 1),
                     certainty,

@@ -33,8 +33,8 @@ def _findings(case: Case) -> Iterator[Finding]:
         yield from _definition(package, f"msg/{name}.msg", fields)
     for service in case.spec.services.values():
         path = f"srv/{service.type.split('/')[1]}.srv"
-        for half, said in enumerate((service.request, service.response)):
-            yield from _definition(package, path, said, half) if said else ()
+        for half, expected in enumerate((service.request, service.response)):
+            yield from _definition(package, path, expected, half) if expected else ()
     files = [path for path in package.of_kind(*uses.DEFINITIONS) if path.count("/") <= 1]
     if not case.spec.is_contract:
         yield from definitions(case)
@@ -269,16 +269,16 @@ def _of_line(
     try:
         spec = load_msg_from_string(context, text, f"{package.name}/A")
     except genmsg.InvalidMsgSpec as error:
-        said, expected = f"{error}", "a type and a name, such as int32 count"
+        reason, expected = f"{error}", "a type and a name, such as int32 count"
     else:
         unknown = next(filter(None, (_unknown(package, type_) for type_ in spec.types)), None)
         if unknown is None:
             return
-        said, near = unknown
+        reason, near = unknown
         expected = near or "a message type that exists"
     yield Finding(
         "messages",
-        f"{path} has a line that ROS can't read: {said}",
+        f"{path} has a line that ROS can't read: {reason}",
         path,
         line,
         CERTAIN,
@@ -298,15 +298,15 @@ def _unknown(package: Package, type_: str) -> tuple[str, str | None] | None:
         made = package.of_kind("message", "action")
         known = {other for path in made for other in uses.generated(path)}
         near = _OF_LANGUAGES.get(name) or nearest(name, [*BUILTIN_TYPES, *known])
-        said = f"there's no type {name}, and no msg/{name}.msg."
+        reason = f"there's no type {name}, and no msg/{name}.msg."
     else:
         folders = [pathlib.Path(share, owner, "msg") for share in resources.SHARES]
         known = {path.stem for folder in folders for path in folder.glob("*.msg")}
         near = nearest(name, known)
-        said = f"{owner} has no message {name}."
+        reason = f"{owner} has no message {name}."
     if not known and owner != package.name or name in known:
         return None
-    return said + perhaps(near), near
+    return reason + perhaps(near), near
 
 
 RULE = Rule(

@@ -21,8 +21,8 @@ _CODING = re.compile(rb"^[ \t\f]*#.*?coding[:=][ \t]*([-\w.]+)")
 def _findings(case: Case) -> Iterator[Finding]:
     package = case.package
     for path in package.left_out:
-        said = f"{path} has more than {MAX_BYTES // 10**6} MB, so the check leaves it out."
-        yield Finding("text", said, path, certainty=HINT, fix="Hand in the package without it.")
+        message = f"{path} has more than {MAX_BYTES // 10**6} MB, so the check leaves it out."
+        yield Finding("text", message, path, certainty=HINT, fix="Hand in the package without it.")
     if package.not_utf8:
         names = ", ".join(map(printable, package.not_utf8))
         yield Finding(
@@ -35,8 +35,8 @@ def _findings(case: Case) -> Iterator[Finding]:
             fix="Rename them. Old zip programs turn letters like ü into such names.",
         )
     if cut := ", ".join(filter(package.is_cut, package.files)):
-        said = f"The check says nothing about files of more than {MAX_TEXT // 10**6} MB: {cut}"
-        yield Finding("text", said, certainty=HINT, fix="Keep long data in a file of its own.")
+        message = f"The check says nothing about files of more than {MAX_TEXT // 10**6} MB: {cut}"
+        yield Finding("text", message, certainty=HINT, fix="Keep long data in a file of its own.")
     relayed = case.model.relayed()
     for path in package.files:
         kind = package.kind(path)

@@ -79,18 +79,18 @@ def _died(case: Case, launched: Launched, name: str, code: int) -> Finding:
     """Return the finding about a node that dies under a launch file, but not by itself."""
     paths = [path for path, node in launched.nodes.items() if node == name]
     logs = [log for path in paths for log in launched.logs(path)]
-    said = [log.text.strip()[:300] for log in logs if log.level in ("ERROR", "FATAL")]
-    end = blame.of_lines([*said, *launched.seen.until_asked()], code)
+    errors = [log.text.strip()[:300] for log in logs if log.level in ("ERROR", "FATAL")]
+    end = blame.of_lines([*errors, *launched.seen.until_asked()], code)
     alone = "ends without an error" if case.nodes[name].not_up else "keeps running"
     return Finding(
         "starts",
         f"{name} dies {launched.where}, {code_text(code)}; by itself, it {alone}."
-        + (f" Its last error: {said[-1]}" if said else ""),
+        + (f" Its last error: {errors[-1]}" if errors else ""),
         *case.places.of(name, Kind.INIT, Kind.HANDLE),
         blame.certainty(case, name, end, launched),
         expected="a node that runs until Ctrl-C",
         seen=code_text(code),
-        fix="" if said else "Start that launch file, and look at what the node prints last.",
+        fix="" if errors else "Start that launch file, and look at what the node prints last.",
         node=name,
     )
 

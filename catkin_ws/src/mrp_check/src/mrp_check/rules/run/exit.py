@@ -120,11 +120,11 @@ def _cause(
         return (exits[-1].file, exits[-1].line), ""
     if traceback and direct.code == 1:  # of another thread than main's, it does not set the code
         return traceback[0], f" {traceback[1]}: {traceback[2]}"
-    said = last_words(lines)
+    words = last_words(lines)
     place = _leaves(node, direct.code)
     if traceback and direct.code == -signal.SIGINT:  # Python ends so after a KeyboardInterrupt
         place = _loop_around(node, traceback[0]) or place
-    return place, f" Its last words: {said}" if said else ""
+    return place, f" Its last words: {words}" if words else ""
 
 
 def _runs(node: Node) -> list[tuple[str, LaunchResult | None]]:

@@ -41,19 +41,19 @@ class Graph(typing.NamedTuple):
 
 
 def _findings(case: Case) -> Iterator[Finding]:
-    told: set[object] = set()
+    reported: set[object] = set()
     published = {
         last_part(publisher.topic) for graph, _ in _graphs(case) for publisher in graph.publishers
     }
     for graph, nodes in _graphs(case):
         for end in graph.subscribers:
-            if end.node not in nodes or (end.node, end.topic) in told:
+            if end.node not in nodes or (end.node, end.topic) in reported:
                 continue
             same = [publisher for publisher in graph.publishers if publisher.topic == end.topic]
             for finding in (
                 _of_types(case, graph, end, same) if same else _alone(case, graph, end, published)
             ):
-                told.add((end.node, end.topic))
+                reported.add((end.node, end.topic))
                 yield finding
     for launched in case.observed.launches:
         yield from _of_services(case, launched) if launched.file else ()

@@ -69,9 +69,9 @@ def _launch_findings(package: Package, seen: Observed) -> Iterator[Finding]:
     for index, text in enumerate(texts):
         if not text.startswith("RLException: "):
             continue
-        said = " ".join(texts[index : index + 2]).partition(": ")[2]
-        named = re.search(r"__name:=(\w+)", said)
-        why = said.partition(" __name:=")[0]
+        message = " ".join(texts[index : index + 2]).partition(": ")[2]
+        named = re.search(r"__name:=(\w+)", message)
+        why = message.partition(" __name:=")[0]
         started = seen.started.get(named.group(1)) if named else None
         place = _launch_place(package, seen)
         if started and started.file:

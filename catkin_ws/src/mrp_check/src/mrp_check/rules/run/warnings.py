@@ -127,11 +127,11 @@ def _of_libraries(node: Node, run: Run, lines: list[Log]) -> Iterator[Finding]:
         known = next((warning for warning in _KNOWN if warning.says in text), None)
         why = logged.answer(text)
         if known:
-            said = f"{node.name} {known.means}, {run.where}. ROS says: {text[:300]}"
+            message = f"{node.name} {known.means}, {run.where}. ROS says: {text[:300]}"
             place = _place(node, log, known.near)
             yield node.finding(
                 known.id,
-                said,
+                message,
                 place,
                 expected="no such line",
                 seen=known.says,
@@ -139,11 +139,11 @@ def _of_libraries(node: Node, run: Run, lines: list[Log]) -> Iterator[Finding]:
                 why=why,
             )
         else:
-            said = f"A ROS library logs this for {node.name}, {run.where}: {text[:300]}"
+            message = f"A ROS library logs this for {node.name}, {run.where}: {text[:300]}"
             seen = f"{log.file}:{log.line}"
             place = _place(node, log)
             more = {"expected": "no such line", "seen": seen, "why": why}
-            yield node.finding("warnings", said, place, HABIT, **more)
+            yield node.finding("warnings", message, place, HABIT, **more)
 
 
 def _place(node: Node, log: Log, *near: Kind) -> Where:
@@ -165,14 +165,14 @@ def _of_frames(node: Node, run: Run, failed: list[Log]) -> Iterator[Finding]:
     text = failed[-1].text.strip()
     names = {*_FRAME.findall(text)}
     if names and names <= published:
-        said = "though both are published. A new tf2 buffer is empty, and needs a listener"
+        detail = "though both are published. A new tf2 buffer is empty, and needs a listener"
         certainty, fix = SEEN, "Make one tf2 Buffer and one TransformListener, before the loop."
     else:
-        said = f"to the end of the run. Published are: {', '.join(sorted(published))}"
+        detail = f"to the end of the run. Published are: {', '.join(sorted(published))}"
         certainty, fix = HABIT, "Compare the names of the frames, and wait until they are there."
     yield node.finding(
         "warnings",
-        f"{node.name} can't look up a transform, {run.where}, {said}: {text[:200]}",
+        f"{node.name} can't look up a transform, {run.where}, {detail}: {text[:200]}",
         node.places.of_log(node.name, failed[-1]),
         certainty,
         expected="a transform that is found after a moment",

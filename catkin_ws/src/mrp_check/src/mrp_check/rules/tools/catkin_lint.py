@@ -65,10 +65,10 @@ def _findings(case: Case) -> Iterator[Finding]:
         return
     done = running.result()
     try:
-        said = json.loads(done.output)
+        report = json.loads(done.output)
     except ValueError:
         raise CannotCheck(f"catkin_lint failed: {done.errors.strip()[-300:]}") from None
-    for entry in (entry for kind in ("errors", "warnings", "notices") for entry in said[kind]):
+    for entry in (entry for kind in ("errors", "warnings", "notices") for entry in report[kind]):
         row, place = _TABLE.get(entry["id"]), entry["location"]
         file, line = place.get("file", "CMakeLists.txt"), place.get("line")
         named = entry["text"].split("'")[1::2]

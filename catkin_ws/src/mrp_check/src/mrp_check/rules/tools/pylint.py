@@ -130,11 +130,11 @@ def _findings(case: Case) -> Iterator[Finding]:
     if "No module named pylint" in done.errors:
         raise NotHere(["pylint (Debian package pylint)"])
     try:
-        said = json.loads(done.output)
+        entries = json.loads(done.output)
     except ValueError:
         raise CannotCheck(f"pylint failed: {done.errors.strip()[-300:]}") from None
     own = {node.name for source in read.values() for node in source.nodes(ast.ClassDef)}
-    for entry in said:
+    for entry in entries:
         row = _TABLE.get(entry["symbol"])
         file = next((f for f, path in zip(files, paths) if path.endswith(entry["path"])), None)
         if row and file and _is_sure(entry, own) and entry["line"] not in read[file].told:
@@ -142,12 +142,12 @@ def _findings(case: Case) -> Iterator[Finding]:
             yield row.finding("pylint", package, file, entry["line"], name, entry["message"])
 
 
-def _is_sure(said: dict[str, str], own: set[str]) -> bool:
+def _is_sure(entry: dict[str, str], own: set[str]) -> bool:
     """own: the package's own classes"""
-    if said["symbol"] != "no-member":
+    if entry["symbol"] != "no-member":
         return True
     known = _CLASSES | own
-    return said["message"].startswith(tuple(f"Instance of '{name}'" for name in known))
+    return entry["message"].startswith(tuple(f"Instance of '{name}'" for name in known))
 
 
 RULE = Rule(
