@@ -112,14 +112,21 @@ def test_what_the_twin_says_is_marked_once(capsys):
 
 
 @pytest.mark.quick
-def test_program_that_ignores_ctrl_c_is_killed(capsys, monkeypatch):
+@pytest.mark.parametrize(
+    ("ignored", "code"), [("INT", -signal.SIGTERM), ("INT TERM", -signal.SIGKILL)]
+)
+def test_program_that_ignores_ctrl_c_is_ended(ignored, code, capsys, monkeypatch):
     monkeypatch.setattr("lab.GRACE", 0.1)
     with Run() as run:
-        program, _ = run.start("sh -c 'trap \"\" INT; echo ready; while :; do sleep 1; done'")
+        program, _ = run.start(
+            f"sh -c 'trap \"\" {ignored}; echo ready; while :; do sleep 1; done'"
+        )
         run.wait("ready")
         run.end("sh")
-    assert program.returncode == -signal.SIGKILL
-    assert "0.1 s after Ctrl-C, it still runs, so it is killed: sh -c" in capsys.readouterr().out
+    assert program.returncode == code
+    printed = capsys.readouterr().out
+    assert "0.1 s after SIGINT, it still runs: sh -c" in printed
+    assert printed.endswith("So it is killed.\n") == (code == -signal.SIGKILL)
 
 
 @pytest.mark.slow

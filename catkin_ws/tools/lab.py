@@ -194,14 +194,19 @@ class Run:
         topic, and waits for the lock that publish() holds (QueuedConnection in tcpros_pubsub.py).
         """
         command, program = self.programs.pop(self._newest(command))
+        # A roslaunch that had only begun to start may have lost the first. The second ends it and
+        # its nodes, which SIGKILL would leave behind.
+        for number in (signal.SIGINT, signal.SIGTERM):
+            if program.poll() is None:
+                os.killpg(program.pid, number)
+                try:
+                    program.wait(GRACE)
+                except subprocess.TimeoutExpired:
+                    self.say(f"{GRACE} s after {number.name}, it still runs: {command}")
         if program.poll() is None:
-            os.killpg(program.pid, signal.SIGINT)
-            try:
-                program.wait(GRACE)
-            except subprocess.TimeoutExpired:
-                self.say(f"{GRACE} s after Ctrl-C, it still runs, so it is killed: {command}")
-                os.killpg(program.pid, signal.SIGKILL)
-                program.wait()
+            self.say("So it is killed.")
+            os.killpg(program.pid, signal.SIGKILL)
+            program.wait()
 
 
 def use_free_master():
