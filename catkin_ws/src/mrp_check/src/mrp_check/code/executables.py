@@ -82,16 +82,17 @@ def _imported(package: Package, path: str) -> frozenset[str]:
     return frozenset(part for name in names for part in name.split("."))
 
 
-def _called(package: Package, path: str) -> set[str]:
+@functools.lru_cache(maxsize=None)  # asked as the nodes are looked for, and again as they run
+def _called(package: Package, path: str) -> frozenset[str]:
     """Return the names of what a Python file calls of rospy."""
     try:
         source = Source(path, package.text(path))
     except (SyntaxError, ValueError, RecursionError, MemoryError):
-        return {name.split(".")[-1] for name in _UNREAD.findall(package.text(path))}
+        return frozenset(name.split(".")[-1] for name in _UNREAD.findall(package.text(path)))
     calls = source.nodes(ast.Call)
     # Without its import, too.
     names = (source.dotted(call.func) or ast.unparse(call.func) for call in calls)
-    return {name.removeprefix("rospy.") for name in names if name.startswith("rospy.")}
+    return frozenset(name[len("rospy.") :] for name in names if name.startswith("rospy."))
 
 
 def _python(package: Package, model: Model) -> Iterator[specs.NodeSpec]:
