@@ -68,11 +68,11 @@ def replace(workspace: Workspace) -> None:
 
 def of_ros_2(manifest: Manifest | None) -> str:
     """Return what a package of ROS 2 needs that ROS 1 has not, such as ament_cmake; or nothing."""
-    if manifest is None:
+    depends = manifest.buildtool_depends + manifest.exec_depends if manifest else []
+    names = [depend.name for depend in depends]
+    if "catkin" in names:
         return ""
-    names = [depend.name for depend in manifest.buildtool_depends + manifest.exec_depends]
-    is_catkins = "catkin" in names
-    return next((n for n in names if n.startswith(_OF_ROS_2) and not is_catkins), "")
+    return next((name for name in names if name.startswith(_OF_ROS_2)), "")
 
 
 def declared(manifest: Manifest) -> dict[str, set[str]]:

@@ -7,7 +7,8 @@ from typing import Iterator
 
 from mrp_check.contract.finding import HABIT, HINT, Finding
 from mrp_check.contract.requirements import Requirement, Rule
-from mrp_check.package.manifest import FILE, of_ros_2
+from mrp_check.package.manifest import FILE, Manifest, of_ros_2
+from mrp_check.package.package import Package
 from mrp_check.run import evidence
 from mrp_check.run.case import Case
 
@@ -17,26 +18,31 @@ def _findings(case: Case) -> Iterator[Finding]:
     if problem:
         yield problem
     if manifest and "catkin" not in {d.name for d in manifest.buildtool_depends}:
-        ros_2 = of_ros_2(manifest)
-        yield Finding(
-            "manifest",
-            f"This is a package for ROS 2: it needs {ros_2}, which ROS 1 doesn't have."
-            if ros_2
-            else "package.xml doesn't say that the package is built with catkin.",
-            FILE,
-            # Where it belongs: at the first of the dependencies.
-            package.find_line(FILE, "depend>", package.find_line(FILE, "<package", 1)),
-            expected="a package for ROS 1"
-            if ros_2
-            else "<buildtool_depend>catkin</buildtool_depend>",
-            seen=", ".join(d.name for d in manifest.buildtool_depends) or "no buildtool_depend",
-            fix="Take its version for ROS 1, if there is one."
-            if ros_2
-            else "Add the line <buildtool_depend>catkin</buildtool_depend>.",
-            why="package-of-ros2" if ros_2 else "buildtool-missing",
-        )
+        yield _not_of_catkin(package, manifest)
     if manifest and "TODO" in manifest.licenses:
         yield _no_licence(case)
+
+
+def _not_of_catkin(package: Package, manifest: Manifest) -> Finding:
+    line = "<buildtool_depend>catkin</buildtool_depend>"
+    message = "package.xml doesn't say that the package is built with catkin."
+    expected, fix, why = line, f"Add the line {line}.", "buildtool-missing"
+    ros_2 = of_ros_2(manifest)
+    if ros_2:
+        message = f"This is a package for ROS 2: it needs {ros_2}, which ROS 1 doesn't have."
+        expected, why = "a package for ROS 1", "package-of-ros2"
+        fix = "Take its version for ROS 1, if there is one."
+    return Finding(
+        "manifest",
+        message,
+        FILE,
+        # Where it belongs: at the first of the dependencies.
+        package.find_line(FILE, "depend>", package.find_line(FILE, "<package", 1)),
+        expected=expected,
+        seen=", ".join(d.name for d in manifest.buildtool_depends) or "no buildtool_depend",
+        fix=fix,
+        why=why,
+    )
 
 
 def _no_licence(case: Case) -> Finding:
