@@ -83,19 +83,19 @@ def csv_text(submissions, spec):
     asked = asked_by(spec)
     columns = "submission package verdict points of by_hand mark".split()
     writer.writerow([*columns, *asked, "why", "isolation"])
-    for result in submissions:
+    for submission in submissions:
         writer.writerow(
             [
-                cell(result.name),
-                cell(result.report["package"]),
-                result.report["verdict"],
-                f"{result.points(spec):g}",
+                cell(submission.name),
+                cell(submission.report["package"]),
+                submission.report["verdict"],
+                f"{submission.points(spec):g}",
                 f"{most(spec):g}",
-                cell(str(result.by_hand or "")),
-                f"{result.mark(spec):g}",
-                *map(result.verdict_on, asked),
-                cell(" | ".join(result.causes()[:_MOST_CAUSES])),
-                cell(result.report.get("isolation", "")),
+                cell(str(submission.by_hand or "")),
+                f"{submission.mark(spec):g}",
+                *map(submission.verdict_on, asked),
+                cell(" | ".join(submission.causes()[:_MOST_CAUSES])),
+                cell(submission.report.get("isolation", "")),
             ]
         )
     return file.getvalue()
@@ -124,9 +124,11 @@ def html_text(submissions, spec, pages):
     pages: the folder of the submissions' own pages; the table links to them
     """
 
-    def page_of(result):
-        page = pathlib.Path(pages) / f"{result.name}.html"
-        return page.resolve().as_uri() if result.report["requirements"] and page.is_file() else ""
+    def page_of(submission):
+        page = pathlib.Path(pages) / f"{submission.name}.html"
+        return (
+            page.resolve().as_uri() if submission.report["requirements"] and page.is_file() else ""
+        )
 
     return html.render(
         "class.html",
@@ -147,15 +149,16 @@ def text(submissions, spec):
     """Return the table for the console."""
     width = max(len(submission.name) for submission in submissions)
     lines = []
-    for result in submissions:
-        broken = [id_ for id_ in OF_CONTRACT if result.verdict_on(id_) == BROKEN]
-        reason = result.report.get("reason") or ", ".join(broken)
-        points = f"{result.points(spec):g}/{most(spec):g}"
-        lines.append(
-            f"{result.name:{width}}  {result.report['verdict']:9}  {points:>7}  {reason}".rstrip()
-        )
+    for submission in submissions:
+        broken = [id_ for id_ in OF_CONTRACT if submission.verdict_on(id_) == BROKEN]
+        reason = submission.report.get("reason") or ", ".join(broken)
+        points = f"{submission.points(spec):g}/{most(spec):g}"
+        verdict = submission.report["verdict"]
+        lines.append(f"{submission.name:{width}}  {verdict:9}  {points:>7}  {reason}".rstrip())
     lines += [
-        f"{entry.name}: {said_of_mark(entry, spec)}" for entry in submissions if entry.by_hand
+        f"{submission.name}: {said_of_mark(submission, spec)}"
+        for submission in submissions
+        if submission.by_hand
     ]
     return terminal.plain("\n".join([*lines, *isolations(submissions)]))
 
