@@ -342,9 +342,6 @@ def test_what_ends_with_an_error_has_ended(stopped_in, code, found):
     assert [f.severity for f in actual] == [found]
 
 
-NOT_THERE = "open: No such file or directory"
-
-
 @pytest.mark.parametrize(
     ("asked_for", "given", "is_it"),
     [("~limit", "/limit", True), ("/limit", "/near/limit", True), ("~limit", "/limits", False)],
