@@ -51,7 +51,7 @@ def launch_file(name):
 
 def claim_of(name):
     """Return the first line of a lab's launch file, without the signs of a comment."""
-    return launch_file(name).read_text().split("\n")[0].removeprefix("<!-- ").removesuffix(" -->")
+    return re.sub("^<!-- | -->$", "", launch_file(name).read_text().split("\n")[0])
 
 
 def steps_of(name, entry):
